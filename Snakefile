@@ -4,16 +4,9 @@
 #                     results/points (the store) <--'               draw --> results/figures
 #                                                                explore --> results/*.html
 #
-# CONTRIBUTING.md follows one point along this way.
-#
-# The name of a batch is a hash of its requests and of the code, so an existing batch is up to date.
-# Datasets, figures and pages have plain names.  Each has a stamp, results/.made/NAME.json, with the
-# fingerprint of its inputs and the checksums of its files.  The job writes the stamp last.
-#
-# Snakemake compares modification times.  The file results/.again is an input of every rule.
-# Outdated products and damaged batches are backdated to before .again.  For all other files, .again
-# is marked `ancient`, and so are all inputs that are up to date.  Therefore, neither other
-# modification times nor .snakemake matter.
+# CONTRIBUTING.md follows one point along this way, and explains how stamps and the file
+# results/.again decide what is made again.  Inputs that are up to date are marked `ancient`, so
+# neither other modification times nor .snakemake matter.
 
 from snakemake.utils import min_version
 

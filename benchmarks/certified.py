@@ -92,14 +92,14 @@ def cost(dataset, velocity, amplitude, poisson):
 
 def surpluses_at(dataset, points):
     """Surplus of the cell at each point, and largest error estimate of the cell's nodes."""
-    answers = cells_of(dataset)
-    coordinates = answers.cells.coordinates
+    table = cells_of(dataset)
+    coordinates = table.coordinates
     scaled = coordinates.scaled(*np.array(points).T[: len(coordinates.directions)])
     surplus, node_error = np.full((2, len(scaled)), np.nan)
-    picked = dataset["cell_node"].values
-    for ends, nodes, index in zip(answers.cells.borders, answers.cells.nodes, picked, strict=True):
+    picked, errors = dataset["cell_node"].values, dataset["mu_macro_error"].values
+    for ends, nodes, index in zip(table.borders, table.nodes, picked, strict=True):
         here = ((scaled >= ends[:, 0]) & (scaled <= ends[:, 1])).all(axis=1)
-        surplus[here], node_error[here] = sum(surpluses_of(nodes)), answers.errors[index].max()
+        surplus[here], node_error[here] = sum(surpluses_of(nodes)), errors[index].max()
     return surplus, node_error
 
 

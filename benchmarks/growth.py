@@ -77,9 +77,8 @@ def measure(points, per_job):
         rows.append(("all points, dataset and figures, s", f"{seconds:.0f}"))
         rows.append(("largest memory of a process in that run, MB", f"{largest:.0f}"))
         dataset = Path(folder, "results/continuous_bore.nc")
-        with xr.open_dataset(dataset, chunks={}) as data:
+        with xr.open_dataset(dataset) as data:
             assert data.mu_macro.size == points and bool(data.converged.all())
-            rows.append(("chunks of a variable", f"{data.mu_macro.data.npartitions}"))
         rows.append(("size of the dataset, MB", f"{dataset.stat().st_size / 1e6:.1f}"))
         output, seconds, _ = project.snakemake()
         assert "Nothing to be done" in output

@@ -18,7 +18,7 @@ def there_and_back(rows=40):
     return np.concatenate([up, down[1:], down[::-1][1:]])
 
 
-@pytest.mark.parametrize("tolerance", [1e-3, 1e-4])
+@pytest.mark.parametrize("tolerance", [2e-3, 3e-4])
 def test_mindlin_curve_and_masing_loops(tolerance):
     path = there_and_back()
     answer = response(path, tolerance=tolerance)
@@ -120,7 +120,7 @@ def test_random_planar_paths_with_varying_load(seed):
     rows = np.concatenate([np.zeros((1, 2)), np.cumsum(steps, axis=0)])
     load = random.uniform(0.3, 1.7, len(rows))
     answer = response(*rows.T, load=load, tolerance=5e-3)
-    coarse, fine = (independent_march(rows, load, *size) for size in ((24, 16), (48, 32)))
+    coarse, fine = (independent_march(rows, load, *size) for size in ((16, 12), (32, 24)))
     other = 2.0 * fine - coarse  # it is of first order
     difference = np.abs(np.stack([answer.force_forward, answer.force_lateral], axis=1) - other)
     assert answer.converged

@@ -142,6 +142,19 @@ def test_bad_input_gets_one_line(changed, message):
     assert str(refused.value).startswith(message) and "\n" not in str(refused.value)
 
 
+def test_few_samples_of_a_sharp_motion_have_a_larger_error():
+    """The interpolation between samples is a source of the error of its own."""
+    zigzag = 2.0 / np.pi * np.arcsin(np.sin(np.linspace(0.0, 2.0 * np.pi, 64, endpoint=False)))
+    exact = microslip.shakedown("zigzag", 0.7, 0.3)
+    motion = microslip.Sampled.of_columns({"lateral": zigzag[::8]})
+    coarse = microslip.shakedown(motion, 0.7, 0.3, tolerance=0.1)
+    assert coarse.error_model > 0.0
+    errors = coarse.displacement_error + exact.displacement_error
+    assert abs(coarse.displacement - exact.displacement) <= errors
+    whole = microslip.shakedown("transverse", 0.7, 0.3)
+    assert whole.error_model == 0.0
+
+
 @pytest.mark.long
 def test_in_si_units_it_is_told_of_a_joint_that_stays():
     joint = {"material": "steel", "counterbody": "steel", "radius": "200 mm", "load": "1 kN"}

@@ -9,39 +9,15 @@ from microslip.states.search import largest_excess
 SHARP = "punch:flat=0.95"
 # motion, pressure, velocity, amplitude, cells and steps of a reference
 OFF = [
-    (
-        "forward=0.97,phase=90,forward_cycles=2",
-        SHARP,
-        0.00022886554043705838,
-        0.9254990785352156,
-        24,
-        512,
-    ),
-    (
-        "forward=0.44,phase=60,forward_cycles=2",
-        "power:exponent=30",
-        7.71668330440097e-05,
-        0.6332575478397949,
-        64,
-        256,
-    ),
-    (
-        "forward=0.59,phase=10,forward_cycles=2",
-        SHARP,
-        0.0005260909952791848,
-        0.9504824781053628,
-        96,
-        256,
-    ),
-    (
-        "forward=0.81,phase=0",
-        "power:exponent=30",
-        0.0005146847055429344,
-        0.7300692973793619,
-        64,
-        128,
-    ),
-]
+    ("forward=0.97,phase=90,forward_cycles=2", SHARP,
+     0.00022886554043705838, 0.9254990785352156, 24, 512),
+    ("forward=0.44,phase=60,forward_cycles=2", "power:exponent=30",
+     7.71668330440097e-05, 0.6332575478397949, 64, 256),
+    ("forward=0.59,phase=10,forward_cycles=2", SHARP,
+     0.0005260909952791848, 0.9504824781053628, 96, 256),
+    ("forward=0.81,phase=0", "power:exponent=30",
+     0.0005146847055429344, 0.7300692973793619, 64, 128),
+]  # fmt: skip
 
 
 @pytest.mark.parametrize(("path", "pressure", "velocity", "amplitude", "cells", "steps"), OFF)

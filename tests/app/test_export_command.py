@@ -10,7 +10,7 @@ import pytest
 from stubs import certified_stub
 
 import microslip
-from microslip.app import cli, export_command
+from microslip.app import cli
 
 BODY = "--young '210 GPa' --nu 0 --mu 0.3 --radius '5 mm'"
 SAME = {"young": "210 GPa", "nu": 0, "mu": 0.3, "radius": "5 mm"}
@@ -75,11 +75,18 @@ def test_an_iwan_model_without_a_contact_is_dimensionless(capsys):
 GRID = "--load '10..20 N, 2' --speed '5..20 mm/s, 3' --amplitude '0.1..0.4 um, 3'"
 
 
-def test_a_table_has_the_predictions_with_their_errors(tmp_path, capsys):
-    file = tmp_path / "friction.csv"
-    code, out, _ = run(capsys, f"table transverse {VIBRATED} {GRID} --output {file}")
-    assert code == 0 and "linear interpolation" in out
-    frame = pd.read_csv(file, comment="#")
+@pytest.fixture(scope="module")
+def files(tmp_path_factory):
+    """A table of three axes as CSV, and as text for Modelica."""
+    folder = tmp_path_factory.mktemp("table")
+    for name in ("friction.csv", "friction.txt"):
+        command = f"table transverse {VIBRATED} {GRID} --output {folder / name}"
+        assert cli.main(["export", *shlex.split(command)]) == 0
+    return pd.read_csv(folder / "friction.csv", comment="#"), (folder / "friction.txt").read_text()
+
+
+def test_a_table_has_the_predictions_with_their_errors(files):
+    frame, _ = files
     axes, force = ["load [N]", "speed [m/s]", "amplitude [m]"], "friction_force [N]"
     columns = ["mu_apparent", "mu_apparent_error", force, "friction_force_error [N]"]
     assert list(frame.columns) == axes + columns and len(frame) == 18
@@ -102,15 +109,11 @@ def tables_of(text):
     }
 
 
-def test_tables_for_modelica_have_the_values_of_the_csv(tmp_path, capsys):
-    text, csv = tmp_path / "friction.txt", tmp_path / "friction.csv"
-    for file in (text, csv):
-        assert run(capsys, f"table transverse {VIBRATED} {GRID} --output {file}")[0] == 0
-    assert text.read_text().startswith("#1\n")
-    tables, frame = tables_of(text.read_text()), pd.read_csv(csv, comment="#")
-    heads = {"mu_apparent": "mu_apparent", "friction_force": "friction_force [N]"}
-    heads |= {"mu_apparent_error": "mu_apparent_error"}
-    heads["friction_force_error"] = "friction_force_error [N]"
+def test_tables_for_modelica_have_the_values_of_the_csv(files):
+    frame, text = files
+    assert text.startswith("#1\n")
+    tables = tables_of(text)
+    heads = {head.partition(" ")[0]: head for head in frame.columns[3:]}
     assert tables.keys() == {f"{name}_{number}" for name in heads for number in (1, 2, 3)}
     for name, head in heads.items():
         values = frame[head].values.reshape(2, 3, 3)
@@ -149,6 +152,10 @@ def test_interpolated_friction_is_within_the_stated_difference(capsys):
     assert np.abs(miss).max() <= float(stated)
 
 
+STEEL = "--material steel --mu 0.3 --radius '5 mm'"
+STILL = f"{VIBRATED} --load '10 N' --speed '1 mm/s'"
+
+
 @pytest.mark.parametrize(
     ("command", "parts"),
     [
@@ -158,17 +165,34 @@ def test_interpolated_friction_is_within_the_stated_difference(capsys):
         ("iwan --material steel", ("--mu", "needed")),
         ("iwan --nu 0.7", ("--poisson", "0.5")),
         (
-            "iwan --material steel --mu 0.3 --load '1 N' --radius '5 mm' --radius-across '8 mm'",
-            ("--radius-across = '8 mm'", "nu = 0"),
+            f"iwan {STEEL} --load '1 N' --radius-across '8 mm'",
+            ("--radius-across", "nu = 0"),
         ),
         ("iwan --output a.txt", ("--output = 'a.txt'", ".csv")),
-        (f"table transverse {VIBRATED} --load '1 N' --speed 0", ("--amplitude", "range")),
+        (f"table transverse {STILL}", ("--amplitude", "range")),
         (f"table transverse {VIBRATED} {GRID} --output a.nc", ("--output = 'a.nc'", ".txt")),
         (f"table sideways {VIBRATED} {GRID}", ("MOTION = 'sideways'",)),
         (f"table transverse {VIBRATED} {GRID} --map nowhere.nc", ("--map", "not there")),
+        (
+            f"table transverse {STILL} --amplitude '-1..1 um, 3'",
+            ("-amplitude = '-1..1 um, 3': at amplitude -1 um",),
+        ),
+        (
+            f"table transverse {STILL} --amplitude '1e-7..1 m, 2'",
+            ("-amplitude = '1e-7..1 m, 2': at amplitude 1 m",),
+        ),
+        (
+            f"table normal {STILL} --load-amplitude '0..9 N, 3'",
+            ("--load-amplitude = '0..9 N, 3': at ",),
+        ),
+        (
+            f"table transverse {STILL} --amplitude '0..1 um' --mass '1 g'",
+            ("with --drive-stiffness",),
+        ),
     ],
 )
-def test_bad_input_is_one_line_with_code_2(capsys, command, parts):
+def test_bad_input_is_one_line_with_code_2_before_any_work(capsys, monkeypatch, command, parts):
+    monkeypatch.setattr("microslip.si.table.predict_arguments", None)
     code, out, error = run(capsys, command)
     assert code == 2 and not out
     (line,) = error.splitlines()
@@ -176,34 +200,13 @@ def test_bad_input_is_one_line_with_code_2(capsys, command, parts):
 
 
 def test_a_table_with_a_point_outside_a_map_is_not_written(tmp_path, capsys, monkeypatch):
-    certified_stub.open_without_points(monkeypatch, export_command)
+    certified_stub.open_without_points(monkeypatch)
     file = tmp_path / "a.csv"
     axis = "--load '10 N' --speed '10 mm/s' --amplitude '0.1..0.2 um, 2' --map certified.nc"
     code, out, error = run(capsys, f"table transverse {VIBRATED} {axis} --output {file}")
     assert code == 1 and not file.exists() and not out
     assert "amplitude_si = 1e-07: --map = 'certified.nc': at velocity" in error
     assert "outside the map" in error and "no table" in error
-
-
-@pytest.mark.parametrize(
-    ("arguments", "message"),
-    [
-        (
-            "transverse --amplitude '-1..1 um, 3'",
-            "-amplitude = '-1..1 um, 3': at amplitude -1 um",
-        ),
-        (
-            "transverse --amplitude '1e-7..1 m, 2'",
-            "-amplitude = '1e-7..1 m, 2': at amplitude 1 m",
-        ),
-        ("normal --load-amplitude '0..9 N, 3'", "--load-amplitude = '0..9 N, 3': at "),
-        ("transverse --amplitude '0..1 um' --mass '1 g'", "only with --drive-stiffness\n"),
-    ],
-)
-def test_bad_values_of_a_grid_are_refused_before_any_work(capsys, monkeypatch, arguments, message):
-    monkeypatch.setattr("microslip.si.table.predict_arguments", None)
-    code, out, error = run(capsys, f"table {arguments} {VIBRATED} --load '10 N' --speed '1 mm/s'")
-    assert code == 2 and not out and message in error
 
 
 def test_a_table_suggests_its_own_options_only(capsys):

@@ -56,10 +56,8 @@ def test_a_table_gives_both_numbers_a_figure_and_a_dataset(folder, capsys):
     assert {variable.attrs.get("units") for variable in rows.values()} >= {"1", "N", "m", "m s-1"}
     assert cli.main(words) == 0
     text = capsys.readouterr().out
-    assert (
-        "\nmu                0.3000, from 0.29" in text
-        and "\nu_lim             200.0 nm, from" in text
-    )
+    assert "\nmu                0.3000, from 0.29" in text
+    assert "\nu_lim             200.0 nm, from" in text
 
 
 @pytest.mark.long
@@ -77,13 +75,10 @@ BAD = [
     (["none.csv", *SHARED], "CSV = 'none.csv': cannot be read"),
     (["measured.csv", "--load", "10 N"], "--frequency: it is missing"),
     (["measured.csv", *SHARED, "--speed", "1 mm/s"], "--speed = '1 mm/s': it is both"),
-    (["measured.csv", "--load", "10 kg", *SHARED[2:]], "--load = '10 kg': the unit is kilogram"),
-    (["measured.csv", *SHARED, "--poisson", "0.7"], "--poisson = '0.7'"),
     (["measured.csv", *SHARED, "--figure", "fit.jpg"], "--figure = 'fit.jpg': allowed is a name"),
     (["measured.csv", *SHARED, "--output", "fit.csv"], "--output = 'fit.csv': allowed is a name"),
     (["measured.csv", *SHARED, "--map", "none.nc"], "none.nc is not there"),
     (["measured.csv", *SHARED, "--map", "map.nc", "--nu", "0.3"], "--nu = '0.3': allowed is 0"),
-    (["measured.csv", *SHARED, "--confidence", "95"], "--confidence = '95'"),
     (["measured.csv", *SHARED, "--mu", "0.3"], "unknown option --mu"),
 ]
 

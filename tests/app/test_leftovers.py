@@ -4,23 +4,26 @@ from pathlib import Path
 
 import pytest
 import yaml
+from stubs.claims_stub import CLAIMS
+from stubs.studies_stub import ACCURACY, STABILITY
 from stubs.sweep_stub import Solver
 
-from microslip.app import leftovers
+from microslip.app import cli
 from microslip.app.plan import Plan
 from microslip.config import load
 from microslip.foundation.files import write_atomically
 from microslip.sweeps import batches, stamps, store
 
 AXES = {"velocity": [0.5, 2], "amplitude": [0, 1], "tolerance": 1e-2}
+SMALL_STUDIES = {"accuracy": ACCURACY, "stability": STABILITY, "claims": CLAIMS}
 
 
-def configured(folder, name, **bore):
-    """Write a configuration with one small sweep."""
+def configured(folder, name, place="results", **bore):
+    """Write a configuration with one small sweep; place: its folder of results, seen from here."""
     path = folder / f"{name}.yaml"
-    settings = {"results": str(folder / "results"), "sweeps": {"bore": AXES | bore}}
-    path.write_text(yaml.safe_dump(settings))
-    return path
+    settings = {"results": str(folder / place), "sweeps": {"bore": AXES | bore}}
+    path.write_text(yaml.safe_dump(settings | SMALL_STUDIES))
+    return str(path)
 
 
 def made(folder, *products):
@@ -35,15 +38,19 @@ def made(folder, *products):
 
 
 @pytest.fixture
-def results(tmp_path, monkeypatch):
+def files(tmp_path):
+    """Two configurations of one folder of results."""
+    return configured(tmp_path, "first"), configured(tmp_path, "second", velocity=[0.5, 3])
+
+
+@pytest.fixture
+def results(files, tmp_path, monkeypatch):
     """A folder with points and batches of two configurations, and a dataset."""
     Solver(monkeypatch)
     folder = tmp_path / "results"
-    for name, more in (("first", {}), ("second", {"velocity": [0.5, 3]})):
-        plan = Plan(load.load(configured(tmp_path, name, **more)))
-        for file, batch in zip(
-            plan.batch_files("bore"), plan.batches_in("bore").values(), strict=True
-        ):
+    for plan in (Plan(load.load(file)) for file in files):
+        inside = plan.batches_in("bore").values()
+        for file, batch in zip(plan.batch_files("bore"), inside, strict=True):
             records, _ = batches.run_batch(batch.requests, store.Store(folder))
             store.write(folder / file, records)
     made(folder, "bore", "figures/fig6_bore_map", "pendulum")
@@ -57,10 +64,13 @@ def names(folder):
     return {path.relative_to(folder).as_posix() for path in folder.rglob("*") if path.is_file()}
 
 
-@pytest.mark.slow
-def test_without_delete_nothing_is_removed(results, tmp_path, capsys):
+def gc(*words):
+    return cli.main(["gc", "--configfile", *words])
+
+
+def test_without_delete_nothing_is_removed(results, files, capsys):
     before = names(results)
-    assert leftovers.main(["--configfile", str(tmp_path / "first.yaml"), "--list"]) == 0
+    assert gc(files[0], "--list") == 0
     assert names(results) == before
     message = capsys.readouterr().out
     assert "2 points and single runs that no configuration requests" in message
@@ -70,116 +80,90 @@ def test_without_delete_nothing_is_removed(results, tmp_path, capsys):
     assert "mine" not in message
 
 
-@pytest.mark.slow
-def test_what_no_configuration_asks_for_is_removed(results, tmp_path):
+def test_what_no_configuration_requests_is_removed(results, files):
     before = names(results)
-    assert leftovers.main(["--configfile", str(tmp_path / "first.yaml"), "--delete"]) == 0
+    assert gc(files[0], "--delete") == 0
     gone = before - names(results)
     pendulum = {"pendulum.nc", "summaries/pendulum.html", ".made/pendulum.json"}
     assert {Path(name).parts[0] for name in gone - pendulum} == {"points", "batches"}
     assert gone >= pendulum and len(gone) == 2 + 1 + 3
-    stored, plan = store.Store(results), Plan(load.load(tmp_path / "first.yaml"))
+    stored, plan = store.Store(results), Plan(load.load(files[0]))
     for batch in plan.batches_in("bore").values():
         for request in batch.requests:
             assert stored.read(batches.group(request), batches.key_of(request)) is not None
 
 
-@pytest.mark.long
-def test_what_any_of_several_asks_for_stays(results, tmp_path, capsys):
-    files = [str(tmp_path / "first.yaml"), str(tmp_path / "second.yaml")]
-    assert leftovers.main(["--configfile", *files, "--delete"]) == 0
-    assert "0 points and single runs" in capsys.readouterr().out
-    assert len(list((results / "points").rglob("*.json"))) == 6 + 1
+@pytest.mark.parametrize("between", [[], ["--configfile"]])  # a repeated option adds files
+def test_what_any_of_several_configurations_requests_stays(results, files, between, tmp_path):
+    before = names(results / "points")
+    (tmp_path / "link").symlink_to(results)
+    again = [configured(tmp_path, place, place) for place in ("results", "link")]
+    assert gc(files[0], *between, files[1], *again, "--delete") == 0
+    assert names(results / "points") == before
 
 
-def test_two_folders_of_results_are_refused(results, tmp_path, capsys):
-    other = tmp_path / "other.yaml"
-    other.write_text(yaml.safe_dump({"results": "elsewhere", "sweeps": {"bore": AXES}}))
-    first, before = str(tmp_path / "first.yaml"), names(results)
-    for second in ([], ["--configfile"]):  # a repeated option adds files
-        words = ["--configfile", first, *second, str(other), "--delete"]
-        assert leftovers.main(words) == 2
-        assert "several folders" in capsys.readouterr().err
-        assert names(results) == before
-
-
-def test_a_configuration_that_cannot_be_read_removes_nothing(results, tmp_path, capsys):
-    before = names(results)
-    assert leftovers.main(["--configfile", str(tmp_path / "none.yaml"), "--delete"]) == 2
-    assert "none.yaml: cannot be read" in capsys.readouterr().err
+def test_two_folders_of_results_are_refused(results, files, tmp_path, capsys):
+    before, other = names(results), configured(tmp_path, "other", "elsewhere")
+    assert gc(files[0], "--configfile", other, "--delete") == 2
+    assert "several folders" in capsys.readouterr().err
     assert names(results) == before
 
 
-def only_one_dataset(results, tmp_path):
-    """A configuration, and a folder of results that has only a dataset of another sweep."""
-    path = tmp_path / "one.yaml"
-    path.write_text(yaml.safe_dump({"results": str(results), "sweeps": {"bore": AXES}}))
-    made(results, "pendulum")
-    return path
-
-
-def test_no_folder_above_the_results_is_removed(tmp_path):
-    """The folder of results stays as well, however its path is written."""
+@pytest.mark.parametrize("place", ["above/results/../results/.", "link"])
+def test_the_folder_of_results_and_those_above_stay(tmp_path, place):
     results = tmp_path / "above" / "results"
-    configuration = only_one_dataset(results, tmp_path)
-    settings = f"{tmp_path}/above/results/../results/."
-    configuration.write_text(yaml.safe_dump({"results": settings, "sweeps": {"bore": AXES}}))
-    assert leftovers.main(["--configfile", str(configuration), "--delete"]) == 0
+    made(results, "pendulum")
+    (tmp_path / "link").symlink_to(results)
+    assert gc(configured(tmp_path, "one", place), "--delete") == 0
     assert results.is_dir() and not any(results.iterdir())
 
 
-@pytest.mark.parametrize("linked", ["figures", "points", "points/bore", "batches", ".made/figures"])
-def test_nothing_behind_a_link_is_removed(tmp_path, linked):
+@pytest.mark.parametrize(
+    ("linked", "inside"),
+    [
+        ("figures", "map.png"),
+        ("points/bore", f"00/{'0' * 64}.json"),
+        ("batches", "bore/0123456789abcdef0123.jsonl"),
+    ],
+)
+def test_nothing_behind_a_link_is_removed(tmp_path, linked, inside):
     results, elsewhere = tmp_path / "results", tmp_path / "elsewhere"
-    configuration = only_one_dataset(results, tmp_path)
-    key = "0" * 64
-    inside = {
-        "figures": "map.png",
-        ".made/figures": "map.json",
-        "points": f"bore/00/{key}.json",
-        "points/bore": f"00/{key}.json",
-        "batches": "bore/0123456789abcdef0123.jsonl",
-    }
-    write_atomically(elsewhere / inside[linked], b"content")
+    made(results, "pendulum")
+    write_atomically(elsewhere / inside, b"content")
     if linked == "figures":
         stamp = results / stamps.stamp_of("figures/map")
         stamps.write(stamp, "f00d", [elsewhere / "map.png"])
     (results / linked).parent.mkdir(exist_ok=True)
     (results / linked).symlink_to(elsewhere)
-    before = names(elsewhere)
-    assert leftovers.main(["--configfile", str(configuration), "--delete"]) == 0
-    assert names(elsewhere) == before and (results / linked).is_symlink()
+    assert gc(configured(tmp_path, "one"), "--delete") == 0
+    assert names(elsewhere) == {inside} and (results / linked).is_symlink()
     assert not (results / "pendulum.nc").exists()
 
 
-def test_a_folder_of_results_may_be_a_link(tmp_path):
-    elsewhere = tmp_path / "disk"
-    only_one_dataset(elsewhere, tmp_path)
-    (tmp_path / "results").symlink_to(elsewhere)
-    configuration = tmp_path / "linked.yaml"
-    settings = {"results": str(tmp_path / "results"), "sweeps": {"bore": AXES}}
-    configuration.write_text(yaml.safe_dump(settings))
-    assert leftovers.main(["--configfile", str(configuration), "--delete"]) == 0
-    assert elsewhere.is_dir() and not any(elsewhere.iterdir())
+def test_folders_and_links_among_the_points_stay(results, files):
+    places = [results / "points" / "00" / f"{digit * 64}.json" for digit in "012"]
+    places[0].mkdir(parents=True)
+    places[1].symlink_to("nowhere")
+    places[2].symlink_to(files[0])
+    assert gc(files[0], "--delete") == 0
+    assert places[0].is_dir() and places[1].is_symlink() and places[2].is_file()
 
 
 @pytest.mark.parametrize("damaged", [True, False])
 def test_without_the_batch_of_a_map_the_points_of_its_motion_stay(
     results, tmp_path, capsys, damaged
 ):
-    map_ = AXES | {"velocity": [0.1, 2], "adaptive": {"error": 0.1}}
-    configuration = tmp_path / "map.yaml"
-    settings = {"results": str(results), "sweeps": {"bore": map_}}
-    configuration.write_text(yaml.safe_dump(settings))
+    map_ = {"velocity": [0.1, 2], "adaptive": {"error": 0.1}}
+    configuration = configured(tmp_path, "map", **map_)
     (file,) = Plan(load.load(configuration)).batch_files("certified_bore")
     if damaged:
         write_atomically(results / file, b'{"key": ')
     points = names(results / "points")
-    assert leftovers.main(["--configfile", str(configuration), "--delete"]) == 0
+    assert gc(configuration, "--delete") == 0
     assert f"{file} is missing or damaged" in capsys.readouterr().err
     assert names(results / "points") == points
     if not damaged:
         record = {"key": "0" * 64, "request": {"kind": "point", "motion": "bore"}, "result": {}}
         store.write(results / file, [record])
-        assert leftovers.main(["--configfile", str(configuration), "--delete"]) == 0
+        assert gc(configuration, "--delete") == 0
         assert len(names(results / "points")) == 1 + 2  # the points of the sweep itself

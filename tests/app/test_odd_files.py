@@ -1,17 +1,13 @@
 """Unusual files and damaged files: the right result, or one line with the reason."""
 
-import os
-import subprocess
-import sys
 from pathlib import Path
 
 import pytest
 import yaml
 from bad_input_tables import odd_files as odd
 from bad_input_tables.odd_files import SWEEP
-from test_leftovers import configured, names, results  # noqa: F401 (a fixture)
+from stubs.in_process import run_apart
 
-import microslip
 from microslip.app import cli
 from microslip.config import load
 from microslip.config.records import ConfigError
@@ -19,8 +15,6 @@ from microslip.datasets.query.open_map import open_map
 from microslip.foundation.errors import InputError
 from microslip.foundation.files import CacheError
 from microslip.pressures.by_name import pressure_named
-
-SOURCE = str(Path(microslip.__file__).parent.parent)
 
 
 def one_line(caught, words):
@@ -56,7 +50,6 @@ def test_odd_settings(text, words, tmp_path):
     one_line(caught, [str(path), *words]).encode()  # the message can be printed
 
 
-@pytest.mark.slow
 @pytest.mark.filterwarnings("error")
 @pytest.mark.parametrize(("text", "expected"), odd.CSV)
 def test_odd_pressures_as_text(text, expected, tmp_path):
@@ -72,7 +65,6 @@ def test_odd_pressures_as_text(text, expected, tmp_path):
     one_line(caught, [str(path), *expected["words"]])
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize(("data", "expected"), odd.NETCDF)
 def test_odd_pressures_as_netcdf(data, expected, tmp_path):
     path = tmp_path / "p.nc"
@@ -87,11 +79,10 @@ def test_odd_pressures_as_netcdf(data, expected, tmp_path):
 
 
 # The netCDF library does not return from a grid whose second half is zeros.  Ctrl-C ends it.
-@pytest.mark.parametrize("case", [case for case in odd.DAMAGES if "zeros" not in case])
-def test_damaged_pressures_are_refused(case, tmp_path):
+def test_a_pressure_that_is_cut_off_is_refused(tmp_path):
     path = tmp_path / "pad.nc"
     odd.grid().to_netcdf(path)
-    path.write_bytes(odd.DAMAGES[case](path.read_bytes()))
+    path.write_bytes(odd.DAMAGES["cut off"](path.read_bytes()))
     with pytest.raises(InputError) as caught:
         pressure_named(f"file:{path}")
     one_line(caught, [str(path), "not a netCDF file"])
@@ -105,13 +96,6 @@ def test_a_dataset_that_no_sweep_has_made_is_refused(case):
     one_line(caught, [word])
     unchanged = odd.whole()
     assert unchanged.microslip.at(0.15, 1.3).mu_macro_error < 0.1
-
-
-@pytest.mark.parametrize(("arguments", "more", "word"), odd.QUESTIONS)
-def test_odd_questions(arguments, more, word):
-    with pytest.raises(InputError) as caught:
-        odd.whole().microslip.at(*arguments, **more)
-    one_line(caught, [word])
 
 
 @pytest.mark.parametrize(("name", "more", "word"), odd.OPENED)
@@ -145,65 +129,13 @@ def test_odd_arguments_of_gc(arguments, word, tmp_path, monkeypatch, capsys):
 
 
 @pytest.mark.long
-def test_gc_forgets_no_configuration_that_is_given_apart(results, tmp_path, capsys):  # noqa: F811
-    files = [str(tmp_path / "first.yaml"), str(tmp_path / "second.yaml")]
-    apart = ["--configfile", files[0], "--configfile", files[1]]
-    before = len([name for name in names(results) if name.startswith("points/")])
-    assert cli.main(["gc", *apart, "--delete"]) == 0
-    assert len([name for name in names(results) if name.startswith("points/")]) == before
-
-
-@pytest.mark.long
-def test_gc_knows_a_folder_by_any_path(results, tmp_path, monkeypatch, capsys):  # noqa: F811
-    monkeypatch.chdir(tmp_path)
-    (tmp_path / "link").symlink_to(results)
-    paths = [str(tmp_path / "first.yaml")]
-    for number, place in enumerate(("./results/", "x/../results", "link")):
-        (tmp_path / "x").mkdir(exist_ok=True)
-        path = configured(tmp_path, f"other{number}")
-        settings = yaml.safe_load(path.read_text()) | {"results": place}
-        path.write_text(yaml.safe_dump(settings))
-        paths.append(str(path))
-    assert cli.main(["gc", "--configfile", *paths]) == 0
-
-
-@pytest.mark.slow
-def test_gc_leaves_folders_and_links_alone(results, tmp_path):  # noqa: F811
-    odd_places = results / "points" / "00"
-    (odd_places / f"{'0' * 64}.json").mkdir(parents=True)
-    (odd_places / f"{'1' * 64}.json").symlink_to("nowhere")
-    (odd_places / f"{'2' * 64}.json").symlink_to(tmp_path / "first.yaml")
-    assert cli.main(["gc", "--configfile", str(tmp_path / "first.yaml"), "--delete"]) == 0
-    assert len(list(odd_places.iterdir())) == 3
-    assert (tmp_path / "first.yaml").is_file()
-
-
-def sweep(folder, *arguments, **environment):
-    (folder / "tiny.yaml").write_text(
-        "sweeps: {bore: {velocity: [1], amplitude: [0, 1], model: rigid, tolerance: 0.01}}\n"
-    )
-    return subprocess.run(
-        [sys.executable, "-m", "microslip", "sweep", "-n", "--configfile", *arguments],
-        cwd=folder,
-        env={**os.environ, "PYTHONPATH": SOURCE} | environment,
-        capture_output=True,
-        text=True,
-        timeout=120,
-    )
-
-
-@pytest.mark.long
-def test_sweep_forgets_no_configuration_that_is_given_apart(tmp_path):
-    process = sweep(tmp_path, "tiny.yaml", "--configfile", "tiny.yaml")
-    assert (process.returncode, process.stdout, process.stderr.count("\n")) == (2, "", 1)
-    assert "--configfile" in process.stderr and "--configfile A B" in process.stderr
-
-
-@pytest.mark.long
 def test_sweep_runs_where_the_home_takes_no_files(tmp_path):
     (tmp_path / "home").write_text("no folder")
-    more = {"HOME": str(tmp_path / "home"), "XDG_CACHE_HOME": "", "NUMBA_CACHE_DIR": ""}
-    process = sweep(tmp_path, "tiny.yaml", **more)
+    axes = "{velocity: [1], amplitude: [0, 1], model: rigid, tolerance: 0.01}"
+    (tmp_path / "tiny.yaml").write_text(f"sweeps: {{bore: {axes}}}\n")
+    environment = {"HOME": str(tmp_path / "home"), "XDG_CACHE_HOME": "", "NUMBA_CACHE_DIR": ""}
+    words = ("sweep", "-n", "--configfile", "tiny.yaml")
+    process = run_apart(*words, folder=tmp_path, **environment)
     assert process.returncode == 0, process.stderr
     assert "Traceback" not in process.stderr
     assert process.stderr.count("cannot be written to: Snakemake's own files are in") == 1

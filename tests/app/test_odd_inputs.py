@@ -2,18 +2,15 @@
 
 import numpy as np
 import pytest
-import xarray as xr
-from bad_input_tables.odd_inputs import AT, CALLS, NUMBERS, SAME
+from bad_input_tables.odd_inputs import AT, CALLS, NUMBERS
+from stubs.eq6_map import map_of
 
 import microslip
 from microslip.foundation.errors import InputError
 from microslip.foundation.files import CacheError
 from microslip.si.materials import Material
-from microslip.si.predict import predict
 from microslip.theory import paper
 
-LAST_DIGITS = 1e-15
-"""Relative rounding error of the expected value, which is computed from a few floats."""
 LONGEST_LINE = 1500
 """Largest number of characters of an error message; longer values are shortened."""
 
@@ -31,33 +28,6 @@ def one_line(error, part):
     assert part in line
 
 
-# A contact
-
-BALL = {"material": "steel", "radius": "5 mm", "load": "10 N", "mu": "0.3", "speed": "10 mm/s"}
-BALL |= {"amplitude": "1 um", "frequency": "20 kHz", "tolerance": "0.1"}
-
-
-@pytest.mark.parametrize(("changed", "same"), SAME, ids=short)
-def test_the_same_contact_in_other_words(changed, same, monkeypatch):
-    """The arguments of the solver are equal to the last digits."""
-
-    def request(words):
-        calls = []
-
-        def solve(motion, velocity, amplitude, **settings):
-            calls.append((velocity, amplitude, settings["poisson"], settings["tolerance"]))
-            return RIGID
-
-        monkeypatch.setattr("microslip.si.request.solve", solve)
-        result = predict("transverse", **BALL | words)
-        return [*calls[0], result.contact_radius_m, result.u_lim_m]
-
-    assert request(changed) == pytest.approx(request(same), rel=4 * LAST_DIGITS, abs=0.0)
-
-
-RIGID = microslip.solve("transverse", 0.5, 0.5, model="rigid", tolerance=0.1)
-
-
 # Python
 
 GOOD = {
@@ -70,11 +40,6 @@ GOOD = {
     "solve_stored": {"motion": "transverse", "velocity": 0.5, "amplitude": 0.5},
     "open_map": {"name": "transverse"},
     "to_xarray": {},
-    "predict_table": {"motion": "transverse"},
-    "fit": {
-        **{"motion": "transverse", "speed": "1 mm/s", "frequency": "20 kHz", "load": "10 N"},
-        "measured": {"amplitude": [1e-7, 2e-7, 3e-7], "mu": [0.2, 0.15, 0.1]},
-    },
     "Material": {"young": "210 GPa", "poisson": 0.3},
 }
 
@@ -106,12 +71,7 @@ def test_a_travel_as_long_as_allowed_ends_in_the_steady_state():
 def friction():
     velocity, amplitude = np.array([0.01, 0.1, 0.3, 1.0]), np.array([0.0, 0.5, 1.0])
     mu = velocity / (amplitude[:, None] + velocity)
-    axes = ("amplitude", "velocity")
-    return xr.Dataset(
-        {"mu_macro": (axes, mu), "mu_macro_error": (axes, 0.0 * mu + 1e-3)},
-        {"velocity": velocity, "amplitude": amplitude, "poisson": 0.0},
-        {"motion": "transverse", "tolerance": 1e-2},
-    ).microslip
+    return map_of(mu, velocity, amplitude, 1e-3, tolerance=1e-2).microslip
 
 
 @pytest.mark.filterwarnings("error")

@@ -1,6 +1,8 @@
 """The plan of a configuration, without Snakemake."""
 
 import pytest
+from stubs.claims_stub import CLAIMS
+from stubs.studies_stub import ACCURACY, STABILITY
 from stubs.workflow_project import AXES, TINY
 
 from microslip.app.plan import Plan
@@ -9,9 +11,11 @@ from microslip.config.records import ConfigError
 from microslip.foundation import source_digest
 from microslip.report.figures import drawing
 
+STUDIES = {"accuracy": ACCURACY, "stability": STABILITY, "claims": CLAIMS}
+
 
 def plan(**changed):
-    return Plan(load.from_mapping({**TINY, **changed}))
+    return Plan(load.from_mapping(TINY | STUDIES | changed))
 
 
 def test_a_sweep_too_small_for_a_map_has_no_map():
@@ -32,11 +36,6 @@ def test_a_figure_without_data_is_refused():
         small.products_of("fig6_bore_map")
     with pytest.raises(ConfigError, match="several velocities and amplitudes"):
         small.products_of("fig2")
-
-
-def test_a_job_may_be_a_point():
-    alone = plan(points_per_job=1)
-    assert [len(batch.requests) for batch in alone.batches_in("transverse").values()] == [1] * 4
 
 
 def changed(before, after):

@@ -9,8 +9,8 @@ import xarray as xr
 from stubs import certified_stub
 
 import microslip
-from microslip.app import cli, predict_command
-from microslip.datasets import certified_map
+from microslip.app import cli
+from microslip.datasets import certified_map, netcdf
 
 SHARED = {"material": "steel", "radius": "5 mm", "mu": "0.3", "frequency": "20 kHz"}
 WORDS = [word for name, text in SHARED.items() for word in (f"--{name}", text)]
@@ -237,7 +237,7 @@ def test_bad_ranges_and_files_are_refused_before_any_work(words, said, folder, c
 
 
 def test_a_point_outside_a_map_is_reported_with_the_path_of_the_map(folder, capsys, monkeypatch):
-    certified_stub.open_without_points(monkeypatch, predict_command)
+    certified_stub.open_without_points(monkeypatch)
     assert cli.main([*RANGED, "--map", "certified.nc"]) == 1
     assert "--map = 'certified.nc': at velocity" in capsys.readouterr().err
 
@@ -257,7 +257,7 @@ def test_a_map_is_found_by_its_name_and_by_its_path(folder, capsys):
     map_ = certified_stub.configured("transverse", **axes)
     dataset = certified_map.build(map_, certified_stub.played(map_, certified_stub.solved))
     (folder / "results").mkdir()
-    certified_map.write(folder / "results" / "certified_transverse.nc", dataset)
+    netcdf.write(folder / "results" / "certified_transverse.nc", dataset)
     words = ["predict", "transverse", "--young", "210 GPa", "--nu", "0", "--radius", "5 mm"]
     words += ["--mu", "0.3", "--frequency", "20 kHz", "--load", "10 N", "--speed", "10 mm/s"]
     words += ["--amplitude", "0.2..0.4 um, 3", "--tolerance", "0.05", "--json"]

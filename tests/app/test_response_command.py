@@ -73,11 +73,8 @@ def test_json_and_files_have_the_same_columns(tmp_path, capsys):
         ("forward [um],load [N]\n0,1\n1,-2\n", CONTACT, ("load = -2 N (-0.2 times 10 N)", ">= 0")),
         ("forward,load\n0,1\n1,-2\n", "", ("load = -2.0:", ">= 0")),
         ("forward\n0\n", "", ("2 rows",)),
-        ("forward [um]\n0\n1\n", "", ("um", "--mu")),
         ("forward\n0\n1\n", "--output a.txt", ("--output", ".nc")),
         ("forward\n0\n1\n", "--output nowhere/a.csv", ("--output", "folder")),
-        ("forward\n0\n1\n", "--tolerance 0", ("--tolerance", "1e-06")),
-        ("forward\n0\n1\n", "--pressure soft", ("--pressure", "hertz")),
         ("forward\n0\n1\n", CONTACT, ("unit",)),
     ],
 )

@@ -11,13 +11,13 @@ from pathlib import Path
 
 import pytest
 from stubs import in_process
+from stubs.in_process import ENVIRONMENT
 
 import microslip
 from microslip.foundation.compiled import OPTIONS
 
 PACKAGE = Path(microslip.__file__).parent
 COMMAND = [sys.executable, "-m", "microslip"]
-ENVIRONMENT = {**os.environ, "PYTHONPATH": str(PACKAGE.parent)}
 INTERRUPTED = (130, "", "microslip: interrupted\n")
 pytestmark = pytest.mark.skipif(os.name != "posix", reason="signals and devices of POSIX")
 
@@ -81,7 +81,6 @@ HARD = {
     [
         ("point", "_multiarray_umath"),
         ("point", "llvmlite"),
-        ("point", "special_ufuncs"),
         ("point on squares", "llvmlite"),
         ("predict", "special_ufuncs"),
     ],
@@ -152,33 +151,6 @@ def test_an_interrupt_leaves_no_file_half_written(tmp_path):
     assert list(tmp_path.iterdir()) == []
 
 
-SWALLOWING = """
-import time
-from microslip.app import terminal
-
-class Deaf:
-    def __del__(self):
-        open({ready!r}, "w").close()
-        time.sleep(1000)
-
-def command():
-    try:
-        Deaf()
-        time.sleep(1000)
-    except BaseException:
-        raise RuntimeError("something else")
-
-terminal.run(command)
-"""
-
-
-def test_an_interrupt_that_a_library_swallows_is_one(tmp_path):
-    """A KeyboardInterrupt during the shutdown of Python would print three lines."""
-    ready = tmp_path / "ready"
-    command = [sys.executable, "-c", SWALLOWING.format(ready=str(ready))]
-    assert stopped(command, lambda _: ready.exists()) == INTERRUPTED
-
-
 # Pipes, devices and streams
 
 FULL = "microslip: cannot write to standard output: No space left on device\n"
@@ -190,21 +162,12 @@ ANSWER = "$M point continuous-bore --velocity 1"
 ENDINGS = [
     (f"{ANSWER} | true", 141, ""),
     ("sleep 0.1 | $M --help | true", 141, ""),
-    ("$M sweep --help | true", 141, ""),
     pytest.param(f"PYTHONUNBUFFERED=1 {ANSWER} --json | true", 141, "", marks=pytest.mark.long),
     (f"{ANSWER} > /dev/full", 74, FULL),
-    pytest.param(
-        f"PYTHONUNBUFFERED=1 {ANSWER} --json > /dev/full", 74, FULL, marks=pytest.mark.long
-    ),
     ("$M --help > /dev/full", 74, FULL),
-    ("PYTHONUNBUFFERED=1 $M point bore --help > /dev/full", 74, FULL),
-    ("$M --version > /dev/full", 74, FULL),
-    ("$M sweep --help > /dev/full", 74, FULL),
     (f"{ANSWER} >&-", 74, CLOSED),
-    pytest.param(f"{ANSWER} <&- >&-", 74, CLOSED, marks=pytest.mark.long),
     (f"{ANSWER} --nu 7 >&-", 2, f"{BAD}'7': allowed is a finite number of at least 0"),
     (f"{ANSWER} <&- >&- 2>&-", 74, ""),
-    pytest.param(f"{ANSWER} --nu 7 2>&-", 2, "", marks=pytest.mark.long),
     (f"{ANSWER} --nu 7 2> /dev/full", 2, ""),
     (f"LC_ALL=C {ANSWER} --nu \N{MINUS SIGN}1", 2, BAD),
     (f"PYTHONIOENCODING=ascii {ANSWER} --nu \N{ARABIC-INDIC DIGIT THREE}", 2, rf"{BAD}'\u0663'"),
@@ -238,8 +201,8 @@ def test_an_answer_needs_no_more_than_its_output(line, tmp_path):
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("columns", ["1", "10", "-5", "x", "100000"])
-@pytest.mark.parametrize("words", ["", "point", "point bore", "predict", "sweep"])
+@pytest.mark.parametrize("columns", ["1", "x", "100000"])
+@pytest.mark.parametrize("words", ["", "point bore", "sweep"])
 def test_help_fits_into_any_width(words, columns, monkeypatch):
     monkeypatch.setenv("COLUMNS", columns)
     process = in_process.run(*words.split(), "--help")

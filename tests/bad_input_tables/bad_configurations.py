@@ -20,6 +20,7 @@ sweeps:
     velocity: [1]
 """
 T, B, C = "sweeps.transverse", "sweeps.bore", "sweeps.continuous_bore"
+MAP = f"{T}.adaptive"
 RATIO = ">= 0 and <= 0.5"
 TOLERANCES = ">= 1e-06 and <= 0.1"
 MODELS = "auto, rigid, slider"
@@ -29,22 +30,16 @@ KEYS = [
     ("reslts", "x", "unknown key; did you mean results?", "points_per_job"),
     ("results", "' '", '" " is not allowed', "text for a folder"),
     ("results", "r{x}", '"r{x}"', "without braces, *, ?"),
-    ("results", '"a\\n"', '"a\\n"', "line breaks"),
-    ("results", '"a\\0b"', '"a\\u0000b"', "line breaks"),
     ("results", "5", "5 is not allowed", "text for a folder"),
-    ("results", "2026-01-31", '"2026-01-31"', "text for a folder"),
     ("points_per_job", "0", "0 is not allowed", ">= 1"),
     (f"{T}.points_per_job", "0", "0 is not allowed", ">= 1"),
     ("points_per_job", "1.5", "1.5 is not allowed", "a whole number"),
-    ("points_per_job", "1000000", "1000000 is not allowed", "<= 100000"),
     ("sweeps", None, "missing; required: sweeps"),
     ("sweeps", "{}", "{} is not allowed", "transverse, bore, continuous_bore"),
     ("sweeps", "[bore]", '["bore"] is not allowed', "transverse, bore, continuous_bore"),
     ("sweeps.bores", "{}", "unknown key; did you mean bore?"),
-    ("sweeps.zigzag", "{}", "unknown key; allowed: transverse, bore, continuous_bore"),
     (C, "~", "null is not allowed", "velocity"),
     (f"{T}.velocities", "[1]", "unknown key; did you mean velocity?"),
-    (f"{C}.amplitude", "[1]", "unknown key; allowed: velocity, poisson"),
     (f"{T}.amplitude", None, "missing; required: velocity, amplitude"),
     (f"{T}.velocity[0]", "-0.1", "-0.1 is not allowed", ">= 0"),
     (f"{T}.velocity[1]", "fast", '"fast" is text', "a number"),
@@ -52,15 +47,11 @@ KEYS = [
     (f"{T}.velocity[1]", "1e-3", '"1e-3" is text', "write 1.0e-3"),
     (f"{T}.velocity[1]", "'inf'", '"inf" is text', "a finite number"),
     (f"{T}.velocity[1]", "true", "true is not allowed", "a number"),
-    (f"{T}.velocity[1]", "~", "null is not allowed", "a number"),
     (f"{T}.velocity[1]", ".nan", "nan is not allowed", "a finite number"),
-    (f"{T}.velocity[1]", ".inf", "inf is not allowed", "a finite number"),
     (f"{T}.velocity[1]", "1.0e+9", "1000000000.0 is not allowed", "<= 1e+06"),
     (f"{T}.velocity", "all", '"all" is not allowed', "a list of"),
-    (f"{T}.velocity", "0.1", "0.1 is not allowed", "a list of"),
     (f"{T}.velocity", "[]", "[] is not allowed", "a list of"),
     (f"{T}.velocity", "{}", "{} is not allowed", "linear or log"),
-    (f"{T}.velocity", "[0.1, 1, 0.1]", "0.1 occurs twice", "different values"),
     (f"{T}.velocity", "[0.3, 0.30000000000000004]", "0.3 occurs twice", "different values"),
     (f"{T}.velocity", "[0, -0.0]", "0 occurs twice", "different values"),
     (f"{B}.velocity.logs", "{}", "unknown key; did you mean log?"),
@@ -68,22 +59,15 @@ KEYS = [
     (f"{B}.velocity.log.start", "1.0e-320", "1e-320 is not allowed", "nearer 10"),
     (f"{B}.velocity.log.stop", "0.1", "0.1 is not allowed", "a number above 0.1"),
     (f"{B}.velocity.log.count", "1", "1 is not allowed", ">= 2"),
-    (f"{B}.velocity.log.count", "1000000", "1000000 is not allowed", "<= 100000"),
     (f"{B}.velocity.log.count", None, "missing; required: start, stop, count"),
     (f"{C}.poisson", "0.7", "0.7 is not allowed", RATIO),
-    (f"{C}.poisson", "-0.1", "-0.1 is not allowed", RATIO),
     (f"{T}.adaptive", "[]", "[] is not allowed", "error, tolerance or null"),
     (f"{T}.adaptive.error", "0", "0 is not allowed", ">= 1e-05 and <= 0.1"),
     (f"{C}.poisson", "[]", "[] is not allowed", "a list"),
-    (f"{C}.poisson", "[0.3, 0.3]", "0.3 occurs twice", "different values"),
-    (f"{C}.model", "exact", '"exact" is not allowed', MODELS),
     (f"{C}.model", "poler", '"poler" is not allowed; did you mean polar?', MODELS),
     (f"{C}.model", "radial", '"radial" does not apply to continuous-bore', "auto, rigid, polar"),
-    (f"{B}.model", "slider", '"slider" does not apply to bore', "auto, rigid, polar, cartesian"),
-    (f"{C}.tolerance", "0", "0 is not allowed", TOLERANCES),
     (f"{C}.tolerance", "1", "1 is not allowed", TOLERANCES),
     (f"{C}.cells", "7", "7 is not allowed", "an even number >= 4"),
-    (f"{C}.cells", "2", "2 is not allowed", "an even number >= 4"),
     (f"{C}.cells", "5000", "5000 is not allowed", "<= 1000"),
     (f"{C}.steps", "9", "9 is not allowed", "an even number >= 8"),
     ("histories.bore", "{}", "unknown key; allowed: transverse, field, transients"),
@@ -99,16 +83,12 @@ POINT = "accuracy.points.a"
 
 STUDIES = [
     ("accuracy.methods", "admm", '"admm" is not allowed', "a list of text or null"),
-    ("accuracy.methods", "[]", "[] is not allowed", "a list"),
     ("accuracy.methods[1]", "full-newtn", "'full-newtn'", "did you mean full-newton?"),
     ("accuracy.methods[1]", "1", "1 is not allowed", "text"),
     ("stability.methods", "[admm, admm]", "admm occurs twice", "different values"),
-    ("stability.methods[1]", "'admm:penalt=1'", "penalt;", "allowed: penalty, relaxation"),
     ("stability.methods[1]", "'admm:penalty=high'", "'admm:penalty=high'", ADMM),
-    ("stability.methods[1]", "'admm:penalty=1,penalty=2'", "penalty occurs twice", "once"),
     ("stability.tolerance", "0.5", "0.5 is not allowed", TOLERANCES),
     ("stability.axes", "[]", "[] is not allowed", "a list"),
-    ("stability.axes", "[steps, edge, steps]", "steps occurs twice", "different values"),
     ("stability.axes[0]", "step", '"step" is not allowed; did you mean steps?', "slow-transverse"),
     ("accuracy.levels", "7", "7 is not allowed", "<= 6"),
     ("accuracy.points", "{}", "{} is not allowed", "names"),
@@ -119,9 +99,7 @@ STUDIES = [
     (f"{POINT}.poisson", "[0, 0.3]", "[0, 0.3] is not allowed", "a number >= 0 and <= 0.5"),
     ("accuracy.map.velocity", "[0, 1]", "0 is not allowed", "> 0"),
     ("accuracy.map.velocity", "[1]", "[1.0] is not allowed", "two numbers or more"),
-    ("accuracy.map.amplitude_bore", "[1]", "[1.0] is not allowed", "two numbers or more"),
     ("accuracy.map.tolerance", "[]", "[] is not allowed", "a list of numbers"),
-    ("accuracy.map.tolerance", "[0.01, 0.01]", "0.01 occurs twice", "different values"),
     ("accuracy.map.tolerance[1]", "1", "1 is not allowed", TOLERANCES),
     ("claims.velocity", "[0, 1]", "0 is not allowed", "> 0"),
     ("claims.amplitude_bore", "[6, 10]", "[6.0, 10.0] is not allowed", "up to 5"),
@@ -135,14 +113,10 @@ E = "extended.circle"
 EXTENDED = [
     ("extended", "[circle]", '["circle"] is not allowed', "a mapping of names"),
     ("extended", "{Circle: {}}", '"Circle" is not allowed', "small letters, digits and _"),
-    ("extended", "{1: {}}", "1 is not allowed", "small letters, digits and _"),
     (f"{E}.motion", None, "missing; required: velocity, motion, group"),
     (f"{E}.motion", "5", "5 is not allowed", "text"),
     (f"{E}.motion", "eliptic", "'eliptic'", "did you mean elliptic?", "transverse, longitudinal"),
-    (f"{E}.motion", "'elliptic:phas=0'", "unknown number phas", "forward, lateral, phase"),
-    (f"{E}.motion", "'elliptic:forward=2'", "forward = 2", "allowed is a share in 0..1"),
     (f"{E}.pressure", "hertzian", "'hertzian'", "allowed is ", "hertz"),
-    (f"{E}.pressure", "0", "0 is not allowed", "text"),
     (f"{E}.group", "My figure", '"My figure" is not allowed', "small letters, digits and _"),
     (f"{E}.title", "''", '"" is not allowed', "text on one line"),
     (f"{E}.amplitude", None, "missing; required for elliptic"),
@@ -189,9 +163,14 @@ def changed(settings):
 SPACED = "{start: 1, stop: 2, count: %d}"
 GRID = f"{{linear: {SPACED}}}"
 CLOSE = "{linear: {start: 1, stop: 1.000001, count: 9}}"  # than the six stored digits
-RATIOS = str([0.04 * i for i in range(11)])
 EIGHT = {"motion": "elliptic:forward_cycles=2,phase=0", "amplitude": 1, "panel": "loops"}
 PROPULSION = "propulsion.motions"
+
+
+def lines(*changes):
+    """Self-propelled motions m0, m1, ..., each with a change of EIGHT."""
+    return {PROPULSION: json.dumps({f"m{i}": EIGHT | one for i, one in enumerate(changes)})}
+
 
 # Settings that are valid one by one, the key in the message, parts.
 TOGETHER = [
@@ -201,73 +180,30 @@ TOGETHER = [
     ({f"{E}.model": "radial", f"{E}.poisson": "0.3"}, f"{E}.model", "'radial'", "nu > 0"),
     ({f"{E}.motion": "bore", f"{E}.model": "slider"}, f"{E}.model", "'slider'", "bore"),
     ({f"{E}.motion": "continuous-bore"}, f"{E}.amplitude", "[0.5, 1.0]", "has no amplitude"),
-    (
-        {"extended.line.amplitude": "[1]"},
-        "extended.line.group",
-        "over velocity and amplitude for circle",
-        "allowed: another group",
-    ),
+    ({"extended.line.amplitude": "[1]"}, "extended.line.group", "allowed: another group"),
     ({f"{B}.amplitude": CLOSE}, f"{B}.amplitude", "1 occurs twice", "different values"),
-    (
-        {f"{T}.velocity": GRID % 1001, f"{T}.amplitude": GRID % 1000},
-        T,
-        "1001000 points",
-        "at most 1000000",
-    ),
-    (
-        {f"{C}.velocity": GRID % 100000, f"{C}.poisson": RATIOS},
-        C,
-        "1100000 points",
-        "at most 1000000",
-    ),
+    ({f"{T}.velocity": GRID % 1001, f"{T}.amplitude": GRID % 1000}, T, "at most 1000000"),
     (
         {"accuracy.map.velocity": GRID % 2000},
         "accuracy.map.velocity x amplitude_transverse",
-        "18000 points",
         "at most 10000",
     ),
 ]
 
 # Certified maps, resolutions in place of a tolerance, self-propelled motions.
 TOGETHER += [
-    ({f"{T}.adaptive": "{}"}, f"{T}.adaptive.error", "missing; required: error"),
-    (
-        {f"{T}.adaptive": "{error: 1.0e-3, tolerance: 1.0e-2}"},
-        f"{T}.adaptive.tolerance",
-        "0.01 is not allowed",
-        "less than the error",
-    ),
-    (
-        {f"{T}.adaptive": "{error: 0.1, tolerance: 0.02}"},
-        f"{T}.adaptive.tolerance",
-        "0.02 is not allowed",
-        "<= 0.01",
-    ),
-    (
-        {f"{T}.adaptive.error": "1.0e-2", f"{T}.velocity": "[1]"},
-        f"{T}.adaptive",
-        "is not allowed here; allowed: with two amplitudes",
-    ),
-    (
-        {f"{T}.adaptive.error": "1.0e-2", f"{T}.cells": "8"},
-        f"{T}.adaptive",
-        "is not allowed with cells or steps imposed",
-    ),
+    ({MAP: "{}"}, f"{MAP}.error", "missing; required: error"),
+    ({MAP: "{error: 1.0e-3, tolerance: 1.0e-2}"}, f"{MAP}.tolerance", "less than the error"),
+    ({MAP: "{error: 0.1, tolerance: 0.02}"}, f"{MAP}.tolerance", "0.02 is not allowed", "<= 0.01"),
+    ({MAP: "{error: 1.0e-2}", f"{T}.velocity": "[1]"}, MAP, "allowed: with two amplitudes"),
+    ({MAP: "{error: 1.0e-2}", f"{T}.cells": "8"}, MAP, "with cells or steps imposed"),
     ({f"{T}.tolerance": "~"}, f"{T}.tolerance", "null", "cells and steps imposed"),
     ({f"{T}.tolerance": "~", f"{T}.cells": "8"}, f"{T}.tolerance", "or steps imposed"),
     ({f"{C}.tolerance": "~"}, f"{C}.tolerance", "null", "or cells imposed"),
+    (lines({"motion": "bore"}), f"{PROPULSION}.m0.motion", "'bore': allowed is a self"),
+    (lines(*[{}] * 9), f"{PROPULSION}.m8.panel", "loops has more than 8 lines"),
     (
-        {PROPULSION: json.dumps({"m": EIGHT | {"motion": "bore"}})},
-        f"{PROPULSION}.m.motion",
-        "'bore': allowed is a self",
-    ),
-    (
-        {PROPULSION: json.dumps({f"m{i}": EIGHT for i in range(9)})},
-        f"{PROPULSION}.m8.panel",
-        "loops has more than 8 lines",
-    ),
-    (
-        {PROPULSION: json.dumps({f"m{i}": EIGHT | {"panel": f"p{i}"} for i in range(5)})},
+        lines(*({"panel": f"p{i}"} for i in range(5))),
         f"{PROPULSION}.m4.panel",
         "p4 is one of more than 4; allowed: p0, p1, p2, p3",
     ),
@@ -308,6 +244,6 @@ FILES = {
     "a tag": (b"results: !!python/object/apply:os.getcwd []\n", "not valid YAML", "line 1"),
     "an unknown alias": (b"sweeps: *others\n", "not valid YAML", "others"),
     "itself inside": (b"sweeps: &s {transverse: *s}\n", "contains itself"),
-    "very deep": (b"[" * 5000, "not valid YAML"),
+    "very deep": (b"[" * 1000, "not valid YAML"),
     "a list for a key": (b"? [1, 2]\n: 3\n", "not valid YAML", "line 1"),
 }

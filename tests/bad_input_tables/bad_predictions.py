@@ -13,7 +13,6 @@ STEADY = {"amplitude": None, "frequency": None, "rotation": "1 Hz"}
 ELASTIC = {"material": None, "young": "210 GPa", "nu": "0.3"}
 SEARCH = {"amplitude": None, "reduction": "50 %"}
 MOTIONS = [
-    ({"motion": "sideways"}, "MOTION = 'sideways': "),
     ({"motion": "Transverse"}, "MOTION = 'Transverse': did you mean transverse?"),
     ({"motion": "normal:lateral=0.5"}, "allowed is normal with --load-amplitude"),
     ({"motion": "transverse-bore:angle=0.5"}, "for both use transverse-bore"),
@@ -27,24 +26,20 @@ MOTIONS = [
     ({"rotation": "10 rpm"}, "--rotation = '10 rpm': transverse has none"),
     ({"forward_amplitude": "1 um"}, "--forward-amplitude = '1 um': transverse has none"),
     ({"motion": "elliptic"}, "--forward-amplitude: elliptic needs it"),
-    ({"motion": "elliptic", "forward_amplitude": "0 m", "phase": "1 m"}, "the unit is meter"),
     (
         {"motion": "elliptic", "amplitude": "0 m", "forward_amplitude": "0 m"},
         "--amplitude = '0 m': allowed is above 0 where no other amplitude is",
     ),
-    ({"motion": "normal", "load_amplitude": "0 N"}, "--load-amplitude = '0 N': allowed is"),
     (
         {"motion": "normal", "amplitude": None, "load_amplitude": "1e10 N"},
         "--load-amplitude = '1e10 N': allowed is at most 1e",
     ),
-    ({"motion": "continuous-bore", "amplitude": None, "frequency": None}, "--rotation: continuous"),
 ]
 CONTACTS = [
     ({"load": None}, "--load: needed"),
     ({"load": "nan N"}, "it is not finite"),
     ({"load": "10 kg"}, "--load = '10 kg': the unit is kilogram"),
     ({"load": "1\n2 N"}, r"--load = '1\n2 N': "),
-    ({"load": "1e-300 N"}, "--amplitude = '1 um'"),
     ({"mu": None}, "--mu: needed"),
     ({"mu": "0,3"}, "--mu = '0,3': read 0 and stopped at ',3', since decimals follow a point"),
     ({"mu": "1100 %"}, "--mu = '1100 %': allowed is a finite value above 0 and at most 10"),
@@ -155,11 +150,9 @@ PROPELLED = {"motion": SELF_PROPELLED, "speed": None}
 PROPULSIONS = [
     (PROPELLED | {"motion": "transverse"}, "MOTION = 'transverse': allowed is a self-propelled"),
     (PROPELLED | {"speed": "1 mm/s"}, "--speed = '1 mm/s': not allowed with --propulsion"),
-    (PROPELLED | {"amplitude": None}, "--amplitude: needed"),
-    (PROPELLED | {"amplitude": "1 deg"}, "--amplitude = '1 deg': the unit is degree"),
     (PROPELLED | {"amplitude": "1 m"}, "times u_lim; allowed is at most"),
     (PROPELLED | {"points": "1"}, "allowed is a whole number"),
-    (PROPELLED | {"load": "40 N +- 1 N"}, "allowed is a quantity without uncertainty"),
+    (PROPELLED | {"load": "40 N +- 1 N"}, "read 'N' and stopped at '+- 1 N'"),
     (
         PROPELLED | {"motion": "normal:forward=1,angle=1,phase=90"},
         "allowed is a motion without a rotation",

@@ -5,6 +5,7 @@ A row has an input and its result: a value, or words of the error message.
 
 import numpy as np
 import xarray as xr
+from stubs.eq6_map import map_of
 
 from microslip.theory import paper
 
@@ -20,27 +21,19 @@ VELOCITIES = [
     ("[0.1, 010]", refused("010", "base 8", "line 4")),
     ("[0.1, 1:30]", refused("1:30", "base 60", "line 4")),
     ("[0.1, 1.0e-400]", refused("1.0e-400", "nearer 0")),
-    ("{log: {start: 0.1, stop: 10, count: 010}}", refused("010", "base 8")),
     ("[0.1, 0o10]", refused('velocity[1]: "0o10" is text', "allowed: a number")),
     ("[0.1, +.5]", refused('"+.5" is text', "write the number without quotes: 0.5")),
-    ("[0.1, '\uff11']", refused("is text", "write the number without quotes: 1")),
     ("[0.1, '1,5']", refused('"1,5" is text', "allowed: a number")),
-    ("[0.1, 1.5 mm/s]", refused('"1.5 mm/s" is text')),
-    ("[0.1, \u22121]", refused("is text", "allowed: a number")),
     ("[0.1, yes]", refused("true is not allowed")),
-    ("[0.1, 2026-01-01]", refused('"2026-01-01" is not allowed')),
     ("[0.1, 1.0e400]", refused("is text", "a finite number")),
     ("[0,1, 0,5]", refused("0 occurs twice")),
     ("!!set {0.1, 1}", refused("is not allowed", "a list of")),
     ("!!binary aGVsbG8=", refused("is not allowed", "a list of")),
     ("{0: 0.1, 1: 1}", refused("velocity.0: unknown key", "linear, log")),
     ("{log: [0.1, 10, 3]}", refused("velocity.log", "start, stop, count")),
-    ("0.1 1 10", refused('"0.1 1 10" is not allowed')),
     ("[0.1, 0x10]", (0.1, 16.0)),
     ("[0.1, 1_000]", (0.1, 1000.0)),
-    ("[0.1, 1.e-3]", (0.001, 0.1)),
     ("[0, 0.0e-400]", refused("0 occurs twice")),
-    ("[0, 0.5]", (0.0, 0.5)),
     ("[1.0e-300, 1]", (1e-300, 1.0)),
 ]
 
@@ -49,12 +42,9 @@ KEYS = [
     ("results: ~/here", ("~/here", "~ in front")),
     ("results: '~'", ('"~"', "~ in front")),
     ("results: s3://bucket/x", ("s3://bucket/x", "://")),
-    ("results: $HOME/x", ("$HOME/x", "$NAME")),
     ('results: "\\ud800"', ("results", "\\ud800", "text for a folder")),
     ('results: "a\\u2028b"', ("results", "line breaks")),
-    ('results: "a\\x85b"', ("results", "line breaks")),
     ("results: \u00e4 b%25 #c", None),
-    ("results: 'a \"b\" (c) & d; e'", None),
     ("points_per_job: 010", ("010", "base 8", "line 5")),
     ("points_per_job: 10.0", None),
     (
@@ -72,11 +62,6 @@ KEYS = [
         ("extended.x.group", "up to 100 small letters"),
     ),
     (
-        'extended: {x: {motion: zigzag, velocity: [1], amplitude: [1], group: g, pressure: "file:a'
-        '\\nb.csv"}}',
-        ("extended.x.pressure", "No such file"),
-    ),
-    (
         "extended: {x: {motion: zigzag, velocity: [1], amplitude: [1], group: g, "
         "pressure: 'file:~/x.csv'}}",
         ("extended.x.pressure", "~/x.csv", "looked for"),
@@ -84,15 +69,6 @@ KEYS = [
     (
         "extended: {x: {motion: 'elliptic:phase=30 deg', velocity: [1], amplitude: [1], group: g}}",
         ("extended.x.motion", "elliptic:key=0.5"),
-    ),
-    (
-        "extended: {x: {motion: 'elliptic:forward=0,5', velocity: [1], amplitude: [1], group: g}}",
-        ("extended.x.motion", "elliptic:key=0.5"),
-    ),
-    (
-        "extended: {x: {motion: zigzag, velocity: [1], amplitude: [1], group: g, "
-        "pressure: 'File:x.csv'}}",
-        ("extended.x.pressure", "did you mean file?"),
     ),
 ]
 
@@ -107,42 +83,24 @@ CSV = [
     ("\ufeff" + (HEAD + ROWS).replace(",", ";").replace("\n", "\r\n"), PLAIN),
     (HEAD + '0,0,"1,000"\n0,1,"2,000"\n', refused("'1,000' has a decimal comma, in pressure")),
     (SEMI + "0;0;900\n0;1;1.100\n1;0;800\n1;1;1.000\n", refused("line 3", "'1.100'", "thousands")),
-    (SEMI + "0;0;900\n0;1;12.345.678\n", refused("line 3", "'12.345.678'")),
-    (
-        "forward\tlateral\tpressure\n0\t0\t900\n0\t1\t1.100\n1\t0\t0\n1\t1\t5\n",
-        refused("line 3", "thousands"),
-    ),
     (SEMI + "0;0;1.000\n0;1;2.000\n1;0;3.000\n1;1;4.000\n", PLAIN),
     (SEMI + "0;0;0\n0;1;2.000\n1;0;3.000\n1;1;5.000\n", [[0.0, 0.2], [0.3, 0.5]]),
-    (SEMI + "0;0;1\n0;1;2.0\n1;0;3.000\n1;1;4\n", PLAIN),
     (HEAD + "0,0,1\n0,1,2\n1,0,3.000\n1,1,4\n", PLAIN),
     (SEMI + "0;0;1 000\n", refused("line 2: pressure is '1 000'")),
     (HEAD + "#N/A,0,5\n" + ROWS, refused("line 2: forward is '#N/A'")),
-    (HEAD + ROWS + "#DIV/0!,0,5\n", refused("line 6: forward is '#DIV/0!'")),
-    ("pressure;forward;lateral\n#NV;5;5\n1;0;0\n", refused("line 2: pressure is '#NV'")),
     (HEAD + ROWS + "#0,0,7\n# NOTE: end\n#end\n", PLAIN),
     (HEAD + ROWS + ",,\n,,\n", PLAIN),
     ((HEAD + ROWS).replace("\n", ",\n"), PLAIN),
-    (HEAD + ROWS.replace("\n", ",\n"), PLAIN),
     (HEAD + "0,0,1,5\n", refused("line 2: 4 cells")),
     (",forward,lateral,pressure\n0,0,0,1\n", refused("line 1: the heading")),
     ("sep=;\n" + SEMI, refused("line 1: the heading is 'sep=;'")),
-    ("forward (mm),lateral (in),pressure (psi)\n0,0,1\n0,1,2\n25.4,0,3\n25.4,1,4\n", PLAIN),
-    ("forward {mm},lateral {mm},pressure\n" + ROWS, refused("such as forward [mm]")),
     ("x,y,pressure\n" + ROWS, refused("line 1: the heading is 'x,y,pressure'")),
-    ("lat,lon,pressure\n" + ROWS, refused("allowed: forward,lateral,pressure")),
     (HEAD + "mm,mm,MPa\n" + ROWS, refused("line 2: forward is 'mm'")),
-    (HEAD + "\u22121,0,1\n", refused("line 2: forward is '\u22121'")),
-    (HEAD + "0,0,NA\n", refused("line 2: pressure is 'NA'")),
     ("forward [deg],lateral [deg],pressure\n" + ROWS, refused("[deg] is no known unit of length")),
-    ("forward [2 mm],lateral [mm],pressure\n" + ROWS, refused("[2 mm] is no known unit")),
     ("forward [mm],lateral [mm],pressure [degC]\n" + ROWS, refused("no known unit of pressure")),
     ("forward [mm],lateral [in],pressure [psi]\n0,0,1\n0,1,2\n25.4,0,3\n25.4,1,4\n", PLAIN),
     ("forward [\u00b5m],lateral [\u03bcm],pressure\n" + ROWS, PLAIN),
     ((HEAD + ROWS).replace(",", "|"), refused("line 1: the heading")),
-    ('{"forward": [0, 1]}', refused("line 1: the heading")),
-    ("version https://git-lfs.github.com/spec/v1\n", refused("line 1: the heading")),
-    (HEAD + "0,0,1\n0,1e-200,2\n1e-200,0,3\n1e-200,1e-200,4\n", PLAIN),
     (HEAD + "0,0,1\n0,1e-310,2\n1e-310,0,3\n1e-310,1e-310,4\n", PLAIN),
     (HEAD + "0,0,1\n0,1e20,2\n1,0,3\n1,1e20,4\n", refused("steps in one unit")),
     (HEAD + "1e9,0,1\n1e9,1,2\n1000000001,0,3\n1000000001,1,4\n", PLAIN),
@@ -164,9 +122,7 @@ def grid(values=VALUES, **attributes):
 MM, UM = {"units": "mm"}, {"units": "um"}
 NETCDF = [
     (grid(forward=MM, lateral=UM), "stretched"),
-    (grid(forward={"Units": "mm"}, lateral={"Units": "um"}), "stretched"),
     (grid(forward={"unit": "mm"}, lateral={"UNIT": "um"}), "stretched"),
-    (grid(forward=MM, lateral=UM), "stretched"),
     (grid(forward={"units": 5}, lateral={"units": 5}), refused("forward has the units 5")),
     (grid(forward={"units": ["mm", "um"]}, lateral=MM), refused("forward has the units")),
     (grid(forward=MM | {"Unit": "um"}, lateral=MM), refused("one attribute units")),
@@ -189,15 +145,7 @@ DIMS = ("amplitude", "velocity")
 def whole(**attributes):
     """A map of Eq 6 that contains (0.15, 1.3)."""
     mu = paper.large_amplitude_transverse(*np.meshgrid(VELOCITY, AMPLITUDE))
-    return xr.Dataset(
-        {
-            "mu_macro": (DIMS, mu),
-            "mu_macro_error": (DIMS, np.full(mu.shape, 1e-4)),
-            "converged": (DIMS, np.ones(mu.shape, bool)),
-        },
-        {"velocity": VELOCITY, "amplitude": AMPLITUDE, "poisson": 0.0},
-        {"motion": "transverse", "tolerance": 1e-3} | attributes,
-    )
+    return map_of(mu, VELOCITY, AMPLITUDE, 1e-4, tolerance=1e-3, **attributes)
 
 
 def every(name, value):
@@ -210,28 +158,12 @@ def axis(name, values):
 
 DATASETS = {
     "in percent": (lambda d: d.assign(mu_macro=100 * d.mu_macro), "mu_macro = 100.0"),
-    "in thousandths": (
-        lambda d: d.assign(mu_macro=(1000 * d.mu_macro).astype(int)),
-        "mu_macro = 1000.0",
-    ),
     "with the other sign": (lambda d: d.assign(mu_macro=-d.mu_macro), "allowed is 0 to 1"),
-    "with an infinity": (every("mu_macro", np.inf), "mu_macro = inf"),
     "of text": (every("mu_macro", "a"), "mu_macro = 'of type <U1'"),
-    "of complex numbers": (every("mu_macro", 1j), "microslip.at needs numbers"),
     "with errors below 0": (every("mu_macro_error", -1e-4), "mu_macro_error = -0.0001"),
     "velocity as text": (axis("velocity", [str(v) for v in VELOCITY]), "velocity = 'of type"),
-    "velocity as dates": (
-        axis("velocity", np.datetime64("2026-01-01") + np.arange(13)),
-        "velocity = 'of type datetime64",
-    ),
     "logarithms of velocity": (axis("velocity", np.log10(VELOCITY)), "velocity = -3.0"),
-    "velocity not a number": (axis("velocity", [np.nan, *VELOCITY[1:]]), "velocity = nan"),
-    "velocity infinite": (axis("velocity", [*VELOCITY[1:], np.inf]), "velocity = inf"),
-    "amplitude below 0": (axis("amplitude", AMPLITUDE - 1), "amplitude = -1.0"),
-    "Poisson's ratio by name": (axis("poisson", "steel"), "poisson = 'of type"),
     "Poisson's ratio 0.9": (axis("poisson", 0.9), "poisson = 0.9"),
-    "Poisson's ratio below 0": (axis("poisson", -0.1), "poisson = -0.1"),
-    "Poisson's ratio not a number": (axis("poisson", np.nan), "poisson = nan"),
     "Poisson's ratio along the amplitude": (
         axis("poisson", ("amplitude", np.linspace(0, 0.5, 13))),
         "microslip.at needs one, or an axis",
@@ -246,24 +178,9 @@ DATASETS = {
     ),
 }
 
-# Arguments of `at` for a valid dataset, words.
-QUESTIONS = [
-    ((True, 1), {}, "velocity = True"),
-    (("0.5", 1), {}, "velocity = '0.5'"),
-    ((0.5, "1_0"), {}, "amplitude = '1_0'"),
-    ((1j, 1), {}, "velocity = 1j"),
-    ((np.datetime64("2026-01-01"), 1), {}, "datetime64"),
-    ((np.ma.masked, 1), {}, "velocity = masked"),
-    ((np.ma.array([1.0, 2.0], mask=[False, True]), 1), {}, "allowed is a finite number"),
-    ((xr.DataArray(["a"], dims="n"), 1), {}, "velocity"),
-    ((1, 1), {"tolerance": "x"}, "tolerance = 'x'"),
-    ((1, 1), {"tolerance": True}, "tolerance = True"),
-]
-
 # Arguments of open_map: name, further arguments, words.
 OPENED = [
     (None, {}, "name = None"),
-    (5, {}, "name = 5"),
     ("", {}, "name = ''"),
     ("s3://b/x.nc", {}, "is not there"),
     ("x" * 300 + ".nc", {}, "File name too long"),
@@ -273,10 +190,8 @@ OPENED = [
 ]
 # Damage to the bytes of a dataset without a stamp.
 DAMAGES = {
-    "the signature alone": lambda content: content[:8],
     "cut off": lambda content: content[: len(content) // 2],
     "half of it zeros": lambda content: content[: len(content) // 2].ljust(len(content), b"\0"),
-    "line ends changed": lambda content: content.replace(b"\n", b"\r\n"),
 }
 
 # Arguments of microslip gc, words of its message.
@@ -284,8 +199,6 @@ GC = [
     (["--configfile", "a\0b"], "not the name of a file"),
     (["--configfile", "nosuch.yaml"], "--configfile: nosuch.yaml: cannot be read"),
     (["--configfile", "long.yaml"], "is not there"),
-    (["--configfile", "none\nx.yaml"], "cannot be read"),
-    (["--configfile", "."], "Is a directory"),
     (["--configfile", "/dev/null"], "is empty"),
     (["--configfile"], "expected at least one argument"),
     (["first.yaml"], "unrecognized arguments"),

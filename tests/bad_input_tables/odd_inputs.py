@@ -1,7 +1,5 @@
-"""Odd inputs: pairs of equal inputs, and calls with a part of their error message."""
+"""Odd inputs: calls with a part of their error message."""
 
-import datetime
-import math
 from decimal import Decimal
 from fractions import Fraction
 
@@ -10,35 +8,11 @@ import pandas as pd
 import xarray as xr
 from bad_input_tables.odd_quantities import Q
 
-# Changes of a contact, and the equal changes in other units.
-
-SAME = [
-    ({"frequency": "7200000 deg/s"}, {"frequency": "20 kHz"}),
-    ({"frequency": "1200 krpm"}, {"frequency": "20 kHz"}),
-    ({"frequency": "20 kcps"}, {"frequency": "20 kHz"}),
-    ({"radius": "0.5 in"}, {"radius": "12.7 mm"}),
-    ({"radius": "5\nmm"}, {"radius": "5 mm"}),
-    ({"mu": "30 %"}, {"mu": "0.3"}),
-    ({"load": "1 kgf"}, {"load": "9.80665 N"}),
-    ({"speed": "600 mm/min"}, {"speed": "10 mm/s"}),
-    ({"material": " steel "}, {"material": "steel"}),
-    ({"material": None, "young": "210GPa", "nu": "30 %"}, {"material": "steel"}),
-    ({"counterbody": "70 GPa, 22 %"}, {"counterbody": "7e4 N/mm^2, 0.22"}),
-    ({"counter_radius": "\N{MINUS SIGN}1 km"}, {"counter_radius": "-1e3 m"}),
-    ({"tolerance": "5 %"}, {"tolerance": "0.05"}),
-]
-
 # Function, changes of a valid call, part of the error message.
 
 SPAN, HUGE, HIDDEN = np.timedelta64(16), 10**5000, np.ma.array(0.5, mask=True)
-NO_NUMBERS = [None, [0.5], {"a": 1}, "0.5", b"0.5", True, np.True_, 0.5j, Decimal("0.5")]
-NO_NUMBERS += [Fraction(1, 2), np.array([0.5]), np.array(0.5), HIDDEN, SPAN, float, pd.NA]
-NO_NUMBERS += [datetime.datetime(2020, 1, 1), pd.Timestamp("2020-01-01"), HUGE]
-NAMES = [None, 1, ["a"], b"a", HUGE, np.array(["a"]), SPAN, pd.Series(["hertz", "a"])]
-
-ROW = {"speed": [1e-3], "amplitude": [1e-6], "frequency": [2e4], "load": [10.0], "mu": [0.1]}
-"""One measurement, in SI units."""
-ONE_ROW = dict.fromkeys(("speed", "frequency", "load"))
+NO_NUMBERS = [None, [0.5], "0.5", True, 0.5j, Decimal("0.5"), np.array(0.5), HIDDEN, SPAN, HUGE]
+NAMES = [None, ["a"], b"a", HUGE, np.array(["a"]), pd.Series(["hertz", "a"])]
 
 CALLS = [("solve", {"velocity": value}, "velocity = ") for value in NO_NUMBERS]
 CALLS += [("solve", {"poisson": value}, "poisson = ") for value in NO_NUMBERS]
@@ -55,23 +29,18 @@ CALLS += [
     ("solve", {"tolerance": list(range(10**5))}, "allowed is a number"),
     ("solve", {"motion": "eliptic:forward=0.5"}, "motion = 'eliptic:forward=0.5': did you mean"),
     ("solve", {"motion": "elliptic:forward=0.5;phase=90"}, "elliptic:key=0.5"),
-    ("solve", {"motion": "elliptic:phase=90\N{DEGREE SIGN}"}, "elliptic:key=0.5"),
-    ("solve", {"motion": "elliptic:forward=50%"}, "elliptic:key=0.5"),
     (
         "solve",
         {"motion": "elliptic:lateral=0,forward=0"},
         "motion = 'elliptic:lateral=0,forward=0'",
     ),
-    ("solve", {"motion": "tr\N{CYRILLIC SMALL LETTER A}nsverse"}, "did you mean transverse?"),
     ("solve", {"motion": "transverse:amplitude=1"}, "unknown number amplitude"),
     ("solve", {"pressure": "powr:exponent=2"}, "pressure = 'powr:exponent=2': did you mean power?"),
     ("solve", {"pressure": "power:exponent=1e300"}, "pressure = 'power:exponent=1e300'"),
     ("solve", {"pressure": "file:"}, "as in file:measured.csv"),
     ("solve", {"pressure": "file:nothing.csv"}, "No such file"),
     ("solve", {"pressure": "file:."}, "a folder"),
-    ("solve", {"pressure": "FILE:x.csv"}, "pressure = 'FILE:x.csv'"),
     ("history", {"travel": None}, "travel = None: allowed is a number"),
-    ("history", {"travel": np.array([5.0])}, "travel = array([5.]): allowed is a number"),
     ("history", {"travel": 1e300}, "travel = 1e+300: allowed is"),
     (
         "history",
@@ -80,71 +49,41 @@ CALLS += [
     ),
     ("history", {"periods": None}, "periods = None: allowed is a whole number"),
     ("history", {"periods": 10**9}, "periods = 1000000000: allowed is"),
-    ("history", {"periods": SPAN}, "periods = "),
     ("history", {"steps": 10**12}, "steps = 1000000000000: allowed is"),
     ("history", {"cells": SPAN}, "cells = "),
-    ("history", {"cells": 1}, "cells = 1: allowed is a whole number of at least 2"),
     *(
         (function, {"pressure": pd.Series(["hertz", "punch"])}, "pressure = ")
         for function in ("history", "period", "propulsion", "shakedown")
     ),
     ("propulsion", {"progress": 5}, "progress = 5: allowed is a function"),
     ("history", {"cells": 10**7}, "cells = 10000000: allowed is"),
-    ("history", {"start": ["full-slip"]}, "start = ['full-slip']: allowed is one of"),
     ("history", {"start": np.array(["full-slip", "a"])}, "start = "),
     ("period", {"cells": 10**12}, "cells = 1000000000000: allowed is"),
     ("period", {"angles": 10**12}, "angles = 1000000000000: allowed is"),
     ("period", {"cells": 1000, "angles": 1000, "steps": 1000}, "cells x angles x steps"),
     ("period", {"motion": "continuous-bore", "amplitude": None}, "one that oscillates"),
     ("traction_field", {"cells": 0}, "cells = 0: allowed is a whole number of at least 2"),
-    ("traction_field", {"cells": 8.0}, "cells = 8.0: allowed is a whole number"),
-    ("traction_field", {"cells": 10**12}, "cells = 1000000000000: allowed is"),
     ("traction_field", {"velocity": 0}, "velocity = 0.0"),
     ("traction_field", {"motion": "transverse", "amplitude": 1.0}, "motion = 'transverse'"),
     *(
-        (function, {"results": folder}, "is not allowed; allowed: the name of a folder")
-        for function in ("solve_stored", "open_map")
-        for folder in (None, 5, b"x", "", "~", "~/x", ["a"], True, "a\0b")
-    ),
-    *(
-        ("open_map", {"name": name}, "name = ")
-        for name in (None, 5, b"transverse", ["transverse"], "Transverse", " transverse", "")
+        ("solve_stored", {"results": folder}, "is not allowed; allowed: the name of a folder")
+        for folder in (None, "~", "a\0b")
     ),
     ("open_map", {"name": "transvers"}, "name = 'transvers': did you mean transverse? allowed"),
-    ("solve_stored", {"results": 5}, "results = 5: is not allowed"),
     ("to_xarray", {"record": 5}, "record = 5: allowed is one of Result,"),
-    (
-        "predict_table",
-        {"cases": {"load": ["1 N"], "mu": [0.1, 0.2]}},
-        "cases = ['load', 'mu']: columns of 1 and 2 values; allowed are columns of one length",
-    ),
-    ("fit", {**ONE_ROW, "measured": ROW}, "'load', 'mu']: 1 row; two numbers take at least 3"),
-    ("fit", {"map": "transverse.nc"}, "map = 'transverse.nc': allowed is the dataset"),
-    (
-        "fit",
-        {**ONE_ROW, "measured": ROW | {"mu": [math.nan]}},
-        "mu = None: empty; allowed: a number in every row",
-    ),
-    ("fit", {"confidence": 95}, "confidence = 95: allowed is a number above 0 and below 1, such"),
     ("Material", {"young": HUGE}, "young = "),
-    ("Material", {"poisson": "300 %"}, "poisson = '300 %'"),
 ]
 
 # Bad arguments of Friction.at, many of which NumPy would convert to numbers.
 
 TIMES = np.array(["2020-01-01"], "datetime64[ns]")
-VELOCITIES = [*NO_NUMBERS[2:4], "1_0", b"0.5", True, np.True_, np.ma.masked, HIDDEN, None, HUGE]
-VELOCITIES += [["0.1", "0.3"], [True, False], np.array([0.1 + 1j]), np.datetime64("2020-01-01")]
-VELOCITIES += [np.timedelta64(1), TIMES, np.ma.array([0.1, 0.3], mask=[True, False]), pd.NA]
-VELOCITIES += [Q(1, "mm/s"), [0.1, np.nan], np.inf, -0.1, [[0.1, 0.3]], [0.1, None]]
-VELOCITIES += [xr.DataArray(value, dims="t") for value in (["0.1"], [True], [0.1j], TIMES, [-0.1])]
+VELOCITIES = ["1_0", True, HIDDEN, None, HUGE, [True, False], np.array([0.1 + 1j]), TIMES]
+VELOCITIES += [np.ma.array([0.1, 0.3], mask=[True, False]), Q(1, "mm/s"), [0.1, np.nan], -0.1]
+VELOCITIES += [[[0.1, 0.3]], [0.1, None], xr.DataArray(["0.1"], dims="t")]
+VELOCITIES += [xr.DataArray([-0.1], dims="t")]
 
 AT = [({"velocity": value}, "velocity = ") for value in VELOCITIES]
-AT += [({"amplitude": value}, "amplitude = ") for value in (None, "0.5", True, HIDDEN, 0.5j, -1)]
-AT += [({"poisson": value}, "poisson = ") for value in ("0", True, [0.0], HIDDEN, HUGE, 0.5)]
-AT += [
-    ({"tolerance": value}, "tolerance = ")
-    for value in ("1e-2", True, [0.5], np.array([0.5, 0.4]), 1j, 0, -1, np.nan, np.inf, HUGE, SPAN)
-]
-NUMBERS = [Decimal("0.3"), Fraction(3, 10), np.float32(0.3), np.array(0.3), [Decimal("0.3")]]
-NUMBERS += [pd.Series([0.3]), np.ma.array([0.3]), xr.DataArray([0.3], dims="t")]
+AT += [({"amplitude": value}, "amplitude = ") for value in (None, "0.5", HIDDEN, -1)]
+AT += [({"poisson": value}, "poisson = ") for value in ("0", True, HUGE, 0.5)]
+AT += [({"tolerance": value}, "tolerance = ") for value in ("1e-2", True, [0.5], 0, np.nan, HUGE)]
+NUMBERS = [Decimal("0.3"), Fraction(3, 10), np.float32(0.3), [Decimal("0.3")], pd.Series([0.3])]

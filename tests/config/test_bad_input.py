@@ -1,22 +1,15 @@
 """Bad input of the command line and configurations: one line, before any work starts."""
 
-import os
 import re
 import shlex
-import subprocess
-import sys
-from pathlib import Path
 
 import pytest
-from bad_input_tables.bad_command_lines import COMMAND_LINES, NUMBERS, RESULTS
+from bad_input_tables.bad_command_lines import COMMAND_LINES
 from bad_input_tables.bad_configurations import EXTENDED, FILES, KEYS, STUDIES, TOGETHER, changed
 
-import microslip
 from microslip.app import cli
 from microslip.config import load
 from microslip.config.strict_yaml import StrictLoader
-
-SOURCE = str(Path(microslip.__file__).parent.parent)
 
 
 @pytest.fixture
@@ -35,7 +28,6 @@ def nothing_runs(monkeypatch):
 def there(tmp_path, monkeypatch):
     """The working directory, with targets of bad input; commands must not change it."""
     (tmp_path / "a-file").write_text("kept\n")
-    (tmp_path / "lost-link").symlink_to("nowhere/at/all")
     monkeypatch.chdir(tmp_path)
     before = sorted(tmp_path.rglob("*"))
     yield tmp_path
@@ -62,25 +54,11 @@ def test_a_bad_command_line_is_one_line(arguments, parts, nothing_runs, there, c
 
 def test_every_option_is_given_a_bad_value():
     """Every option occurs in COMMAND_LINES."""
-    motion = cli.build_parser("point")._subparsers._group_actions[0].choices["point"]
+    motion = cli.build_parser(["point"])._subparsers._group_actions[0].choices["point"]
     motion = motion._subparsers._group_actions[0].choices["transverse"]
     options = {name for name in motion._option_string_actions if name.startswith("--")}
     tested = {word for first, *_ in COMMAND_LINES for word in re.findall(r"--[a-z-]+", first)}
     assert options - tested == {"--help"}
-
-
-@pytest.mark.slow
-def test_the_same_lines_come_from_a_process(there):
-    for arguments, *parts in (NUMBERS[0], RESULTS[3]):
-        process = subprocess.run(
-            [sys.executable, "-m", "microslip.app.cli", *shlex.split(arguments), "--json"],
-            env={**os.environ, "PYTHONPATH": SOURCE},
-            capture_output=True,
-            text=True,
-            timeout=60,
-        )
-        assert (process.returncode, process.stdout, process.stderr.count("\n")) == (2, "", 1)
-        assert [part for part in parts if part not in process.stderr] == []
 
 
 # Configurations
@@ -109,7 +87,6 @@ def test_a_bad_setting_is_one_line_that_begins_with_its_key(settings, named, par
     assert re.search("allowed|required|write |no amplitude|does not apply", message)
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("case", FILES)
 def test_a_file_that_is_no_configuration_is_one_line(case, tmp_path):
     content, *parts = FILES[case]
@@ -120,16 +97,9 @@ def test_a_file_that_is_no_configuration_is_one_line(case, tmp_path):
     assert [part for part in parts if part not in message] == []
 
 
-@pytest.mark.parametrize(
-    ("name", "part"),
-    [
-        ("none.yaml", "cannot be read: No such file or directory"),
-        ("", "cannot be read: Is a directory"),
-        (f"{'x' * 300}.yaml", "cannot be read: File name too long"),
-    ],
-)
-def test_a_file_that_cannot_be_read_is_one_line(name, part, tmp_path):
-    assert refusal(tmp_path / name) == f"{tmp_path / name}: {part}"
+def test_a_file_that_cannot_be_read_is_one_line(tmp_path):
+    path = tmp_path / "none.yaml"
+    assert refusal(path) == f"{path}: cannot be read: No such file or directory"
 
 
 BOMB = "a0: &a0 [x]\n" + "".join(

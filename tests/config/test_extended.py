@@ -1,8 +1,6 @@
 """Sweeps of other motions and pressures: configuration, requests, files and datasets."""
 
 import json
-import subprocess
-import sys
 
 import pytest
 import xarray as xr
@@ -82,30 +80,6 @@ def test_jobs_do_not_ask_the_solver():
     assert result.extended["circle"].motion == "no such"
 
 
-ALONE = """
-import sys
-from microslip.config import load
-from microslip.sweeps import batches
-given = {"sweeps": {"bore": {"velocity": [1], "amplitude": [1]}}, "extended": {"ellipse": {
-    "motion": "elliptic:phase=30", "group": "g", "velocity": [1], "amplitude": [1]}}}
-found = load.from_mapping(given, ask_solver=False)
-batches.points_of(found.sweeps["bore"]).requests
-print("numpy" in sys.modules)
-"""
-
-
-def test_jobs_of_other_sweeps_do_not_import_the_solver():
-    process = subprocess.run(
-        [sys.executable, "-c", ALONE], capture_output=True, text=True, check=True
-    )
-    assert process.stdout == "False\n"
-
-
-def test_a_static_limit_is_allowed_where_the_solver_knows_it():
-    line = CIRCLE | {"motion": "elliptic:phase=0", "velocity": [0, 0.1]}
-    assert configured(line=line).extended["line"].velocity == (0.0, 0.1)
-
-
 # Requests
 
 
@@ -113,10 +87,13 @@ def requests_of(**changes):
     return sweep.points_of(configured(circle=CIRCLE | changes).extended["circle"]).requests
 
 
-def test_a_plain_point_is_asked_for_as_ever():
+def test_a_plain_point_mentions_no_pressure_and_no_drive():
+    """Requests name their results by hashes."""
     plain = load.from_mapping({"sweeps": {"bore": {"velocity": [1], "amplitude": [1]}}})
     (expected,) = sweep.points_of(plain.sweeps["bore"]).requests
-    assert "pressure" not in expected
+    names = {"kind", "motion", "model", "tolerance", "cells", "steps"}
+    assert set(expected) == names | {"poisson", "amplitude", "velocity"}
+    assert "drives" not in plain.of_sweep("bore")["sweep"]
     (result,) = requests_of(motion="bore", velocity=[1], amplitude=[1])
     assert result == expected
 
@@ -202,7 +179,7 @@ def test_a_request_names_a_file_by_its_content_and_jobs_find_it(tmp_path, monkey
     # A job runs in another folder and process.
     mapping = load.read_yaml(with_pressure(tmp_path, "file:pad.csv"))
     handed = load.with_defaults_and_paths(mapping, folders=[tmp_path])
-    monkeypatch.setattr("microslip.foundation.named_files._PLACES", {})
+    monkeypatch.setattr("microslip.foundation.named_files.PLACES", {})
     monkeypatch.chdir(tmp_path / "sub")
     result = load.from_mapping(handed, ask_solver=False)
     assert sweep.points_of(result.extended["pad"]).requests == batches[0]
@@ -224,7 +201,7 @@ def test_a_file_of_a_motion_is_handed_on_like_that_of_a_pressure(tmp_path, monke
     assert {request["motion"] for request in requests} == {name}
     assert result.propulsion.motions["stroke"].motion == name
     handed = load.with_defaults_and_paths(mapping, folders=[tmp_path])
-    monkeypatch.setattr("microslip.foundation.named_files._PLACES", {})
+    monkeypatch.setattr("microslip.foundation.named_files.PLACES", {})
     monkeypatch.chdir("/")
     load.remember_files(handed)
     assert motion_named(name).name == name
@@ -251,7 +228,7 @@ def test_a_dataset_of_a_file_is_read_without_the_file(monkeypatch, tmp_path):
     motion = f"file:{tmp_path / 'stroke.csv'}"
     data = built(tmp_path, "stroke", motion=motion, amplitude=[0.5, 1])
     assert data.attrs["motion_file"] == "stroke.csv"
-    monkeypatch.setattr("microslip.foundation.named_files._PLACES", {})
+    monkeypatch.setattr("microslip.foundation.named_files.PLACES", {})
     place = {"velocity": 0.1, "amplitude": 0.5}
     answer = data.microslip.at(**place)
     assert float(answer.mu_macro) == pytest.approx(float(data.mu_macro.sel(**place)))

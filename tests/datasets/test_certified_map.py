@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 import xarray as xr
 from stubs import certified_stub
+from stubs.eq6_map import places
 
-import microslip
 from microslip.config import load
-from microslip.datasets import certified_map
+from microslip.datasets import certified_map, netcdf
 from microslip.datasets.query.accessor import Friction
 from microslip.datasets.query.answers import SOURCES
 from microslip.foundation.errors import InputError
@@ -39,18 +39,8 @@ def made():
 @pytest.fixture(scope="module")
 def dataset(made, tmp_path_factory):
     """The dataset of `made`, read from a file."""
-    path = tmp_path_factory.mktemp("certified") / "certified_transverse.nc"
-    certified_map.write(path, certified_map.build(made.map, made.records))
-    with microslip.open_map("certified_transverse", path.parent) as opened:
-        return opened.load()
-
-
-def places(count, seed=4):
-    rng = np.random.default_rng(seed)
-    return (
-        xr.DataArray(10 ** rng.uniform(-3, 1, count), dims="n"),
-        xr.DataArray(rng.uniform(0, 3, count), dims="n"),
-    )
+    built = certified_map.build(made.map, made.records)
+    return certified_stub.reopened(built, tmp_path_factory.mktemp("certified"))
 
 
 def test_answers_are_within_their_errors_and_these_within_what_was_asked(dataset):
@@ -90,7 +80,7 @@ def test_beyond_the_map_the_limits_answer_as_from_any_map(dataset):
 
 def test_equal_answers_give_equal_files(made, tmp_path):
     for name, records in (("a.nc", made.records), ("b.nc", made.records[::-1])):
-        certified_map.write(tmp_path / name, certified_map.build(made.map, records))
+        netcdf.write(tmp_path / name, certified_map.build(made.map, records))
     assert (tmp_path / "a.nc").read_bytes() == (tmp_path / "b.nc").read_bytes()
 
 
@@ -181,7 +171,7 @@ def test_of_other_motions_the_map_answers_and_nothing_beyond():
         place = float(request["velocity"]), float(request["amplitude"])
         return certified_stub.record(request, float(masing.longitudinal(*place)), error=0.0)
 
-    data = certified_map.build(map_, certified_stub.played(map_, answered))
+    data = certified_stub.built(map_, answered)
     answer = Friction(data).at([0.02, 0.2, 0.9], [0.15, 0.5, 0.85])
     truth = masing.longitudinal(*np.meshgrid(answer.velocity, answer.amplitude))
     assert (abs(answer.mu_macro - truth) <= answer.mu_macro_error + 1e-9).all()

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 import xarray as xr
 from stubs import certified_stub
+from stubs.eq6_map import places
 
-import microslip
 from microslip.datasets import certified_map
 from microslip.foundation.errors import InputError
 from microslip.theory import paper
@@ -31,10 +31,8 @@ def dataset(tmp_path_factory):
     """A certified map over Poisson's ratios from 0 to 0.4, read from a file."""
     axes = {"velocity": [0.01, 10], "amplitude": [0, 3], "poisson": [0, 0.4]}
     map_ = certified_stub.configured("transverse", **axes, adaptive={"error": ERROR})
-    path = tmp_path_factory.mktemp("certified") / "certified_transverse.nc"
-    certified_map.write(path, certified_map.build(map_, certified_stub.played(map_, record)))
-    with microslip.open_map("certified_transverse", path.parent) as opened:
-        return opened.load()
+    built = certified_stub.built(map_, record)
+    return certified_stub.reopened(built, tmp_path_factory.mktemp("certified"))
 
 
 def test_a_file_says_its_directions(dataset):
@@ -50,9 +48,7 @@ def test_a_file_says_its_directions(dataset):
 
 @pytest.mark.parametrize("poisson", [0.0, 0.13, 0.3, 0.4])
 def test_answers_at_any_poissons_ratio_are_within_their_errors(dataset, poisson):
-    rng = np.random.default_rng(8)
-    velocity = xr.DataArray(10 ** rng.uniform(-2, 1, 500), dims="n")
-    amplitude = xr.DataArray(rng.uniform(0, 3, 500), dims="n")
+    velocity, amplitude = places(20_000, (-2, 1), (0, 3))
     answer = dataset.microslip.at(velocity, amplitude, poisson=poisson)
     off = abs(answer.mu_macro - friction(velocity.values, amplitude.values, poisson))
     assert float((off <= answer.mu_macro_error).mean()) >= 0.999

@@ -6,7 +6,7 @@ import xarray as xr
 from stubs import certified_stub
 
 import microslip
-from microslip.datasets import certified_map
+from microslip.datasets import netcdf
 from microslip.theory import paper
 
 ERROR = 2e-3
@@ -22,7 +22,7 @@ def record(request):
 
 def built(**settings):
     map_ = certified_stub.configured("transverse", **STATIC | settings)
-    return certified_map.build(map_, certified_stub.played(map_, record))
+    return certified_stub.built(map_, record)
 
 
 def test_only_points_at_velocity_0_are_asked():
@@ -36,7 +36,7 @@ def test_only_points_at_velocity_0_are_asked():
 
 def test_the_closed_form_is_met_to_within_the_errors(tmp_path):
     path = tmp_path / "certified_transverse.nc"
-    certified_map.write(path, built())
+    netcdf.write(path, built())
     with microslip.open_map(path) as dataset:
         amplitude = xr.DataArray(np.random.default_rng(2).uniform(0, 1.5, 500), dims="n")
         answer = dataset.microslip.at(0.0, amplitude)

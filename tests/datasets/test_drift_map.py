@@ -21,10 +21,8 @@ DRIFT = certified_stub.DRIFT | {"adaptive": {"error": ERROR}}
 @pytest.fixture(scope="module")
 def dataset(tmp_path_factory):
     """A map of an invented drift, read from a file."""
-    path = tmp_path_factory.mktemp("drift") / "certified_weights.nc"
-    certified_map.write(path, certified_stub.drifting(adaptive={"error": ERROR}))
-    with microslip.open_map("certified_weights", path.parent) as opened:
-        return opened.load()
+    map_ = certified_stub.drifting(adaptive={"error": ERROR})
+    return certified_stub.reopened(map_, tmp_path_factory.mktemp("drift"))
 
 
 def configured(**settings):
@@ -32,23 +30,11 @@ def configured(**settings):
     return load.from_mapping({"sweeps": certified_stub.PAPER, "drives": drives})
 
 
-def places(count, seed=8):
-    """Random forces and amplitudes in the range of the map."""
-    rng = np.random.default_rng(seed)
-    return (
-        xr.DataArray(rng.uniform(0.0, 0.95, count), dims="n"),
-        xr.DataArray(rng.uniform(0.0, 3.0, count), dims="n"),
-    )
-
-
-def truth(force, amplitude):
-    velocity = certified_stub.drift(force.values, amplitude.values)
-    return xr.DataArray(velocity, dims="n")
-
-
 def test_answers_are_within_their_errors_and_these_within_what_was_asked(dataset):
-    force, amplitude = places(2000)
-    answer, exact = dataset.microslip.at(force, amplitude), truth(force, amplitude)
+    rng = np.random.default_rng(8)
+    places = [rng.uniform(0.0, largest, 2000) for largest in (0.95, 3.0)]
+    answer = dataset.microslip.at(*(xr.DataArray(place, dims="n") for place in places))
+    exact = xr.DataArray(certified_stub.drift(*places), dims="n")
     covered = abs(answer.velocity - exact) <= answer.velocity_error
     assert float(covered.mean()) >= 0.999
     assert bool((answer.velocity_error <= 1.01 * ERROR * np.sqrt(1 + answer.velocity**2)).all())
@@ -142,7 +128,7 @@ def test_what_has_no_such_map_is_refused_in_a_line(settings, message):
 @pytest.mark.long
 def test_the_solver_agrees_at_places_that_no_map_has_used():
     (map_,) = configured(adaptive={"error": 3e-2}, amplitude=[0.3, 2]).certified.values()
-    data = certified_map.build(map_, certified_stub.played(map_, certified_stub.solved))
+    data = certified_stub.built(map_, certified_stub.solved)
     rng = np.random.default_rng(17)
     for amplitude in rng.uniform(0.3, 2.0, 6):
         force = rng.uniform(float(threshold("transverse", amplitude)), 0.95)

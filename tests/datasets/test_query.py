@@ -11,9 +11,10 @@ import netCDF4
 import numpy as np
 import pytest
 import xarray as xr
-from stubs.eq6_map import map_of
+from stubs.eq6_map import map_of, places
 
 import microslip
+from microslip.datasets import netcdf
 from microslip.datasets.query.answers import SOURCES
 from microslip.datasets.query.interpolation import Axis, Table
 from microslip.datasets.query.open_map import open_map
@@ -99,9 +100,7 @@ def friction():
 
 
 def test_the_error_covers_what_is_missed_and_what_the_nodes_are_off():
-    rng = np.random.default_rng(3)
-    v = xr.DataArray(10 ** rng.uniform(-3, 1, 500), dims="n")
-    a = xr.DataArray(rng.uniform(0, 3, 500), dims="n")
+    v, a = places(500)
     truth = paper.large_amplitude_transverse(v.values, a.values**1.5)
     answer = made_up().microslip.at(v, a)
     miss = np.abs(answer.mu_macro.values - truth)
@@ -146,9 +145,7 @@ def over_poisson(poissons):
 
 @pytest.mark.parametrize("poissons", [(0.0, 0.5), (0.5, 0.0, 0.25), (0.0, 0.1, 0.2, 0.3, 0.4, 0.5)])
 def test_between_poissons_ratios_the_error_covers_what_is_missed(poissons):
-    rng = np.random.default_rng(7)
-    v = xr.DataArray(10 ** rng.uniform(-3, 1, 300), dims="n")
-    a = xr.DataArray(rng.uniform(0, 3, 300), dims="n")
+    v, a = places(300, seed=7)
     both = over_poisson(poissons)
     for nu in (0.05, 0.2, 0.33, 0.5):
         answer = both.microslip.at(v, a, poisson=nu)
@@ -410,9 +407,7 @@ def test_brackets_hold_what_the_solver_says(tmp_path, motion):
 
 
 def test_no_error_is_larger_than_the_energy_balance_allows():
-    rng = np.random.default_rng(5)
-    v = xr.DataArray(10 ** rng.uniform(-1, 3, 300), dims="n")
-    a = xr.DataArray(10 ** rng.uniform(-1, 2, 300), dims="n")
+    v, a = places(300, decades=(-1, 3), amplitude=(0.1, 100))
     answer = made_up(error=0.01).microslip.at(v, a)
     drop = 1 / ((v / a) ** 2 + 0.5)
     assert (answer.mu_macro_error <= np.minimum(drop, 1.0) + 1e-9).all()
@@ -443,11 +438,9 @@ def test_the_steady_bore_is_a_closed_form_beyond_its_axis():
 
 @pytest.fixture
 def results(tmp_path):
-    from microslip.datasets import sweep_dataset as dataset
-
     made = made_up(error=1e-4)
     made["converged"] = made.converged.astype(np.int8)
-    dataset.write(made, tmp_path / "transverse.nc")
+    netcdf.write(tmp_path / "transverse.nc", made)
     return tmp_path
 
 

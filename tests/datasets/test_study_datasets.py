@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 from stubs.studies_stub import GOOD, accuracy_result, answered, configured, stability_result
 
-from microslip.datasets import netcdf, sweep_dataset
+from microslip.datasets import netcdf
 from microslip.studies import registry
 from microslip.studies.stability.dataset import OUTCOMES, outcome
 
@@ -15,7 +15,7 @@ def accuracy(tmp_path):
     """The dataset of accuracy from invented results, read from a file."""
     answer, _ = answered(accuracy_result)
     data = registry.build("accuracy", configured(), answer)
-    sweep_dataset.write(data, tmp_path / "accuracy_cost.nc", registry.groups("accuracy"))
+    netcdf.write(tmp_path / "accuracy_cost.nc", *netcdf.divide(data, registry.groups("accuracy")))
     return netcdf.whole(tmp_path / "accuracy_cost.nc")
 
 
@@ -191,7 +191,7 @@ def test_a_method_is_not_to_blame_for_a_resolution_that_was_imposed():
 def atlas(tmp_path):
     """The dataset of stability from invented results, read from a file."""
     data = registry.build("stability", configured(), answered(stability_result)[0])
-    sweep_dataset.write(data, tmp_path / "stability.nc", registry.groups("stability"))
+    netcdf.write(tmp_path / "stability.nc", *netcdf.divide(data, registry.groups("stability")))
     return netcdf.whole(tmp_path / "stability.nc")
 
 

@@ -2,7 +2,8 @@
 
 Blocks of a page run in their order, in a folder that contains the files of a clone and results.
 Python blocks and the cells of notebooks share one namespace, sh blocks are run by bash, and yaml
-blocks are checked as a configuration or a part of one. A block whose first line is a comment with a
+blocks are checked as a configuration or a part of one. A bash block is only parsed: it installs
+packages, computes for minutes or needs a cluster. A block whose first line is a comment with a
 file name is written to this file. A text block is the output of the block before it: equal words,
 and numbers equal to the printed digits.
 
@@ -33,7 +34,7 @@ from stubs.workflow_project import ENVIRONMENT
 
 import microslip
 from microslip.config import load
-from microslip.datasets import certified_map, sweep_dataset
+from microslip.datasets import certified_map, netcdf, sweep_dataset
 from microslip.models.registry import MODELS
 from microslip.report.figures import drawing
 from microslip.solver import method_names
@@ -54,55 +55,20 @@ LONG_PAGES = (
     "docs/explanation/propulsion.md",
     "docs/how-to/certified_maps.md",
     "docs/how-to/contacts.md",
+    "docs/how-to/export.md",
     "docs/how-to/extend.md",
     "docs/how-to/fit.md",
     "docs/how-to/force_and_spring.md",
     "docs/how-to/measured_strokes.md",
     "docs/how-to/rough_contacts.md",
+    "docs/how-to/sweeps.md",
+    "docs/how-to/workflow.md",
     "docs/tutorials/datasets.md",
     "docs/tutorials/real_contact.md",
 )
 """Pages whose code takes several seconds, except those for newcomers."""
-OPEN_A_SWEEP = ("README.md", "docs/how-to/workflow.md")
-"""Other pages that open the dataset of the sweep `transverse`."""
 SHARED = ("Snakefile", "README.md", "pyproject.toml")
 SHARED_FOLDERS = ("benchmarks", "config", "docs", "profiles", "tests", "workflow")
-
-INSTALLS = "installs packages; .ci/run does this in a new environment"
-FULL = "the full sweeps take minutes; .ci/run and tests run the same rules on small ones"
-SMALL = "about a minute of computing; tests of the workflow make it for smaller configurations"
-BENCHMARK = "takes minutes to hours; it makes the numbers of the page"
-CLUSTER = "needs a cluster or a cloud; not run"
-NOT_RUN = {
-    ("README.md", "python3 -m venv .venv && "): f"{INSTALLS}, and its sweeps are {FULL}",
-    ("README.md", '.venv/bin/pip install -e ".[test]"'): "these tests; the last line of .ci/run",
-    ("README.md", '.venv/bin/pip install -e ".[docs]"'): f"{INSTALLS}; the build is a test here",
-    ("CONTRIBUTING.md", 'python3 -m venv .venv && .venv/bin/pip install -e ".[dev]"'): INSTALLS,
-    (
-        "docs/index.md",
-        '.venv/bin/pip install -e ".[docs]"',
-    ): f"{INSTALLS}; the build is a test here",
-    ("docs/tutorials/quickstart.md", "python3 -m venv .venv && "): INSTALLS,
-    ("docs/reference/gallery.md", ".venv/bin/snakemake -j2"): FULL,
-    ("docs/how-to/workflow.md", ".venv/bin/snakemake -j2"): FULL,
-    ("docs/explanation/methods.md", ".venv/bin/snakemake -j2 accuracy stability"): FULL,
-    ("docs/explanation/claims.md", ".venv/bin/snakemake -j2 claims"): SMALL,
-    ("docs/how-to/explorer.md", ".venv/bin/snakemake -j2 explorer"): SMALL,
-    ("docs/explanation/accuracy.md", "python benchmarks/error_estimates.py --seed 5"): BENCHMARK,
-    ("docs/explanation/accuracy.md", "python benchmarks/error_estimates.py --seed 3"): BENCHMARK,
-    ("docs/explanation/published_numbers.md", "python benchmarks/published"): BENCHMARK,
-    ("docs/how-to/certified_maps.md", "python benchmarks/certified.py"): BENCHMARK,
-    ("docs/how-to/certified_maps.md", "python benchmarks/other_maps.py"): BENCHMARK,
-    ("docs/how-to/cluster.md", ".venv/bin/snakemake -j8"): FULL,
-    ("docs/how-to/cluster.md", ".venv/bin/pip install -e '.[slurm]'"): CLUSTER,
-    ("docs/how-to/cluster.md", "benchmarks/slurm_here.sh"): f"{CLUSTER} by a test: it installs one",
-    ("docs/how-to/cluster.md", ".venv/bin/pip install -e '.[s3]'"): CLUSTER,
-    (
-        "docs/how-to/cluster.md",
-        ".venv/bin/pip install snakemake-executor-plugin-kubernetes",
-    ): CLUSTER,
-}
-"""Reason for not running a block, by its page and the start of its first line."""
 
 PEERS = ("ContactMechanics", "tamaas")
 """Packages of the extra `peers`.  A block that imports a missing one is compiled and not run."""
@@ -133,13 +99,6 @@ def file_of(block):
     """Name of the file of a block, if its first line contains one."""
     named = re.match(r"# ([\w./-]+\.(?:py|yaml|smk|csv))\n", block.text)
     return named and named[1]
-
-
-def reason_not_to_run(page, block):
-    for (where, start), reason in NOT_RUN.items():
-        if where == page and block.text.startswith(start):
-            return reason
-    return ""
 
 
 def needs_missing_peer(block):
@@ -174,14 +133,6 @@ def write_sweeps(folder, names):
 
 
 @pytest.fixture(scope="session")
-def empty(tmp_path_factory):
-    """An empty folder `results`."""
-    folder = tmp_path_factory.mktemp("docs") / "results"
-    folder.mkdir()
-    return folder
-
-
-@pytest.fixture(scope="session")
 def with_a_sweep(tmp_path_factory):
     """A folder `results` with the sweep `transverse`."""
     folder = tmp_path_factory.mktemp("docs") / "results"
@@ -198,9 +149,9 @@ def computed(tmp_path_factory):
     axes = {"velocity": [0.001, 10], "amplitude": [0, 3], "adaptive": {"error": 0.1}}
     map_ = certified_stub.configured("transverse", **axes)
     records = certified_stub.played(map_, lambda request: batches.answer(request, store)[0])
-    certified_map.write(folder / f"{map_.name}.nc", certified_map.build(map_, records))
+    netcdf.write(folder / f"{map_.name}.nc", certified_map.build(map_, records))
     # without computation
-    certified_map.write(folder / "certified_drift_transverse.nc", certified_stub.drifting())
+    netcdf.write(folder / "certified_drift_transverse.nc", certified_stub.drifting())
     return folder
 
 
@@ -312,16 +263,17 @@ def rewrite(page, printed):
     (ROOT / page).write_text("\n".join(lines), encoding="utf-8")
 
 
-def opens(page):
-    """Parameters of the test of a page: its fixture with results, and the mark of its duration."""
-    if page in LONG_PAGES:
-        return pytest.param(page, "computed", marks=pytest.mark.long, id=page)
-    if page in OPEN_A_SWEEP:
-        return pytest.param(page, "with_a_sweep", marks=pytest.mark.slow, id=page)
-    return pytest.param(page, "empty", id=page)
+RUNS = [
+    pytest.param(page, "computed", marks=pytest.mark.long, id=page)
+    if page in LONG_PAGES
+    else pytest.param(page, "with_a_sweep", id=page)
+    for page in PAGES
+    if blocks(page)
+]
+"""Each page with code, and its fixture with results."""
 
 
-@pytest.mark.parametrize(("page", "results"), [opens(page) for page in PAGES if blocks(page)])
+@pytest.mark.parametrize(("page", "results"), RUNS)
 def test_the_code_of_a_page_runs(page, results, request, tmp_path, monkeypatch):
     environment = make_place(page, tmp_path, request.getfixturevalue(results))
     monkeypatch.chdir(tmp_path)
@@ -329,11 +281,6 @@ def test_the_code_of_a_page_runs(page, results, request, tmp_path, monkeypatch):
     namespace, message, printed = {"__name__": "__main__"}, None, {}
     for block in blocks(page):
         where = f"{page}:{block.line}"
-        if reason_not_to_run(page, block):
-            assert block.kind == "sh", where
-            run_command(["bash", "-n", "-c", block.text], page, block, environment)
-            message = None
-            continue
         if needs_missing_peer(block):
             compile(block.text, page, "exec")
             message = SKIPPED
@@ -348,6 +295,9 @@ def test_the_code_of_a_page_runs(page, results, request, tmp_path, monkeypatch):
             message = run_python(block, page, namespace, environment)
         elif block.kind == "sh":
             message = run_command(["bash", "-euc", block.text], page, block, environment)
+        elif block.kind == "bash":
+            run_command(["bash", "-n", "-c", block.text], page, block, environment)
+            message = None
         elif block.kind == "snakemake":
             message = run_snakefile(block, page, environment)
         elif block.kind == "text":
@@ -374,17 +324,15 @@ def test_no_page_has_code_that_is_not_fenced(page):
     assert not indented, f"{page}: {indented[0].strip()}"
 
 
-def test_what_is_not_run_is_there_and_names_what_there_is():
-    assert set(LONG_PAGES) <= set(PAGES)
-    for page, start in NOT_RUN:
-        if not (ROOT / page).exists():
+@pytest.mark.parametrize("page", PAGES)
+def test_blocks_that_are_not_run_name_existing_files_and_options(page):
+    for block in blocks(page):
+        if block.kind != "bash":
             continue
-        skipped = [block for block in blocks(page) if block.text.startswith(start)]
-        assert len(skipped) == 1, f"{page}: {len(skipped)} blocks start with {start!r}"
-        for name in re.findall(r"\b(?:benchmarks|config|profiles|docs)/[\w./]+", skipped[0].text):
+        for name in re.findall(r"\b(?:benchmarks|config|profiles|docs)/[\w./]+", block.text):
             assert (ROOT / name).exists(), f"{page}: {name}"
-        script = re.search(r"benchmarks/\w+\.py", skipped[0].text)
-        for option in re.findall(r"--\w[\w-]*", skipped[0].text) if script else ():
+        script = re.search(r"benchmarks/\w+\.py", block.text)
+        for option in re.findall(r"--\w[\w-]*", block.text) if script else ():
             assert option in (ROOT / script[0]).read_text(), f"{page}: {option}"
 
 
@@ -414,6 +362,13 @@ def test_links_lead_somewhere(page):
         assert there.is_file(), f"{page}: {target}"
         if anchor:
             assert anchor in anchors(there.relative_to(ROOT)), f"{page}: {target}"
+
+
+@pytest.mark.parametrize("page", PAGES)
+def test_files_named_on_a_page_exist(page):
+    folders = "src|tests|workflow|config|docs|benchmarks|profiles"
+    for name in re.findall(rf"`((?:{folders})/[\w./-]+)`", (ROOT / page).read_text()):
+        assert (ROOT / name).exists(), f"{page}: {name}"
 
 
 # Tables and lists of the pages against those of the package

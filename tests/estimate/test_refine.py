@@ -7,12 +7,13 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from microslip.estimate import refine as refinement
 from microslip.estimate.ladder import Ladder
 from microslip.estimate.refine import (
     READING_SAFETY,
     RUN_SHARE,
     SMALLEST_SHARE,
-    refine,
+    Levels,
     run_tolerance,
 )
 from microslip.estimate.richardson import SAFETY
@@ -22,6 +23,12 @@ from microslip.solver.run import Run
 
 EXACT, EXACT_TORQUE = 0.4, 0.7
 LADDER = Ladder(start=8, angles=0.5, steps=2)
+
+
+def refine(run, ladder, tolerance, readings=(), **energy):
+    """Refine runs in place of problems; `readings` are those of other interpolations."""
+    levels = Levels(lambda run, *place: run(*place), ladder, run, *readings)
+    return refinement.refine(levels, tolerance, **energy)
 
 
 class FakeRun:

@@ -1,18 +1,13 @@
 """Canonical texts of numbers, and the imports of the workflow during planning."""
 
 import math
-import subprocess
-import sys
-from pathlib import Path
 
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from stubs.new_process import output
 
-import microslip
 from microslip.foundation import canonical
-
-PACKAGE = Path(microslip.__file__).parent
 
 
 @pytest.mark.parametrize(
@@ -20,15 +15,11 @@ PACKAGE = Path(microslip.__file__).parent
     [
         (1, "1"),
         (1.0, "1"),
-        (0.1, "0.1"),
         (0.1 + 0.2, "0.3"),
-        (0, "0"),
         (-0.0, "0"),
         (-2.5, "-2.5"),
-        (1e-8, "1e-8"),
         (1.5e-8, "1.5e-8"),
         (1e22, "1e22"),
-        (2.15443, "2.15443"),
         (1000000, "1000000"),
     ],
 )
@@ -49,20 +40,22 @@ def test_what_is_no_finite_number_is_refused(value):
         canonical.number(value)
 
 
+ALONE = """
+import sys
+from microslip.app import plan
+from microslip.config import load
+from microslip.foundation import source_digest
+from microslip.sweeps import batches
+
+source_digest.of_solver()
+axes = {"velocity": [1], "amplitude": [1]}
+ellipse = {"motion": "elliptic:phase=30", "group": "g"}
+mapping = {"sweeps": {"bore": axes}, "extended": {"ellipse": axes | ellipse}}
+batches.points_of(load.from_mapping(mapping, ask_solver=False).sweeps["bore"])
+print([m for m in ("numpy", "scipy", "numba", "xarray", "matplotlib") if m in sys.modules])
+"""
+
+
 @pytest.mark.slow
-def test_the_workflow_reads_this_without_loading_anything_heavy():
-    heavy = ("numpy", "scipy", "numba", "xarray", "matplotlib")
-    program = (
-        "import sys; from microslip.app import plan; from microslip.config import load;"
-        "from microslip.foundation import source_digest;"
-        "source_digest.of_solver();"
-        f"print([m for m in {heavy} if m in sys.modules])"
-    )
-    process = subprocess.run(
-        [sys.executable, "-c", program],
-        capture_output=True,
-        text=True,
-        check=True,
-        env={"PYTHONPATH": str(PACKAGE.parent)},
-    )
-    assert process.stdout.strip() == "[]"
+def test_plans_and_jobs_load_nothing_heavy_that_they_do_not_need():
+    assert output(ALONE) == "[]\n"

@@ -1,11 +1,11 @@
 """The operator on rings times angles, and its resolvents, against a plain sum over modes."""
 
-import numba
 import numpy as np
 import pytest
 
 from microslip.contacts.operators import multiply
 from microslip.contacts.splitting import PENALTIES
+from microslip.foundation.compiled import kernel
 from microslip.models.contact import energy_norm
 from microslip.models.path import EULER, SDIRK2, make_path
 from microslip.models.polar.contact import PolarContact
@@ -74,7 +74,7 @@ def plain_displacement(state, cells, angles, rotates, nu, focus):
     return np.stack([u.imag, u.real])
 
 
-@numba.njit
+@kernel
 def apply_here(operators, number, field, image):
     multiply(operators, number, field, image)
 

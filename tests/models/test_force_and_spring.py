@@ -37,6 +37,14 @@ def moved(motion, poisson, contact):
     return displacement, of_points
 
 
+def contact_and_path(name):
+    """A contact and the path of its motion."""
+    build, motion, poisson = CONTACTS[name]
+    contact = build()
+    displacement, _ = moved(motion_named(motion), poisson, contact)
+    return contact, make_path(displacement, half_period_phases(8))
+
+
 def plain(contact):
     """Matrix, weights and bound for the reference march."""
     shape = forward_slip(contact).shape
@@ -74,9 +82,7 @@ def start_again(contact, path, body, march):
 
 @pytest.mark.parametrize("name", CONTACTS)
 def test_a_march_with_a_guess_is_the_same(name):
-    build, motion, poisson = CONTACTS[name]
-    contact, label = build(), motion_named(motion)
-    path = make_path(moved(label, poisson, contact)[0], half_period_phases(8))
+    contact, path = contact_and_path(name)
     body = Body(*BODIES["a spring and a mass"])
     first = start_again(contact, path, body, None)
     again = start_again(contact, path, body, first)
@@ -86,9 +92,7 @@ def test_a_march_with_a_guess_is_the_same(name):
 
 @pytest.mark.parametrize("name", CONTACTS)
 def test_the_force_on_a_contact_without_mass_is_the_one_that_pulls(name):
-    build, motion, poisson = CONTACTS[name]
-    contact, label = build(), motion_named(motion)
-    path = make_path(moved(label, poisson, contact)[0], half_period_phases(8))
+    contact, path = contact_and_path(name)
     start = 0.5 * forward_slip(contact)
     result = contact.march(path, start, 1e-11, body=Body(0.0, 0.0, 0.0, 0.6), start=START)
     assert result.forces[1:, 0] == pytest.approx(0.6, abs=1e-10)
@@ -144,9 +148,7 @@ def test_a_body_on_a_stuck_contact_swings_as_an_oscillator_does(integrator):
 @pytest.mark.parametrize("name", CONTACTS)
 def test_a_very_stiff_or_heavy_body_follows_the_path(name, large):
     """x is at most the force over the stiffness, or over the mass times half the time squared."""
-    build, motion, poisson = CONTACTS[name]
-    contact, label = build(), motion_named(motion)
-    path = make_path(moved(label, poisson, contact)[0], half_period_phases(8))
+    contact, path = contact_and_path(name)
     start, heavy = 0.5 * forward_slip(contact), 1e7
     numbers = {"stiffness": 0.0, "damping": 0.0, "mass": 0.0, "load": 0.0} | {large: heavy}
     result = contact.march(path, start, 1e-11, body=Body(**numbers))

@@ -13,7 +13,7 @@ from microslip.solver.period_map import Goal, PeriodMap
 from microslip.solver.periodic import find_periodic_state
 
 CONTACTS = small_contacts.CONTACTS | {
-    "rings, ahead and aside": (lambda: RadialContact.resolved(5, 0.7), "elliptic", 0.0),
+    "rings, ahead and aside": (lambda: RadialContact.resolved(5, 0.7), "elliptic", 0.0)
 }
 VELOCITY, AMPLITUDE = 0.3, 0.8
 

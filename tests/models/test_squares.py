@@ -1,7 +1,6 @@
 """Squares: the compiled convolution against direct sums, and the step solver against a plain
 one."""
 
-import numba
 import numpy as np
 import pytest
 from reference_march import solved_stage
@@ -10,6 +9,7 @@ from scipy.integrate import dblquad
 from microslip.contacts.coulomb import coulomb_residual, project
 from microslip.contacts.descent import MOST_ITERATIONS
 from microslip.contacts.step import Balance, Fields, Step, solve_step
+from microslip.foundation.compiled import kernel
 from microslip.models.contact import forward_slip
 from microslip.models.path import EULER, SDIRK2, half_period_phases, make_path
 from microslip.models.squares.contact import CartesianContact
@@ -125,7 +125,7 @@ def plain_step(contact, nu, b):
 NO_BODY = Balance(0.0, 0.0, np.empty((0, 2, 0)), np.empty(0))
 
 
-@numba.njit
+@kernel
 def solve_here(system, balance, step, fields):
     return solve_step(system, balance, step, fields)
 
@@ -165,10 +165,7 @@ def test_steps_are_solved_down_to_rounding(size, nu, rng):
     forward, lateral, angle = size * rng.normal(size=3)
     b = contact.displacement(before)
     b += np.stack(
-        [
-            forward + angle * contact.lateral_position,
-            lateral - angle * contact.forward_position,
-        ]
+        [forward + angle * contact.lateral_position, lateral - angle * contact.forward_position]
     )
     q, slip, residual, iterations = solved(contact, b, before, 1e-12)
     assert residual <= 1e-12

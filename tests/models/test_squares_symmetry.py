@@ -174,8 +174,7 @@ def test_they_stand_side_by_side(kind, rng):
 @pytest.mark.slow
 @pytest.mark.parametrize("velocity", [0.0, 0.2])
 @pytest.mark.parametrize(
-    "motion, nu, images",
-    [("transverse", 0.0, 4), (LOOP, 0.0, 4), (LOOP, 0.3, 2), ("bore", 0.3, 2)],
+    "motion, nu, images", [("transverse", 0.0, 4), (LOOP, 0.0, 4), (LOOP, 0.3, 2), ("bore", 0.3, 2)]
 )
 def test_a_run_finds_what_one_on_all_squares_does(motion, nu, images, velocity, monkeypatch):
     problem = Problem(motion_named(motion), velocity, 0.6, nu, pressure_named(ELLIPSE))

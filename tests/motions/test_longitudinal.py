@@ -9,15 +9,7 @@ import microslip
 from microslip.theory import paper
 from microslip.theory.masing import longitudinal
 
-POINTS = [
-    (0.1, 0.5),
-    (0.01, 0.5),
-    (0.5, 2.0),
-    (0.1, 1.0),
-    (0.05, 3.0),
-    (0.3, 0.31),
-    (0.001, 0.2),
-]
+POINTS = [(0.1, 0.5), (0.01, 0.5), (0.5, 2.0), (0.1, 1.0), (0.05, 3.0), (0.3, 0.31), (0.001, 0.2)]
 
 
 def slowly(velocity, amplitude):

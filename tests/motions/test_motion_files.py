@@ -1,4 +1,4 @@
-"""Motions from files: the answers of named motions, identity by content, formats and bad input."""
+"""Motions from files: samples, identity by content, formats and bad input."""
 
 import json
 
@@ -10,7 +10,7 @@ from microslip.app.cli import main
 from microslip.foundation.errors import InputError
 from microslip.foundation.named_files import DIGITS
 from microslip.motions.by_name import motion_named
-from microslip.theory import hertz
+from microslip.pressures.hertz import HERTZ
 
 PHASE = np.linspace(0.0, 2.0 * np.pi, 64, endpoint=False)
 SINE = np.sin(PHASE)
@@ -23,54 +23,22 @@ def file_of(path, **columns):
     return f"file:{path}"
 
 
-CASES = {
-    "transverse": ({"lateral": SINE}, "transverse", {"velocity": 0.1, "amplitude": 1.0}),
-    "static limit": ({"lateral": SINE}, "transverse", {"velocity": 0.0, "amplitude": 0.5}),
-    "force": ({"lateral": SINE}, "transverse", {"force": 0.5, "amplitude": 1.0}),
-    "spring": (
-        {"forward": SINE},
-        "longitudinal",
-        {"velocity": 0.1, "amplitude": 1.0, "stiffness": 1.0},
-    ),
-    "load": ({"load": 1.0 + SINE}, "normal", {"velocity": 0.2, "amplitude": 0.7}),
-    "two tones": (
-        {"forward": 0.5 * np.cos(2.0 * PHASE), "lateral": SINE},
-        "elliptic:forward=0.5,forward_cycles=2",
-        {"velocity": 0.1, "amplitude": 1.0},
-    ),
-}
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize("case", CASES)
-def test_a_file_gets_the_answer_of_the_named_motion(case, tmp_path):
-    columns, name, place = CASES[case]
-    other = microslip.solve(file_of(tmp_path / "stroke.csv", **columns), **place)
-    named = microslip.solve(name, **place)
-    assert other.converged
-    value, error = "mu_macro", "mu_macro_error"
-    if "force" in place:
-        value, error = "velocity", "velocity_error"
-    left = getattr(named, error) + getattr(other, error)
-    assert abs(getattr(named, value) - getattr(other, value)) <= left
-
-
-def test_a_file_of_a_rotation_gets_the_answer_of_the_bore(tmp_path):
-    # the velocity of a bore is over omega and the angle, that of a file over omega u_lim
-    name = file_of(tmp_path / "stroke.csv", angle=float(hertz.bore_angle(0.5)) * SINE)
-    problem = microslip.Problem(microslip.Bore(), velocity=0.3, amplitude=0.5)
-    named = microslip.solve(problem)
-    other = microslip.solve(name, velocity=problem.drift, amplitude=1.0)
-    assert abs(named.mu_macro - other.mu_macro) <= named.mu_macro_error + other.mu_macro_error
-
-
-def test_few_samples_in_a_file_are_a_source_of_error(tmp_path):
-    zigzag = 2.0 / np.pi * np.arcsin(SINE)
-    name = file_of(tmp_path / "stroke.csv", lateral=zigzag[::8])
-    coarse = microslip.solve(name, velocity=0.1, amplitude=1.0, tolerance=0.05)
-    exact = microslip.solve("zigzag", velocity=0.1, amplitude=1.0)
-    assert coarse.answer.by_source["model"] > 0.0
-    assert abs(coarse.mu_macro - exact.mu_macro) <= coarse.mu_macro_error + exact.mu_macro_error
+@pytest.mark.parametrize(
+    "columns",
+    [
+        {"lateral": SINE},
+        {"forward": np.cos(2.0 * PHASE), "lateral": SINE},
+        {"angle": SINE, "load": 1.0 + SINE},
+        {"indentation": 1.0 + SINE},
+    ],
+    ids=" ".join,
+)
+def test_a_file_is_the_motion_of_the_samples_in_its_columns(columns, tmp_path):
+    read = motion_named(file_of(tmp_path / "stroke.csv", **columns))
+    samples = microslip.Sampled.of_columns(columns)
+    assert read.rows == pytest.approx(samples.rows, abs=1e-14)
+    assert (read.loads, read.rotates) == (samples.loads, samples.rotates)
+    assert read.depth(0.3, 0.7, HERTZ) == pytest.approx(samples.depth(0.3, 0.7, HERTZ))
 
 
 def test_the_command_line_takes_a_file(tmp_path, capsys):

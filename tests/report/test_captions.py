@@ -36,13 +36,6 @@ def test_a_caption_shows_a_title_verbatim(title):
     assert title.replace("<", "&lt;").replace(">", "&gt;") in shown
 
 
-def test_figure_5_starts_from_full_forward_slip():
-    number = SimpleNamespace(velocity=0.8)
-    shown = caption("fig5_transients", histories=SimpleNamespace(transients=number))
-    assert "full forward slip" in " ".join(shown.split())
-    assert "lateral slip" not in shown
-
-
 def test_images_of_the_pages_are_made_from_figures_and_are_smaller(tmp_path, monkeypatch):
     make = runpy.run_path(str(ROOT / "docs" / "make_images.py"))
     figures = tmp_path / "figures"

@@ -10,9 +10,11 @@ from importlib import import_module
 import pytest
 from stubs.claims_stub import answered, configured
 
+import microslip
 from microslip.app import cli
-from microslip.foundation.canonical import number
-from microslip.report import claims_page, study_page
+from microslip.foundation.errors import InputError
+from microslip.pressures.hertz import HERTZ
+from microslip.report import claims_page, dataset_page
 from microslip.studies import registry
 from microslip.studies.claims.runs import command
 
@@ -64,21 +66,25 @@ def test_numbers_and_runs_are_those_of_the_dataset(page, data):
 
 
 @pytest.mark.parametrize("request_", [r for r in requests() if r["kind"] == "point"][::7], ids=str)
-def test_the_command_of_a_point_requests_that_point(request_):
+def test_the_command_of_a_point_requests_that_point(request_, monkeypatch):
     program, *words = shlex.split(command(request_))
     assert program == "microslip"
-    words, motion = cli._split_motion(words)
-    options = cli.build_parser("point").parse_args(words)
-    assert motion == request_["motion"]
-    assert options.pressure == request_.get("pressure", options.pressure)
-    amplitude = getattr(options, "amplitude", None)
-    parsed = {n: number(float(getattr(options, n))) for n in ("velocity", "poisson", "tolerance")}
-    parsed["amplitude"] = None if amplitude is None else number(float(amplitude))
-    parsed["model"] = options.model
-    for name in ("cells", "steps"):
-        text = getattr(options, name)
-        parsed[name] = None if text is None else int(text)
-    assert parsed == {name: request_[name] for name in parsed}
+    signature, calls = inspect.signature(microslip.solve), []
+
+    def solve(*values, **named):
+        calls.append(signature.bind(*values, **named))
+        raise InputError("velocity", None, "no result in this test")
+
+    monkeypatch.setattr(microslip, "solve", solve)
+    assert cli.main(words) == 2
+    (call,) = calls
+    call.apply_defaults()
+    for name in ("velocity", "amplitude", "poisson", "tolerance"):
+        value = request_[name]
+        assert call.arguments[name] == (None if value is None else float(value))
+    for name in ("motion", "model", "cells", "steps"):
+        assert call.arguments[name] == request_[name]
+    assert call.arguments["pressure"] == request_.get("pressure", HERTZ)
 
 
 @pytest.mark.parametrize("kind", ["history", "field", "patches", "run"])
@@ -111,8 +117,8 @@ def test_text_of_a_dataset_is_escaped(data):
     assert "&lt;b&gt;&amp;" in page
 
 
-@pytest.mark.parametrize(("study", "tag"), [("claims", "<h2"), ("stability", "<pre>")])
-def test_the_page_of_a_study_is_written_as_html(study, tag, data, tmp_path):
-    study_page.write(study, tmp_path / "page.html", data, ["a line"])
+@pytest.mark.parametrize(("module", "tag"), [(claims_page, "<h2"), (dataset_page, "<pre>")])
+def test_a_page_is_written_as_html(module, tag, data, tmp_path):
+    module.write(tmp_path / "page.html", data, ["a line"])
     text = (tmp_path / "page.html").read_text(encoding="utf-8")
     assert text.startswith("<!DOCTYPE html>") and tag in text and "a line" in text

@@ -8,7 +8,7 @@ import pytest
 from stubs import explorer_stub as stub
 from stubs.in_node import needs_node, page_says
 from stubs.unpacked_period import unpacked
-from stubs.workflow_project import AXES, ROOT, Project, jobs_in
+from stubs.workflow_project import ROOT, jobs_in
 
 from microslip.config import load
 from microslip.datasets.catalogue import FORMS
@@ -257,19 +257,6 @@ def test_text_in_a_dataset_cannot_end_the_script(made):
     assert page.page(content).count("</script>") == page.page(made[2]).count("</script>")
 
 
-def test_a_period_that_belongs_to_no_point_is_refused(made):
-    datasets, records, _ = made
-    stray = records["bore"][0] | {"request": records["bore"][0]["request"] | {"velocity": "7"}}
-    with pytest.raises(ValueError, match="a period at '7', which is not on the map"):
-        payload.build({"bore": datasets["bore"]}, {"bore": [stray]})
-
-
-def test_a_dataset_with_a_missing_variable_is_refused(made):
-    datasets, records, _ = made
-    with pytest.raises(ValueError, match="explorer: dataset 'bore' has no variable 'mu_static'"):
-        payload.build({"bore": datasets["bore"].drop_vars("mu_static")}, records)
-
-
 def test_the_log_names_periods_that_did_not_converge(made):
     lines = list(explorer.report(made[1]))
     assert lines[0] == "explorer: transverse: 6 periods, 1 not converged"
@@ -291,17 +278,3 @@ def test_the_workflow_makes_the_page_and_makes_it_again_only_when_it_changes(fin
     assert project.planned("explorer") == {}
     project.append("src/microslip/report/explorer/disc.js", "\n// Another look.\n")
     assert project.planned("explorer") == {"explore": 1, "explorer": 1}
-
-
-@pytest.mark.slow
-def test_without_a_map_there_is_nothing_to_explore(tmp_path):
-    project = Project(tmp_path)
-    project.configure({"sweeps": {"transverse": AXES | {"amplitude": [1]}}})
-    process = project.snakemake("explorer", "-j2", "--configfile", "tiny.yaml")
-    assert process.returncode != 0
-    assert (
-        process.stderr.strip()
-        .split("\n")[-1]
-        .startswith("Error in tiny.yaml: sweeps: no map for the explorer")
-    )
-    assert "Traceback" not in process.stderr

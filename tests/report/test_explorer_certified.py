@@ -7,11 +7,9 @@ from stubs import certified_stub
 from stubs.in_node import answers, needs_node
 
 from microslip.config import load
-from microslip.datasets import certified_map
 from microslip.datasets.query.answers import SOURCES
 from microslip.foundation.errors import InputError
 from microslip.report.explorer import certified
-from microslip.sweeps.batches import key_of
 from microslip.theory import masing, paper
 
 pytestmark = [pytest.mark.slow, needs_node]
@@ -42,12 +40,10 @@ def made(map_, friction, failed=None):
         place = float(request["velocity"]), float(request["amplitude"])
         if map_.poisson:
             place += (float(request["poisson"]),)
-        result = {"mu_macro": friction(*place), "mu_macro_error": 1e-4, "converged": True}
-        if failed is not None and failed(*place):
-            result = {"converged": False}
-        return {"key": key_of(request), "request": request, "result": result, "versions": {}}
+        is_known = failed is None or not failed(*place)
+        return certified_stub.record(request, friction(*place) if is_known else None)
 
-    return certified_map.build(map_, certified_stub.played(map_, answered))
+    return certified_stub.built(map_, answered)
 
 
 def both_answers(dataset, velocity, amplitude, poisson=None):

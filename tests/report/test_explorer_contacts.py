@@ -11,14 +11,12 @@ from stubs import certified_stub
 from stubs.in_node import answers, needs_node
 
 import microslip
-from microslip.datasets import certified_map
 from microslip.datasets.query.accessor import Friction
 from microslip.estimate.estimate import Estimate
 from microslip.foundation.errors import InputError
 from microslip.report.explorer import certified, si_form
 from microslip.si.materials import MATERIALS
 from microslip.si.quantities import read
-from microslip.sweeps.batches import key_of
 
 pytestmark = [pytest.mark.slow, needs_node]
 SCRIPTS = ("certified.js", "elliptic.js", "limits.js", "beyond.js", "contact.js")
@@ -92,15 +90,10 @@ def rises(velocity, amplitude):
     return (0.1 + velocity) / (0.1 + velocity + amplitude / (1 + amplitude))
 
 
-def made(map_, answered):
-    return certified_map.build(map_, certified_stub.played(map_, answered))
-
-
 def made_up(request):
     softer = 1 - 0.3 * float(request["poisson"])
     place = float(request["velocity"]), float(request["amplitude"]) / softer
-    result = {"mu_macro": rises(*place), "mu_macro_error": 1e-4, "converged": True}
-    return {"key": key_of(request), "request": request, "result": result, "versions": {}}
+    return certified_stub.record(request, rises(*place))
 
 
 MAPS = {
@@ -113,7 +106,7 @@ MAPS = {
 @cache
 def map_of(motion, which):
     """A certified map with a made-up friction."""
-    return made(certified_stub.configured(motion, **MAPS[which]), made_up)
+    return certified_stub.built(certified_stub.configured(motion, **MAPS[which]), made_up)
 
 
 @pytest.fixture

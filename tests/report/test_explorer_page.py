@@ -7,10 +7,8 @@ from stubs import explorer_stub as stub
 from stubs.in_node import needs_node, page_says
 
 from microslip.config import load
-from microslip.datasets import certified_map
 from microslip.datasets.query.accessor import Friction
 from microslip.report.explorer import payload
-from microslip.sweeps.batches import key_of
 from microslip.theory import paper
 
 pytestmark = [pytest.mark.slow, needs_node]
@@ -47,17 +45,14 @@ def configured():
 
 def smooth(request):
     place = float(request["velocity"]), float(request["amplitude"]) ** 1.5
-    mu = float(paper.large_amplitude_transverse(*place))
-    result = {"mu_macro": mu, "mu_macro_error": 1e-4, "converged": True}
-    return {"key": key_of(request), "request": request, "result": result, "versions": {}}
+    return certified_stub.record(request, float(paper.large_amplitude_transverse(*place)))
 
 
 @pytest.fixture(scope="module")
 def certified():
     """A certified map of transverse oscillation with a made-up friction."""
     axes = {"velocity": [0.001, 10], "amplitude": [0, 3], "adaptive": {"error": 1e-2}}
-    map_ = certified_stub.configured("transverse", **axes)
-    return certified_map.build(map_, certified_stub.played(map_, smooth))
+    return certified_stub.built(certified_stub.configured("transverse", **axes), smooth)
 
 
 @pytest.fixture(scope="module")
@@ -243,8 +238,7 @@ def test_a_link_restores_the_state(made):
     )
     link, contact = before[-1]
     (values,) = page_says(
-        made[1],
-        f"readLink('#{link}'), [linkOf(STATE), STATE.contact, element('si-load').value]",
+        made[1], f"readLink('#{link}'), [linkOf(STATE), STATE.contact, element('si-load').value]"
     )
     assert values == [link, contact, "7.5"]
     (values,) = page_says(made[1], "readLink('#sweep=none&amplitude=x'), STATE.shown.name")

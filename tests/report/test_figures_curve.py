@@ -6,7 +6,7 @@ import xarray as xr
 
 from microslip.report.figures import drawing
 
-pytestmark = pytest.mark.slow  # drawing takes a second
+pytestmark = [pytest.mark.slow, pytest.mark.usefixtures("without_layout")]
 
 
 def curves(speeds=(0.001, 0.01, 0.1), loads=(5.0, 10.0)):

@@ -3,26 +3,23 @@
 import numpy as np
 import pytest
 from stubs.drives_stub import FORCES, drift, pairs, pulled
+from stubs.figures_stub import artists
 
 from microslip.report.figures import drawing
 
-pytestmark = pytest.mark.slow  # drawing takes one to two seconds
-
-
-def by_gid(axes, gid):
-    return [artist for artist in axes.get_children() if artist.get_gid() == gid]
+pytestmark = [pytest.mark.slow, pytest.mark.usefixtures("without_layout")]
 
 
 def test_maps_of_drift_show_threshold_rest_and_the_rigid_contact():
     datasets = {"drift_transverse": drift("transverse"), "drift_bore": drift("bore")}
     figure = drawing.draw("drift_maps", datasets)
     for axes, dataset in zip(figure.axes, datasets.values(), strict=False):
-        (line,) = by_gid(axes, "mu_static")
+        (line,) = artists(axes, "mu_static")
         force, across = line.get_data()
         assert np.array_equal(force, dataset["mu_static_curve"])
         assert np.array_equal(across, dataset["amplitude_curve"])
-        assert by_gid(axes, "stays")
-        computed, rigid = by_gid(axes, "contours")[0], by_gid(axes, "velocity_large_amplitude")[0]
+        assert artists(axes, "stays")
+        computed, rigid = artists(axes, "contours")[0], artists(axes, "velocity_large_amplitude")[0]
         # the two fields, and so the lines, are equal away from the threshold
         lines = (levels.get_paths()[1].vertices for levels in (computed, rigid))
         tops = [line[line[:, 1].argmax()] for line in lines]
@@ -35,7 +32,7 @@ def test_points_of_a_map_that_did_not_converge_are_marked(panel):
     broken = list(datasets.values())[panel]
     broken["converged"][2, 3] = 0
     figure = drawing.draw("drift_maps", datasets)
-    marks = [by_gid(axes, "unconverged")[0].get_xydata() for axes in figure.axes[:2]]
+    marks = [artists(axes, "unconverged")[0].get_xydata() for axes in figure.axes[:2]]
     plain, marked = marks[1 - panel], marks[panel]
     assert len(plain) == 0
     (legend,) = figure.legends
@@ -47,33 +44,26 @@ def test_the_points_of_all_drives_are_drawn():
     datasets = pulled()
     figure = drawing.draw("drives", datasets)
     left, right = figure.axes
-    (line,) = by_gid(left, "velocity")
+    (line,) = artists(left, "velocity")
     assert np.array_equal(line.get_ydata(), datasets["transverse"]["mu_macro"][0])
-    soft, stiff, force = by_gid(left, "computed")
+    soft, stiff, force = artists(left, "computed")
     assert soft.get_ydata() == pytest.approx(stiff.get_ydata() - 0.1)
     # the abscissa of a force is its mean velocity; here it lies on the curve
     assert force.get_ydata() == pytest.approx(force.get_xdata() / (1 + force.get_xdata()))
-    (level,) = by_gid(right, "velocity")
+    (level,) = artists(right, "velocity")
     assert level.get_ydata()[0] == pytest.approx(0.1 / 1.1)
 
 
 def test_a_pair_is_drawn_beside_one_contact_and_its_closed_form():
     left, right = drawing.draw("pairs", pairs()).figure.axes
-    alone, other = by_gid(left, "computed")
-    soft, stiff, force = by_gid(right, "computed")
+    alone, other = artists(left, "computed")
+    soft, stiff, force = artists(right, "computed")
     assert np.array_equal(alone.get_ydata(), other.get_ydata())
     assert soft.get_ydata() == pytest.approx(0.5 * stiff.get_ydata())
     assert stiff.get_label() == "constant velocity"
-    (line,) = by_gid(right, "antiphase")
+    (line,) = artists(right, "antiphase")
     velocity, bound = line.get_data()
     # (2/pi) P^(2/3) at amplitude 1
     assert velocity == pytest.approx(2.0 / np.pi * bound ** (2 / 3))
     on_the_line = 2.0 / np.pi * force.get_ydata() ** (2 / 3)
     assert force.get_xdata() == pytest.approx(1.1 * on_the_line)
-
-
-def test_a_sweep_without_the_amplitude_of_the_drives_is_refused():
-    datasets = pulled()
-    datasets["transverse"] = datasets["transverse"].assign_coords(amplitude=[1.1])
-    with pytest.raises(ValueError, match="amplitude 1"):
-        drawing.draw("drives", datasets)

@@ -15,7 +15,7 @@ from matplotlib.text import Text
 from stubs import certified_stub, fit_stub
 from stubs import figures_stub as stub
 
-from microslip.report.figures import drawing
+from microslip.report.figures import drawing, panels
 from microslip.report.figures import style as look
 
 pytestmark = pytest.mark.slow  # drawing takes one to two seconds
@@ -103,11 +103,11 @@ def test_it_fits_a_page_and_no_texts_or_legends_overlap(name):
     shared = np.minimum(high[:, None], high) - np.maximum(low[:, None], low)
     meet = np.triu((shared > 0.02 * figure.dpi).all(axis=2), 1)
     assert not [(shown[i].get_text(), shown[j].get_text()) for i, j in np.argwhere(meet)]
-    panels = [axes.get_window_extent().padded(-2) for axes in figure.findobj(Axes) if axes.axison]
+    frames = [axes.get_window_extent().padded(-2) for axes in figure.findobj(Axes) if axes.axison]
     legends = [legend for legend in figure.findobj(Legend) if name != "fit"]  # inside
     boxes = [legend.get_window_extent() for legend in legends]
     for index, box in enumerate(boxes):
-        assert not any(box.overlaps(other) for other in [*panels, *boxes[index + 1 :]])
+        assert not any(box.overlaps(other) for other in [*frames, *boxes[index + 1 :]])
 
 
 LETTER = re.compile(r"^\$\\bf\{\((\w+)\)\}\$")
@@ -118,9 +118,67 @@ def test_its_panels_have_letters_and_its_axes_quantities_with_units(name):
     figure = drawn(name)
     heads = [text for text in figure.findobj(Text) if r"\bf{(" in text.get_text()]
     letters = [LETTER.match(text.get_text())[1] for text in heads if text.get_visible()]
-    panels = [a for a in figure.findobj(Axes) if a.axison and a.get_label() != "<colorbar>"]
+    frames = [a for a in figure.findobj(Axes) if a.axison and a.get_label() != "<colorbar>"]
     assert sorted(letters) == look.letters(len(letters))
-    assert len(letters) == len(panels) or (len(panels) == 1 and not letters)
-    for label in filter(None, (f() for a in panels for f in (a.get_xlabel, a.get_ylabel))):
+    assert len(letters) == len(frames) or (len(frames) == 1 and not letters)
+    for label in filter(None, (f() for a in frames for f in (a.get_xlabel, a.get_ylabel))):
         has_unit = re.search(r"\((s|bytes|dimensionless|degrees|m?N|mm/s)\)", label)
         assert has_unit or re.search(r"\$[^$]*/[^$]*\$|tilde", label) or "atlas" in name, label
+
+
+@pytest.mark.long
+def test_labels_of_tolerances_hide_no_markers():
+    figure = drawn("accuracy_vs_cost")
+    labels = stub.artists(figure, "label")
+    assert labels
+    for axes in (label.axes for label in labels):
+        lines = [line for line in axes.get_lines() if " " in (line.get_gid() or "")]
+        pixels = axes.transData.transform(np.concatenate([line.get_xydata() for line in lines]))
+        for label in stub.artists(axes, "label"):
+            assert label.get_text().startswith("$10^{-")
+            assert label.get_window_extent().count_contains(pixels) == 0
+
+
+@pytest.mark.parametrize("points", [1, 3])
+def test_any_number_of_points_has_room_for_panels_and_legends(points):
+    accuracy = FIGURES["accuracy_vs_cost"][1]["accuracy_cost"]
+    names = accuracy["point"].values[:points]
+    data = accuracy.isel(trial=np.isin(accuracy["trial_point"], names)).sel(point=names)
+    figure = drawing.draw("accuracy_vs_work", {"accuracy_cost": data})
+    frames = [axes.get_window_extent() for axes in figure.axes if axes.axison]
+    legends = [legend.get_window_extent() for legend in figure.findobj(Legend)]
+    assert len(frames) == points and len(legends) == 2
+    for index, box in enumerate(legends):
+        assert not any(box.overlaps(other) for other in [*frames, *legends[index + 1 :]])
+    with pytest.raises(ValueError, match="no points or no trials"):
+        drawing.draw("accuracy_vs_work", {"accuracy_cost": data.isel(trial=[])})
+
+
+@pytest.mark.long
+@pytest.mark.filterwarnings("ignore:Glyph")
+def test_unknown_characters_and_long_words_fit_the_page(tmp_path):
+    maps = {"a": stub.spanning("\u4e2d\u6587"), "b": stub.spanning("x" * 100)}
+    figure = drawing.draw("extended_motions", maps)
+    drawing.save(figure, tmp_path / "maps.pdf")
+    figure.draw_without_rendering()
+    assert figure.get_tightbbox().x1 <= figure.get_size_inches()[0] + 0.02
+
+
+@pytest.mark.parametrize(
+    ("low", "high"), [(0.1, 0.13), (0.05, 0.2), (0.02, 0.6), (1e-3, 10), (2e-5, 3e-5), (1e-6, 1e6)]
+)
+@pytest.mark.parametrize("width", [1.6, 3.0])
+def test_labels_of_a_logarithmic_axis_do_not_collide(low, high, width):
+    with look.style():
+        figure = look.new_figure(width, 1.5)
+        axes = figure.subplots()
+        panels.logarithmic(axes, (low, high))
+        figure.draw_without_rendering()
+        shown = [
+            tick.label1.get_window_extent()
+            for tick in (*axes.xaxis.get_major_ticks(), *axes.xaxis.get_minor_ticks())
+            if tick.label1.get_text() and low * 0.9999 <= tick.get_loc() <= high * 1.0001
+        ]
+        assert len(shown) >= 2
+        shown.sort(key=lambda box: box.x0)
+        assert all(a.x1 < b.x0 for a, b in zip(shown, shown[1:], strict=False))

@@ -2,27 +2,24 @@
 
 import numpy as np
 import pytest
+from stubs.figures_stub import artists
 from stubs.fit_stub import fitted
 
 from microslip.report.figures import drawing
 
-pytestmark = pytest.mark.slow  # drawing takes a second
-
-
-def lines(axes, gid):
-    return [line for line in axes.get_lines() if line.get_gid() == gid]
+pytestmark = [pytest.mark.slow, pytest.mark.usefixtures("without_layout")]
 
 
 def test_rows_model_and_residuals_have_the_values_of_the_dataset():
     dataset = fitted()
     upper, lower = drawing.draw("fit", {"fit": dataset}).axes
-    assert len(lines(upper, "fitted")) == 2 and lower.get_xscale() == "log"
-    drawn = np.concatenate([line.get_xydata() for line in lines(upper, "fitted")])
+    assert len(artists(upper, "fitted")) == 2 and lower.get_xscale() == "log"
+    drawn = np.concatenate([line.get_xydata() for line in artists(upper, "fitted")])
     # in mm/s and N; the model curve has more points than there are rows
     expected = np.stack([1e3 * dataset.curve_speed_m_s, dataset.curve_fitted], axis=1)
     assert drawn == pytest.approx(expected)
     assert lower.get_xlabel() == "speed (mm/s)" and upper.get_ylabel() == "friction force (N)"
-    left = np.concatenate([line.get_ydata() for line in lines(lower, "residual")])
+    left = np.concatenate([line.get_ydata() for line in artists(lower, "residual")])
     assert left == pytest.approx(dataset.residual.values)
     titles = [text.get_text() for text in upper.get_legend().get_texts()]
     assert titles == ["amplitude 300 nm", "amplitude 600 nm", "lines: model"]
@@ -42,7 +39,7 @@ def test_rows_with_more_conditions_than_line_styles_are_one_series():
     dataset["amplitude_si"] = "row", np.repeat(np.arange(1.0, 11.0), 2)
     dataset["speed_m_s"] = "row", np.linspace(0.0, 1.0, 20)
     upper, lower = drawing.draw("fit", {"fit": dataset}).axes
-    (dashes,) = lines(upper, "fitted")  # rows of different conditions are not connected
+    (dashes,) = artists(upper, "fitted")  # rows of different conditions are not connected
     assert dashes.get_linestyle() == "None" and dashes.get_marker() == "_"
     assert dashes.get_ydata() == pytest.approx(dataset.fitted.values)
     assert lower.get_xscale() == "linear"

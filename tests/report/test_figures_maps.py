@@ -15,21 +15,17 @@ from matplotlib.path import Path
 from matplotlib.text import Text
 from scipy.ndimage import binary_dilation
 from stubs import figures_stub as stub
-from stubs.figures_stub import VELOCITY, artists
+from stubs.figures_stub import VELOCITY, artists, words
 
 from microslip.datasets.query import accessor
 from microslip.datasets.query.surface import Surface
 from microslip.motions.by_name import MOTIONS, motion_named
-from microslip.report.figures import drawing, groups, map_panel, panels, signed
+from microslip.report.figures import drawing, groups, map_panel, signed
 from microslip.report.figures import style as look
 from microslip.report.figures.formulas import mathtext
 from microslip.theory import paper
 
-pytestmark = pytest.mark.slow  # drawing takes one to two seconds
-
-
-def words(figure) -> str:
-    return " ".join(text.get_text() for text in figure.findobj(Text))
+pytestmark = [pytest.mark.slow, pytest.mark.usefixtures("without_layout")]
 
 
 def maps_in(figure) -> list:
@@ -214,6 +210,7 @@ def pixels(figure):
     return np.asarray(canvas.buffer_rgba())[..., :3].astype(int)
 
 
+@pytest.mark.long
 def test_points_are_drawn_neither_over_a_number_nor_close_to_its_letters():
     dense = mapped(40, 40)
     dense["mu_macro"][0, 0] = 1.0  # a jump, so that the points are drawn
@@ -238,32 +235,11 @@ def test_points_are_drawn_neither_over_a_number_nor_close_to_its_letters():
     assert behind > 100 and visible < 0.01 * behind  # edges of letters are blurred
 
 
-@pytest.mark.parametrize(
-    ("low", "high"), [(0.1, 0.13), (0.05, 0.2), (0.02, 0.6), (1e-3, 10), (2e-5, 3e-5), (1e-6, 1e6)]
-)
-@pytest.mark.parametrize("width", [1.6, 3.0])
-def test_labels_of_a_logarithmic_axis_do_not_collide(low, high, width):
-    with look.style():
-        figure = look.new_figure(width, 1.5)
-        axes = figure.subplots()
-        axes.set(xscale="log", xlim=(low, high))
-        panels.logarithmic(axes.xaxis)
-        figure.draw_without_rendering()
-        shown = [
-            tick.label1.get_window_extent()
-            for tick in (*axes.xaxis.get_major_ticks(), *axes.xaxis.get_minor_ticks())
-            if tick.label1.get_text() and low * 0.9999 <= tick.get_loc() <= high * 1.0001
-        ]
-        assert len(shown) >= 2
-        shown.sort(key=lambda box: box.x0)
-        assert all(a.x1 < b.x0 for a, b in zip(shown, shown[1:], strict=False))
-
-
 # Groups of maps
 
 
-def test_a_group_is_drawn_from_its_own_datasets_with_one_scale_and_shared_labels():
-    data = {"s": stub.static("still"), "b": stub.spanning("second"), "a": stub.spanning("first")}
+def test_a_group_is_drawn_with_one_scale_and_shared_labels():
+    data = {"b": stub.spanning("second"), "a": stub.spanning("first")}
     figure = drawing.draw("extended_motions", data)
     titles = [axes.get_title(loc="left") for axes in maps_in(figure)]
     assert [title.split()[-1] for title in titles] == ["second", "first"]
@@ -308,7 +284,7 @@ def test_all_of_poissons_ratios_of_a_group_are_drawn():
     labels = [text.get_text() for text in legend.get_texts()]
     assert labels == [r"a, $\nu = 0$", r"a, $\nu = 0.3$", "b"]
     # Up to three datasets show the effect of the ratios; more have a map for each ratio.
-    for count, differences, drawn in ((2, 2, 4), (4, 0, 8)):
+    for count, differences, drawn in ((1, 1, 2), (4, 0, 8)):
         figure = drawing.draw("extended_motions", {f"m{k}": two for k in range(count)})
         labels = [axes.get_ylabel() for axes in figure.axes]
         assert sum("less that" in label for label in labels) == differences
@@ -368,24 +344,15 @@ def drawn_words(figure):
     return [" ".join(text.replace(r"\$", "$").split()) for text in plain]
 
 
-def test_titles_are_drawn_verbatim(tmp_path):
+def test_titles_are_drawn_verbatim():
     maps = {f"m{k}": stub.spanning(title) for k, title in enumerate(TITLES)}
     figure = drawing.draw("extended_motions", maps)
     assert set(TITLES) <= set(drawn_words(figure))
-    drawing.save(figure, tmp_path / "maps.pdf")
+    figure.draw_without_rendering()  # parses them
     lines = {f"s{k}": stub.static(title) for k, title in enumerate(TITLES)}
     (legend,) = drawing.draw("extended_static", lines).findobj(Legend)
     labels = [text.get_text() for text in legend.get_texts()]
     assert len(labels) == 8 and "_first" in labels
-
-
-@pytest.mark.filterwarnings("ignore:Glyph")
-def test_unknown_characters_and_long_words_fit_the_page(tmp_path):
-    maps = {"a": stub.spanning("\u4e2d\u6587"), "b": stub.spanning("x" * 100)}
-    figure = drawing.draw("extended_motions", maps)
-    drawing.save(figure, tmp_path / "maps.pdf")
-    figure.draw_without_rendering()
-    assert figure.get_tightbbox().x1 <= figure.get_size_inches()[0] + 0.02
 
 
 @pytest.mark.parametrize(

@@ -13,7 +13,7 @@ from stubs.figures_stub import artists
 
 from microslip.report.figures import atlas, drawing
 
-pytestmark = pytest.mark.slow  # drawing takes one to two seconds
+pytestmark = [pytest.mark.slow, pytest.mark.usefixtures("without_layout")]
 
 
 @pytest.fixture(scope="module")
@@ -81,32 +81,6 @@ def test_the_error_of_the_reference_is_hatched_where_it_is_known(accuracy):
     assert not artists(first, "reference")
     (band,) = artists(second, "reference")
     assert band.get_hatch() and band.get_y() + band.get_height() == pytest.approx(1e-2)
-
-
-def test_labels_of_tolerances_hide_no_markers(accuracy):
-    for axes, trials in panels_of("accuracy_vs_cost", accuracy):
-        axes.figure.figure.draw_without_rendering()
-        (marks,) = artists(axes, "auto shipped")
-        assert len(marks.get_xdata()) == (trials["trial_model"] == "auto").sum()
-        lines = [line for line in axes.get_lines() if " " in (line.get_gid() or "")]
-        pixels = axes.transData.transform(np.concatenate([line.get_xydata() for line in lines]))
-        for label in artists(axes, "label"):
-            assert label.get_text().startswith("$10^{-")
-            assert label.get_window_extent().count_contains(pixels) == 0
-
-
-@pytest.mark.parametrize("points", [1, 3])
-def test_any_number_of_points_has_room_for_panels_and_legends(points, accuracy):
-    names = accuracy["point"].values[:points]
-    data = accuracy.isel(trial=np.isin(accuracy["trial_point"], names)).sel(point=names)
-    figure = drawing.draw("accuracy_vs_work", {"accuracy_cost": data})
-    panels = [axes.get_window_extent() for axes in figure.axes if axes.axison]
-    legends = [legend.get_window_extent() for legend in figure.findobj(Legend)]
-    assert len(panels) == points and len(legends) == 2
-    for index, box in enumerate(legends):
-        assert not any(box.overlaps(other) for other in [*panels, *legends[index + 1 :]])
-    with pytest.raises(ValueError, match="no points or no trials"):
-        drawing.draw("accuracy_vs_work", {"accuracy_cost": data.isel(trial=[])})
 
 
 def test_a_profile_shows_the_share_of_points_within_a_ratio_of_the_best(accuracy):

@@ -28,9 +28,8 @@ def test_a_range_has_equal_steps_or_equal_ratios(text, values):
 @pytest.mark.parametrize(
     "text",
     [
-        *("2..0 um", "1..1 um", "..2 um", "0..um", "1 um..2 um", "0..inf um"),
-        *("0..1..2 um", "0..2..um", "0..2 um, 1", "0..2 um, 5, 5", "0..2 um, cubic"),
-        *("0..2 um, 5, log", "1..2 um, log, log"),
+        *("2..0 um", "..2 um", "0..um", "0..inf um", "0..1..2 um"),
+        *("0..2 um, 1", "0..2 um, 5, 5", "0..2 um, cubic", "0..2 um, 5, log"),
     ],
 )
 def test_other_texts_are_refused_with_an_example(text):
@@ -97,21 +96,17 @@ def test_interpolation_errors_of_parabolas():
     assert errors == {"x": pytest.approx(1.0 * 2.0), "y": None, "z": pytest.approx(2.0 * 2.0)}
 
 
-@pytest.mark.parametrize("word", ["1", "0", "1e9", "1000000000", "-3", "lin"])
-def test_a_wrong_word_after_a_range_is_quoted_with_the_allowed_counts(word):
-    with pytest.raises(InputError, match=f"'{word}'.*from 2 to 100000"):
-        values_of("load", f"0..2 N, {word}")
+@pytest.mark.parametrize(
+    "words", ["0..2 N, 1", "0..2 N, 1e9", "0..2 N, -3", "0..2 N, lin", "0..2 N, 3, 4", "0...1 N, 3"]
+)
+def test_a_wrong_range_is_refused_with_the_allowed_counts(words):
+    with pytest.raises(InputError, match="from 2 to 100000.*begins with a digit"):
+        values_of("load", words)
 
 
-def test_three_dots_are_refused():
-    with pytest.raises(InputError, match="three dots"):
-        values_of("amplitude", "0...1 um, 3")
-
-
-@pytest.mark.parametrize("factor", ["0.5..1.5, 3", "50..150 %, 3"])
-def test_the_factor_of_a_motion_from_a_file_is_a_range(factor, tmp_path):
+def test_the_factor_of_a_motion_from_a_file_is_a_range(tmp_path):
     file = tmp_path / "stroke.csv"
     file.write_text("lateral [um]\n0\n0.1\n0\n-0.1\n")
-    grid = grid_of(f"file:{file}", {"amplitude": factor, "load": "1 N"})
+    grid = grid_of(f"file:{file}", {"amplitude": "50..150 %, 3", "load": "1 N"})
     assert grid.axes["amplitude_si"].values == [0.5, 1.0, 1.5]
     assert grid.axes["amplitude_si"].unit == ""

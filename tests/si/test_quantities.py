@@ -52,7 +52,7 @@ def test_every_unit_is_what_pint_defines_by_the_same_name():
     [
         (["1 um", "1e-3 mm", "0.000001 m", "1000 nm", "10000 angstrom", Q(1.0, "um")], "m"),
         (["210 GPa", "2.1e11 Pa", "210000 N/mm^2", "2.1e5 MPa"], "Pa"),
-        (["600 rpm", "10 Hz", "10 turn/s", "3600 deg/s", "36000 rev/hour"], "rad/s"),
+        (["1 ksi", "1000 psi"], "Pa"),
         (["600 rpm", "10 Hz", "10 turn/s", "3600 deg/s", "36000 rev/hour"], "Hz"),
     ],
 )

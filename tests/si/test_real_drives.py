@@ -15,13 +15,14 @@ from microslip.foundation.errors import InputError
 from microslip.motions.drive import Spring
 from microslip.si import drive_result, request
 from microslip.si.bodies import TwoBodies
-from microslip.si.dimensionless import RealDrive, RealMotion, drive_groups, groups, speed_unit
+from microslip.si.dimensionless import MovingContact, RealDrive, RealMotion
 from microslip.si.materials import RIGID, Material
 from microslip.si.regimes import SAME, natural_frequency, regime
 from microslip.theory import paper
 
 BALL = {"radius": "5 mm", "load": "10 N", "mu": 0.3, "young": "210 GPa", "nu": 0.0}
 SIDEWAYS = BALL | {"frequency": "20 kHz"}
+WORDS = [f"--{name}={value}" for name, value in SIDEWAYS.items()]
 CONTACT = TwoBodies(Material(210e9, 0.0), RIGID, 0.005, 10.0, 0.3)
 STILL = 3.0
 """Friction mu F_z of the ball, N."""
@@ -41,27 +42,13 @@ def test_the_groups_of_a_drive_by_hand():
     A spring of this stiffness, a mass in resonance with it, and a dashpot of this impedance all
     have a group of 1.5.
     """
-    motion = RealMotion("transverse", 1e-3, 1e-6, 20e3)
+    motion = RealMotion("transverse", "m", 1e-3, 1e-6, 20e3)
     stiffness, omega = 2.0 * CONTACT.G_star * CONTACT.contact_radius, 2.0 * math.pi * 20e3
     drive = RealDrive(None, stiffness, stiffness / omega**2, stiffness / omega)
-    result = drive_groups(drive, motion, CONTACT)
-    assert result == pytest.approx({"stiffness": 1.5, "mass": 1.5, "damping": 1.5})
-    assert drive_groups(RealDrive(force=1.5), motion, CONTACT) == pytest.approx({"force": 0.5})
-    assert drive_groups(RealDrive(), motion, CONTACT) == {}
-
-
-@pytest.mark.parametrize(
-    "motion",
-    [
-        RealMotion("transverse", 1e-3, 1e-6, 20e3),
-        RealMotion("bore", 1e-3, 0.01, 50.0),
-        RealMotion("continuous-bore", 1e-3, rotation=3.0),
-    ],
-    ids=lambda motion: motion.name,
-)
-def test_the_unit_of_a_speed_undoes_its_group(motion):
-    velocity, _ = groups(motion, CONTACT)
-    assert velocity * speed_unit(motion, CONTACT) == pytest.approx(1e-3)
+    moving = MovingContact(CONTACT, motion)
+    assert drive.groups(moving) == pytest.approx({"stiffness": 1.5, "mass": 1.5, "damping": 1.5})
+    assert RealDrive(force=1.5).groups(moving, 2) == pytest.approx({"force": 0.25})
+    assert RealDrive().groups(moving) == {}
 
 
 LENGTH, TIME, MASS = 7.0, 0.3, 11.0
@@ -97,8 +84,8 @@ def scaled(sizes):
 )
 def test_answers_know_no_units(pulls):
     """Under other units of length, time and mass each number scales with its dimension."""
-    one = microslip.predict("transverse", **SIZES | pulls).to_dict()
-    other = microslip.predict("transverse", **scaled(SIZES | pulls)).to_dict()
+    one = microslip.predict("transverse", **SIZES | pulls, tolerance=0.1).to_dict()
+    other = microslip.predict("transverse", **scaled(SIZES | pulls), tolerance=0.1).to_dict()
     dimensions = {
         **{"speed_m_s": (1, -1, 0), "displacement_per_cycle_m": (1, 0, 0)},
         **{"friction_force_N": (1, -2, 1), "force_threshold_N": (1, -2, 1)},
@@ -119,8 +106,6 @@ def test_answers_know_no_units(pulls):
     ("amplitude", "force", "velocity", "digits"),
     [
         (0.5, 0.75, 0.0244, 3e-4),
-        (1.5, 0.30, 0.138, 1.5e-3),
-        (1.5, 0.60, 0.399, 4e-3),
         (3.0, 0.30, 0.438, 4e-3),
     ],
 )
@@ -141,15 +126,7 @@ def test_drift_under_a_force_is_that_of_a_second_program(amplitude, force, veloc
     assert result.mu_macro == pytest.approx(force)
 
 
-@pytest.mark.slow
-def test_at_a_large_stroke_the_contact_drifts_as_a_rigid_one():
-    """A rigid contact drifts by (2/pi) A P / sqrt(1 - P^2); an elastic one by about 1/A less."""
-    result = microslip.predict("transverse", amplitude=stroke(100.0), force=0.6 * STILL, **SIDEWAYS)
-    rigid = 2.0 / math.pi * 100.0 * 0.6 / 0.8 * 2.0 * math.pi * 20e3 * CONTACT.u_lim
-    assert 0.97 * rigid < result.speed_m_s < rigid
-
-
-@pytest.mark.parametrize("share", [0.9, 0.5, 1e-3])
+@pytest.mark.parametrize("share", [0.9, 1e-3])
 def test_a_force_below_the_threshold_moves_nothing(share):
     """The threshold equals the friction at a speed of 0."""
     held = microslip.predict("transverse", amplitude=stroke(0.5), speed=0.0, **SIDEWAYS)
@@ -166,10 +143,10 @@ def test_a_force_below_the_threshold_moves_nothing(share):
 
 def test_a_force_just_below_the_threshold_is_held_before_any_drift_is_computed(monkeypatch):
     """A force below the friction at speed 0 by twice its error needs no drift computation."""
-    requests = SIDEWAYS | {"amplitude": stroke(1e-3), "nu": 0.3}
+    requests = SIDEWAYS | {"amplitude": stroke(1e-3), "nu": 0.3, "tolerance": 0.1}
     held = microslip.predict("transverse", speed=0.0, **requests)
     force = held.friction_force_N - 2.0 * held.friction_force_error_N
-    assert force > 0.99 * STILL
+    assert force > 0.9 * STILL
 
     def no_drift(motion, velocity, *changes, **settings):
         assert velocity == 0.0, "a drift was computed"
@@ -182,7 +159,7 @@ def test_a_force_just_below_the_threshold_is_held_before_any_drift_is_computed(m
     assert force < result.force_threshold_N - result.force_threshold_error_N
 
 
-@pytest.mark.parametrize("force", [3.0, 50.0, 1e12])
+@pytest.mark.parametrize("force", [3.0, 1e12])
 def test_all_of_friction_and_more_runs_away(force):
     result = microslip.predict("transverse", amplitude=stroke(0.5), force=force, **SIDEWAYS)
     assert result.outcome == "runs away" and not result.converged
@@ -190,14 +167,13 @@ def test_all_of_friction_and_more_runs_away(force):
     assert result.reason.startswith("runs away")
 
 
-@pytest.mark.parametrize("tolerance", [1e-2, 2e-2])
-@pytest.mark.parametrize("side", [-0.5, 0.0, 0.5])
-def test_a_force_within_the_error_of_its_threshold_is_not_converged(tolerance, side):
+@pytest.mark.parametrize("side", [-0.5, 0.5])
+def test_a_force_within_the_error_of_its_threshold_is_not_converged(side):
     """A drift with a small relative error would take minutes there."""
-    contact = SIDEWAYS | {"amplitude": stroke(0.5)}
+    contact = SIDEWAYS | {"amplitude": stroke(0.5), "tolerance": 1e-2}
     held = microslip.predict("transverse", speed=0.0, **contact)
     force = held.force_threshold_N + side * held.force_threshold_error_N
-    result = microslip.predict("transverse", force=force, tolerance=tolerance, **contact)
+    result = microslip.predict("transverse", force=force, **contact)
     assert result.outcome == "undecided" and not result.converged
     assert result.displacement_m is None and not result.displacement_reason
     assert result.reason.startswith("the force differs from its threshold by less than")
@@ -213,8 +189,7 @@ def test_a_force_that_the_solver_gives_up_on_says_why(monkeypatch, capsys):
         return replace(result, **lost, reason="lost on the way")
 
     monkeypatch.setattr(request, "solve", given_up)
-    words = ["--radius", "5 mm", "--load", "10 N", "--mu", "0.3", "--material", "steel"]
-    words += ["--frequency", "20 kHz", "--amplitude", "0.1 um", "--force", "2.9 N"]
+    words = [*WORDS, "--amplitude", "0.1 um", "--force", "2.9 N", "--tolerance", "0.1"]
     said_first = said(capsys, *words, code=1)
     assert "NOT CONVERGED: speed: lost on the way" in said_first and "outcome" not in said_first
     result = json.loads(said(capsys, *words, "--json", code=1))
@@ -260,14 +235,11 @@ def test_a_steady_spin_gives_way_to_any_force():
 
 
 EDGES = [
-    ("velocity", "transverse", 0.1, 1.0, 15.1, 0.0),
     ("velocity", "transverse", 0.5, 3.0, 15.1, 0.0),
     ("velocity", "transverse", 0.3, 1.5, 0.03, 3.8),
     ("velocity", "zigzag", 0.3, 1.5, 15.1, 0.0),
     ("velocity", "longitudinal", 0.1, 1.0, 151.0, 0.0),
     ("velocity", "longitudinal", 0.1, 1.0, 0.1, 151.0),
-    ("force", "transverse", 1.0, 0.5, 0.029, 0.0),
-    ("force", "transverse", 0.824, 0.58, 1e-3, 0.0074),
     ("force", "transverse", 2.0, 10.0, 0.0029, 0.0),
     ("force", "transverse", 1.28, 0.743, 1e-3, 0.0074),
 ]
@@ -343,8 +315,7 @@ def said(capsys, *words, code=0):
 
 
 def test_the_command_line_says_what_comes_of_a_force(capsys):
-    words = ["--radius", "5 mm", "--load", "10 N", "--mu", "0.3", "--young", "210 GPa", "--nu", "0"]
-    words += ["--frequency", "20 kHz", "--amplitude", f"{stroke(0.5)!r} m"]
+    words = [*WORDS, "--amplitude", f"{stroke(0.5)!r} m"]
     stays = said(capsys, *words, "--force", "1 N")
     assert "it stays: the force is below the threshold" in stays and "travel" not in stays
     moves = said(capsys, *words, "--force", "2.5 N")
@@ -375,6 +346,7 @@ def test_a_contact_that_goes_along_with_the_vibration_has_the_threshold_of_what_
 
 def test_probabilities_that_are_not_known_are_said_to_be():
     parts = {"amplitude": stroke(0.5), "forward_amplitude": stroke(0.3), "phase": "90 deg"}
-    result = microslip.predict("elliptic", **SIDEWAYS, **parts, force="1.2 N +- 0.1 N")
+    settings = SIDEWAYS | parts | {"tolerance": 0.1}
+    result = microslip.predict("elliptic", **settings, force="1.2 N +- 0.1 N")
     assert result.probability_stays is None and result.probability_runs_away == 0.0
     assert "not computed for staying and moving" in str(result)

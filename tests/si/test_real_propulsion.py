@@ -52,18 +52,6 @@ def test_holding_forces_are_in_newtons():
         assert number_text(force, error, "N") in str(real)
 
 
-@pytest.mark.slow
-def test_twice_as_fast_takes_twice_the_power():
-    """Friction is independent of the rate, so forces stay and speeds and powers double."""
-    slow, fast = (
-        microslip.predict_propulsion(EIGHT, **BALL, amplitude=U_LIM, frequency=f, points=3)
-        for f in ("20 kHz", "40 kHz")
-    )
-    assert fast.force_N == pytest.approx(slow.force_N)
-    assert fast.speed_m_s == pytest.approx(2.0 * slow.speed_m_s)
-    assert fast.power_in_W == pytest.approx(2.0 * slow.power_in_W)
-
-
 def words(motion, **more):
     settings = {"radius": "5 mm", "load": "10 N", "mu": "0.3", "young": "210 GPa", "nu": "0"}
     settings |= {"amplitude": f"{U_LIM} m", "frequency": "20 kHz"} | more
@@ -81,7 +69,5 @@ def test_the_command_line_says_the_same(capsys):
     assert capsys.readouterr().out.split("\n\n")[1] == f"{result}\n".split("\n\n")[1]
     stall = number_text(result.stall_force_N, result.stall_force_error_N, "N")
     assert f"\nstall force       {stall}\n" in str(result)
-    (row,) = [row for row in str(result).splitlines() if " +- " in row and row.startswith("  ")][
-        1:2
-    ]
-    assert number_text(result.force_N[1], result.force_error_N[1]) in row
+    rows = [row for row in str(result).splitlines() if " +- " in row and row.startswith("  ")]
+    assert number_text(result.force_N[1], result.force_error_N[1]) in rows[1]

@@ -57,6 +57,8 @@ def test_without_noise_the_motion_is_exact():
     result = microslip.fold(time, {"lateral": lateral})
     assert result.frequency == pytest.approx(FREQUENCY, rel=1e-6)
     assert result.columns["lateral"] == pytest.approx(aligned(result), abs=2e-4)
+    exact = np.ptp(motion(np.linspace(0.0, 2.0 * np.pi, 10001)))  # between the samples, too
+    assert result.peak_to_peak("lateral")[0] == pytest.approx(exact, rel=5e-4)
 
 
 def test_a_load_keeps_its_mean_and_sliding_is_a_drift():
@@ -125,13 +127,6 @@ def test_bad_records_are_refused_in_one_line(change, problem):
     assert problem in str(refused.value) and "\n" not in str(refused.value)
 
 
-def test_a_record_without_time_is_refused(tmp_path, capsys):
-    (tmp_path / "record.csv").write_text("lateral [um]\n" + "0\n1\n" * 20)
-    words = ["fold", str(tmp_path / "record.csv"), "--output", str(tmp_path / "stroke.csv")]
-    assert main(words) == 2
-    assert "no column time" in capsys.readouterr().err
-
-
 def swept(change, seconds=0.5):
     """Times, s, and an amplitude of 1 at 1300 Hz plus a linear change of the frequency, Hz."""
     time = np.arange(round(seconds * RATE)) / RATE
@@ -139,7 +134,7 @@ def swept(change, seconds=0.5):
     return time, np.sin(phase) + 1e-3 * np.random.default_rng(2).standard_normal(len(time))
 
 
-@pytest.mark.parametrize("change", [0.1, 0.5, 1.0])
+@pytest.mark.parametrize("change", [0.1, 1.0])
 def test_the_error_covers_a_small_drift_of_the_frequency(change):
     time, lateral = swept(change)
     size, error = microslip.fold(time, {"lateral": lateral}).peak_to_peak("lateral")
@@ -147,15 +142,14 @@ def test_the_error_covers_a_small_drift_of_the_frequency(change):
     assert error <= 0.02
 
 
-@pytest.mark.parametrize("change", [2.0, 4.0])
-def test_a_large_drift_of_the_frequency_is_refused(change):
-    time, lateral = swept(change)
-    with pytest.raises(InputError, match=f"frequency changes by about {change:g} Hz"):
+def test_a_large_drift_of_the_frequency_is_refused():
+    time, lateral = swept(2.0)
+    with pytest.raises(InputError, match="frequency changes by about 2 Hz"):
         microslip.fold(time, {"lateral": lateral})
 
 
 @pytest.mark.parametrize("frequency", [None, 40.0])
-@pytest.mark.parametrize("seed", range(5))
+@pytest.mark.parametrize("seed", range(2))
 def test_noise_is_refused(frequency, seed):
     time = np.arange(2000) / 1000.0
     noise = np.random.default_rng(seed).standard_normal(2000)
@@ -163,7 +157,7 @@ def test_noise_is_refused(frequency, seed):
         microslip.fold(time, {"lateral": noise}, frequency=frequency)
 
 
-@pytest.mark.parametrize("periods", [1, 1.5, 2, 3, 3.9])
+@pytest.mark.parametrize("periods", [1, 3.9])
 def test_a_record_of_few_periods_is_refused_with_plain_numbers(periods):
     time = np.arange(2000) / 1000.0
     with pytest.raises(InputError, match="Hz, the strongest component.*allowed are") as refused:
@@ -182,23 +176,22 @@ def test_rounded_times_are_equally_spaced_but_jitter_is_not(decimals):
         microslip.fold(np.round(time + jitter, decimals), {"lateral": lateral})
 
 
-def test_the_peak_to_peak_does_not_depend_on_the_samples():
-    time, lateral = record(noise=0.0)
-    exact = np.ptp(motion(np.linspace(0.0, 2.0 * np.pi, 10001)))
-    size, _ = microslip.fold(time, {"lateral": lateral}).peak_to_peak("lateral")
-    assert size == pytest.approx(exact, rel=5e-4)
+NOISE_ROWS = "\n".join(
+    f"{t},{x:.4f}" for t, x in enumerate(np.random.default_rng(4).normal(size=2000))
+)
 
 
-def test_a_message_has_the_unit_of_the_column(tmp_path, capsys):
-    noise = np.random.default_rng(4).standard_normal(2000)
-    lines = "\n".join(f"{t},{x:.4f}" for t, x in enumerate(noise))
-    (tmp_path / "record.csv").write_text(f"time [ms],lateral [um]\n{lines}\n")
-    words = ["fold", str(tmp_path / "record.csv"), "--output", str(tmp_path / "stroke.csv")]
+@pytest.mark.parametrize(
+    ("text", "output", "message"),
+    [
+        ("lateral [um]\n" + "0\n1\n" * 20, "stroke.csv", "no column time"),
+        (f"time [ms],lateral [um]\n{NOISE_ROWS}\n", "stroke.csv", r"lateral = [0-9.]+ um: .* Hz"),
+        (f"time [ms],lateral [um]\n{NOISE_ROWS}\n", "stroke.nc", "a name that ends in .csv"),
+    ],
+)
+def test_bad_files_are_refused_by_the_command(tmp_path, capsys, text, output, message):
+    (tmp_path / "record.csv").write_text(text)
+    words = ["fold", str(tmp_path / "record.csv"), "--output", str(tmp_path / output)]
     assert main([*words, "--frequency", "40 Hz"]) == 2
-    assert re.search(r"lateral = [0-9.]+ um: .* Hz", capsys.readouterr().err)
-    assert not (tmp_path / "stroke.csv").exists()
-
-
-def test_the_output_is_a_csv_file(tmp_path, capsys):
-    assert main(["fold", "record.csv", "--output", str(tmp_path / "stroke.nc")]) == 2
-    assert "allowed is a name that ends in .csv" in capsys.readouterr().err
+    assert re.search(message, capsys.readouterr().err)
+    assert not (tmp_path / output).exists()

@@ -3,6 +3,8 @@
 import math
 
 import pytest
+from scipy.optimize import brentq
+from scipy.special import ellipk
 
 import microslip
 from microslip.foundation.errors import InputError
@@ -11,12 +13,11 @@ BALL = {"material": "steel", "counterbody": "steel", "radius": "5 mm", "mu": 0.3
 LATERAL = BALL | {"frequency": "20 kHz", "tolerance": 3e-3}
 GIVEN = {"amplitude": 4e-7, "speed": 0.01, "load": 8.0}
 FIELDS = {"amplitude": "amplitude_si", "speed": "speed_m_s", "load": "load_N"}
-RIGID = {"amplitude": "1 mm", "speed": "20 m/s", "load": "1 N", "frequency": "2 kHz"}
-"""Strokes of thousands of u_lim: the contact is a rigid slider."""
+RIGID = {"amplitude": "1 mm", "load": "1 N", "frequency": "2 kHz"}
+"""A stroke of thousands of u_lim: the contact is a rigid slider."""
 
 
-@pytest.mark.slow
-@pytest.mark.parametrize("target", ["speed", "load"])
+@pytest.mark.parametrize("target", ["amplitude", "speed", "load"])
 @pytest.mark.parametrize("motion", ["transverse", pytest.param("bore", marks=pytest.mark.long)])
 def test_whichever_is_left_out_is_found_again(motion, target):
     # For a bore two loads have the same reduction; the search returns the larger one.
@@ -48,10 +49,7 @@ def test_a_load_is_found_of_other_contacts(shape):
 
 def test_of_a_rigid_slider_the_speed_is_that_of_equation_6():
     """Friction is the mean of v / sqrt(v^2 + c^2 cos^2), c = omega y0, at any load."""
-    from scipy.optimize import brentq
-    from scipy.special import ellipk
-
-    result = microslip.predict("transverse", **BALL | RIGID | {"speed": None}, reduction="50 %")
+    result = microslip.predict("transverse", **LATERAL | RIGID, reduction="50 %")
     swing = 2.0 * math.pi * 2000.0 * 1e-3
 
     def felt(x):
@@ -66,8 +64,8 @@ def test_of_a_rigid_slider_the_speed_is_that_of_equation_6():
     ("changed", "message"),
     [
         (
-            {"amplitude": None, "speed": "1 m/s", "reduction": 0.99},
-            "^reduction = 0.99: no amplitude",
+            {"amplitude": None, "speed": "100 m/s", "reduction": 0.9, "tolerance": 0.05},
+            "^reduction = 0.9: no amplitude",
         ),
         # At vanishing speed and an amplitude of u_lim/100 more than 90 % of friction remains.
         ({"speed": None, "amplitude": "3 nm"}, "^reduction = '50 %': no speed reduces"),
@@ -89,8 +87,9 @@ def test_a_load_that_hertz_theory_does_not_know_is_refused():
         microslip.predict("transverse", **request)
 
 
+@pytest.mark.long
 def test_the_largest_amplitude_is_tried():
-    settings = BALL | {"load": "10 N", "speed": "1 m/s", "frequency": "20 kHz"}
+    settings = LATERAL | {"load": "10 N", "speed": "1 m/s"}
     result = microslip.predict("transverse", **settings, reduction="98.75 %")
-    assert result.force_reduction == pytest.approx(0.9875, abs=1e-3)
+    assert result.force_reduction == pytest.approx(0.9875, abs=3e-3)
     assert 5e3 < result.amplitude < 1e4

@@ -16,14 +16,14 @@ from microslip.app import cli
 from microslip.foundation.errors import InputError
 from microslip.motions import by_name
 from microslip.si.bodies import TwoBodies
-from microslip.si.dimensionless import RealMotion, groups, solver_motion
+from microslip.si.dimensionless import MovingContact, RealMotion
 from microslip.si.materials import RIGID, Material
 from microslip.si.shapes import ellipse_of_radii, elliptic, of_size
 
 STEEL = Material(210e9, 0.3)
 BALL = TwoBodies(STEEL, RIGID, 5e-3, 10.0, 0.3)
 ASKED = {"material": "steel", "load": "10 N", "mu": 0.3, "speed": "10 mm/s"}
-ASKED |= {"amplitude": "0.3 um", "frequency": "20 kHz"}
+ASKED |= {"amplitude": "0.3 um", "frequency": "20 kHz", "tolerance": 0.01}
 SPHERE = ASKED | {"radius": "5 mm"}
 
 
@@ -158,19 +158,21 @@ UNIFORM = "".join(f"{x},{y},5\n" for x in range(40) for y in range(20))
 """A pressure of 5 on 40 x 20 cells: half the longer side is 20, and the load is 4000."""
 
 
+MM, UM = (f"forward [{unit}],lateral [{unit}],pressure [MPa]" for unit in ("mm", "um"))
+NO_PRESSURE, NO_LENGTH = "forward [mm],lateral [mm],pressure", "forward,lateral,pressure [MPa]"
+
+
 @pytest.mark.parametrize(
     ("heading", "options", "size", "load", "differences"),
     [
-        ("forward [mm],lateral [mm],pressure [MPa]", "", 20e-3, 4e3, ()),
-        ("forward [mm],lateral [mm],pressure [MPa]", "", 20e-3, 4.03e3, ()),
-        ("forward [mm],lateral [mm],pressure [MPa]", "", 20e-3, 4.1e3, ("load",)),
-        ("forward [mm],lateral [mm],pressure [MPa]", "", 20e-3, 3e3, ("load",)),
-        ("forward [mm],lateral [mm],pressure [MPa]", "", 40e-3, 4e3, ("contact radius",)),
-        ("forward [mm],lateral [mm],pressure [MPa]", "", 2e-3, 4e6, ("contact radius", "load")),
-        ("forward [um],lateral [um],pressure [MPa]", "", 20e-6, 4e-3, ()),
-        ("forward [mm],lateral [mm],pressure", "", 20e-3, 3e3, ()),
-        ("forward [mm],lateral [mm],pressure", "", 40e-3, 3e3, ("contact radius",)),
-        ("forward,lateral,pressure [MPa]", "", 40e-3, 3e3, ()),
+        (MM, "", 20e-3, 4.03e3, ()),
+        (MM, "", 20e-3, 4.1e3, ("load",)),
+        (MM, "", 40e-3, 4e3, ("contact radius",)),
+        (MM, "", 2e-3, 4e6, ("contact radius", "load")),
+        (UM, "", 20e-6, 4e-3, ()),
+        (NO_PRESSURE, "", 20e-3, 3e3, ()),
+        (NO_PRESSURE, "", 40e-3, 3e3, ("contact radius",)),
+        (NO_LENGTH, "", 40e-3, 3e3, ()),
         ("", ",pitch=1 mm", 20e-3, 4e3, ()),
         ("", ",pitch=1 mm", 10e-3, 4e3, ("contact radius",)),
         ("", ",pitch=1", 10e-3, 4e3, ()),
@@ -184,17 +186,14 @@ def test_a_pressure_file_whose_units_contradict_the_inputs_is_reported(
     contact = of_size(replace(BALL, load=load), size, f"file:{tmp_path / 'pad.csv'}{options}")
     texts = contact.contradictions
     assert [text.split(" is ")[0].removeprefix("the ") for text in texts] == [*differences]
-    if "load" in differences and load == 3e3:
-        assert texts[-1].startswith("the load is 3 kN, but 4 kN in the pressure file")
 
 
 def test_a_prediction_warns_of_a_pressure_file_that_contradicts_the_load(tmp_path):
     (tmp_path / "pad.csv").write_text(f"forward [um],lateral [um],pressure [MPa]\n{UNIFORM}")
     pad = {"pressure": f"file:{tmp_path / 'pad.csv'}", "contact_radius": "20 um"}
-    rigid = {"speed": "1 km/s", "tolerance": 0.1}
-    (text,) = [
-        t for t in microslip.predict("transverse", **ASKED | pad | rigid).warnings if "file" in t
-    ]
+    rigid = {"speed": "1 km/s"}
+    warnings = microslip.predict("transverse", **ASKED | pad | rigid).warnings
+    (text,) = [text for text in warnings if "file" in text]
     assert text.startswith("the load is 10 N, but 4 mN in the pressure file")
     right = ASKED | pad | rigid | {"load": "4 mN"}
     assert not any("file" in text for text in microslip.predict("transverse", **right).warnings)
@@ -203,12 +202,11 @@ def test_a_prediction_warns_of_a_pressure_file_that_contradicts_the_load(tmp_pat
 def test_a_cone_yields_at_its_tip_and_says_so_once():
     cone = {"contact_radius": "0.1 mm", "pressure": "power:exponent=1"}
     for hardness in ({}, {"hardness": "7 GPa"}):
-        result = microslip.predict("transverse", **ASKED | cone | hardness, tolerance=0.1)
+        result = microslip.predict("transverse", **ASKED | cone | hardness)
         assert result.largest_pressure_Pa == math.inf
         assert "largest pressure  infinite, at the tip" in str(result)
         (about,) = [text for text in result.warnings if "pressure" in text and "tip" in text]
         mean = 10.0 / (math.pi * 1e-8)
-        assert f"the mean pressure is {float(f'{mean / 1e6:.2g}'):g} MPa" in about
         assert f"the mean pressure is {float(f'{mean / 1e6:.2g}'):g} MPa" in about
         texts = [*result.warnings, *result.not_checked]
         assert not any("inf" in text.replace("infinite", "") for text in texts)
@@ -226,16 +224,14 @@ def test_u_lim_of_a_cone_is_that_of_its_depth():
 
 @pytest.mark.slow
 def test_a_prediction_under_another_pressure_is_what_the_solver_says():
-    shape = {"contact_radius": "0.1 mm", "pressure": "power:exponent=4"}
+    pressure = "power:exponent=4"
+    shape = {"contact_radius": "0.1 mm", "pressure": pressure}
     result = microslip.predict("transverse", **ASKED | shape)
-    contact = of_size(
-        TwoBodies(Material(210e9, 0.3), RIGID, 1.0, 10.0, 0.3), 1e-4, shape["pressure"]
-    )
-    omega = 2.0 * math.pi * 20e3
-    point = 10e-3 / (omega * contact.u_lim), 0.3e-6 / contact.u_lim
-    settings = {"pressure": shape["pressure"], "poisson": 0.3}
+    u_lim = of_size(BALL, 1e-4, pressure).u_lim
+    point = 10e-3 / (2.0 * math.pi * 20e3 * u_lim), 0.3e-6 / u_lim
+    settings = {"pressure": pressure, "poisson": 0.3, "tolerance": 1e-2}
     assert result.mu_macro == microslip.solve("transverse", *point, **settings).mu_macro
-    assert result.pressure == shape["pressure"] and result.contact_radius_m == 1e-4
+    assert result.pressure == pressure and result.contact_radius_m == 1e-4
 
 
 # Motions in several ways
@@ -255,12 +251,12 @@ def test_amplitudes_are_shares_of_the_largest(label, sizes, expected, largest):
     along = [None if size is None else size * BALL.u_lim for size in sizes[:2]]
     parts = {"forward_amplitude": along[1], "rotation_amplitude": sizes[2]}
     parts |= {"load_amplitude": sizes[3], "phase": 0.5 * math.pi}
-    motion = RealMotion(label, 1e-3, along[0], 1e3, **parts)
-    name, _, text = solver_motion(motion, BALL).partition(":")
+    motion = RealMotion(label, None, 1e-3, along[0], 1e3, **parts)
+    name, _, text = MovingContact(BALL, motion).solver_motion.partition(":")
     result = {k: float(v) for k, v in (part.split("=") for part in text.split(","))}
     assert name == label and result.pop("phase") == pytest.approx(90.0)
     assert result == pytest.approx(expected)
-    velocity, amplitude = groups(motion, BALL)
+    velocity, amplitude = MovingContact(BALL, motion).groups
     assert amplitude == pytest.approx(largest)
     assert velocity == pytest.approx(1e-3 / (2e3 * math.pi * BALL.u_lim))
 
@@ -289,74 +285,44 @@ def test_an_oscillating_load_alone_is_its_closed_form():
 
 # Motions from files
 
-OWN = {
-    "sine_cubed": """from dataclasses import dataclass
-
-import numpy as np
-
-from microslip.motions.transverse import Transverse
-
-
-@dataclass(frozen=True)
-class SineCubed(Transverse):
-    summary = "moving as it likes"
-
-    def displacement(self, phase, velocity, amplitude, poisson):
-        return velocity * phase, amplitude * np.sin(phase) ** 3, np.zeros_like(phase)
-""",
-    "own_bore": """from dataclasses import dataclass
+OWN_BORE = """from dataclasses import dataclass
 
 from microslip.motions.bore import Bore
 
 
 @dataclass(frozen=True)
 class OwnBore(Bore):
-    summary = "moving as it likes"
-""",
-}
+    summary = "turning as it likes"
+"""
 
 
 @pytest.fixture
 def own(tmp_path):
-    """Two motions from files: a translation of another shape, and a copy of the bore."""
+    """A motion from a file: a copy of the bore."""
     registry, path = dict(by_name.MOTIONS), list(motions.__path__)
-    for name, text in OWN.items():
-        (tmp_path / f"{name}.py").write_text(text)
+    (tmp_path / "own_bore.py").write_text(OWN_BORE)
     by_name.find(tmp_path)
     yield
     by_name.MOTIONS.clear()
     by_name.MOTIONS.update(registry)
     motions.__path__[:] = path
-    for file in ("sine_cubed", "own_bore"):
-        del sys.modules[f"microslip.motions.{file}"]
+    del sys.modules["microslip.motions.own_bore"]
 
 
-@pytest.mark.slow
-def test_a_motion_of_ones_own_is_answered_in_units_as_without(own, capsys):
-    result = microslip.predict("sine-cubed", **SPHERE)
-    assert (result.velocity, result.amplitude) == pytest.approx(
-        (1e-2 / (2.0 * math.pi * 2e4 * result.u_lim_m), 3e-7 / result.u_lim_m), rel=1e-12
-    )
-    assert result.understood["motion"] == "sine-cubed: the sphere is moving as it likes"
-    point = ["--velocity", repr(result.velocity), "--amplitude", repr(result.amplitude)]
-    point += ["--poisson", repr(result.poisson)]
-    assert cli.main(["point", "sine-cubed", *point, "--json"]) == 0
-    assert json.loads(capsys.readouterr().out)["mu_macro"] == result.mu_macro
-    words = [f"--{name}={value}" for name, value in SPHERE.items()]
-    assert cli.main(["predict", "sine-cubed", *words, "--json"]) == 0
-    assert json.loads(capsys.readouterr().out)["mu_macro"] == result.mu_macro
-
-
-@pytest.mark.slow
-def test_the_amplitude_of_a_rotation_of_ones_own_is_an_angle(own, capsys):
-    spin = SPHERE | {"amplitude": "0.2 deg", "tolerance": 1e-2}
+def test_a_motion_of_ones_own_has_the_units_of_its_kind(own, capsys):
+    spin = SPHERE | {"amplitude": "0.2 deg"}
     result, bore = (microslip.predict(motion, **spin) for motion in ("own-bore", "bore"))
     assert (result.velocity, result.amplitude) == (bore.velocity, bore.amplitude)
     assert result.mu_macro == bore.mu_macro
+    assert result.understood["motion"] == "own-bore: the sphere is turning as it likes"
     with pytest.raises(InputError, match="units of rad"):
         microslip.predict("own-bore", **spin | {"amplitude": "1 um"})
     assert cli.main(["predict", "own-bore", *(f"--{k}={v}" for k, v in spin.items())]) == 0
     assert "0.003491 rad" in capsys.readouterr().out
+    point = [f"--velocity={result.velocity!r}", f"--amplitude={result.amplitude!r}"]
+    point += [f"--poisson={result.poisson!r}", "--tolerance=0.01", "--json"]
+    assert cli.main(["point", "own-bore", *point]) == 0
+    assert json.loads(capsys.readouterr().out)["mu_macro"] == result.mu_macro
 
 
 @pytest.mark.slow
@@ -377,7 +343,7 @@ def test_a_load_amplitude_above_the_load_parts_the_bodies():
     result = microslip.predict("normal", **settings)
     gone = math.acos(10.0 / 15.0)  # half the phases without contact, around 3 pi/2
     mean = 10.0 * (1.0 - gone / math.pi) + 15.0 * math.sin(gone) / math.pi
-    answer = microslip.solve("normal", result.velocity, 1.5, poisson=0.3)
+    answer = microslip.solve("normal", result.velocity, 1.5, poisson=0.3, tolerance=0.01)
     assert result.mu_macro == answer.mu_macro
     assert result.friction_force_N == pytest.approx(0.3 * mean * result.mu_macro, rel=1e-9)
     assert result.drag_power_W == pytest.approx(1e-3 * result.friction_force_N, rel=1e-12)

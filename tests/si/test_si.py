@@ -2,8 +2,6 @@
 
 import math
 
-import numpy as np
-import pandas as pd
 import pytest
 from bad_input_tables.odd_quantities import Q
 from scipy.integrate import quad
@@ -11,7 +9,7 @@ from scipy.integrate import quad
 import microslip
 from microslip.foundation.errors import InputError
 from microslip.si.bodies import TwoBodies
-from microslip.si.dimensionless import RealMotion, groups
+from microslip.si.dimensionless import MovingContact, RealMotion
 from microslip.si.hardness import read_hardness
 from microslip.si.materials import MATERIALS, RIGID, Material
 from microslip.si.validity import broken_assumptions
@@ -74,12 +72,12 @@ def test_the_stiffer_the_counterbody_the_more_the_bodies_differ():
 
 def test_dimensionless_groups_by_hand():
     contact = TwoBodies(STEEL, RIGID, 0.005, 10.0, 0.3)
-    motion = RealMotion("transverse", 1e-3, 1e-6, 20e3)
-    velocity, amplitude = groups(motion, contact)
+    motion = RealMotion("transverse", "m", 1e-3, 1e-6, 20e3)
+    velocity, amplitude = MovingContact(contact, motion).groups
     assert velocity == pytest.approx(1e-3 / (2 * math.pi * 20e3 * contact.u_lim))
     assert amplitude == pytest.approx(1e-6 / contact.u_lim)
-    turning = RealMotion("continuous-bore", 1e-3, rotation=2.0)
-    assert groups(turning, contact) == (1e-3 / (2.0 * contact.contact_radius), None)
+    turning = RealMotion("continuous-bore", None, 1e-3, rotation=2.0)
+    assert MovingContact(contact, turning).groups == (1e-3 / (2.0 * contact.contact_radius), None)
 
 
 def test_the_unit_of_a_bore_leaves_half_the_radius_sticking():
@@ -88,7 +86,8 @@ def test_the_unit_of_a_bore_leaves_half_the_radius_sticking():
         contact = TwoBodies(STEEL, other, 0.005, 10.0, 0.3)
         a = contact.contact_radius
         angle = 3 * 0.3 * 10.0 / (4 * math.pi * contact.G * a**2) * hertz.D_half()
-        velocity, amplitude = groups(RealMotion("bore", 1e-3, angle, 100.0), contact)
+        motion = RealMotion("bore", "rad", 1e-3, angle, 100.0)
+        velocity, amplitude = MovingContact(contact, motion).groups
         assert amplitude == pytest.approx(1.0)
         assert velocity == pytest.approx(1e-3 / (2 * math.pi * 100.0 * angle * a))
 
@@ -106,9 +105,8 @@ def test_a_prediction_is_what_the_solver_says_of_its_groups():
     assert result.mu_apparent == pytest.approx(0.3 * answer.mu_macro)
     assert result.friction_force_N == pytest.approx(3.0 * answer.mu_macro)
     assert result.force_reduction == pytest.approx(1 - answer.mu_macro)
-    assert result.mu_static == pytest.approx(
-        0.0, abs=result.mu_static_error
-    )  # slides in each stroke
+    # the whole contact slides in each stroke
+    assert result.mu_static == pytest.approx(0.0, abs=result.mu_static_error)
 
 
 def test_two_balls_are_one_ball_of_half_the_radius():
@@ -120,33 +118,10 @@ def test_two_balls_are_one_ball_of_half_the_radius():
     assert hollow.contact_radius_m == pytest.approx(both.contact_radius_m * 4 ** (1 / 3))
 
 
-@pytest.mark.slow
-@pytest.mark.parametrize(
-    ("name", "motion"),
-    [
-        ("transverse", {"frequency": "20 kHz"}),
-        pytest.param("transverse", {"frequency": "50 Hz"}, marks=pytest.mark.long),
-        pytest.param("bore", {"frequency": "20 kHz"}, marks=pytest.mark.long),
-    ],
-)
-def test_the_amplitude_that_halves_friction_does(name, motion):
-    ball = BALL | {"material": "steel", "counterbody": "steel", "tolerance": 3e-3} | motion
-    wanted = microslip.predict(name, reduction="50 %", **ball)
-    assert wanted.force_reduction == pytest.approx(0.5, abs=2e-3)
-    there = microslip.predict(name, amplitude=wanted.amplitude_si, **ball)
-    assert there.mu_macro == pytest.approx(wanted.mu_macro, abs=1e-12)
-    for factor, sign in ((0.9, 1), (1.1, -1)):
-        near = microslip.predict(name, amplitude=factor * wanted.amplitude_si, **ball)
-        assert sign * (near.mu_macro - 0.5) > 0.01
-
-
 # Materials
 
 
-def test_a_material_may_be_given_as_a_record():
-    record = Material(210e9, 0.3)
-    request = EXAMPLE | {"young": None, "nu": None, "material": record}
-    assert microslip.predict("transverse", **request) == microslip.predict("transverse", **EXAMPLE)
+def test_a_material_has_units():
     assert Material("210 GPa", "30 %", "7.85 g/cm^3", "7 GPa") == Material(210e9, 0.3, 7850.0, 7e9)
 
 
@@ -168,45 +143,27 @@ def test_a_bad_material_is_refused_where_it_is_made(values, named, message):
     assert message in str(caught.value)
 
 
-# Bodies that fit closely
+# Warnings
 
+MILD = EXAMPLE | {"counterbody": "210 GPa, 0.3", "amplitude": "0.3 um", "tolerance": 0.1}
 FITTING = {"radius": "14 mm", "counter_radius": "-14.1 mm", "young": "50 MPa", "nu": 0.5}
 
 
-def test_a_contact_is_judged_against_the_smaller_body():
-    """Hertz: E* = 50/0.75 MPa and R = 14 * 14.1/0.1 mm give a = (3 F R/(4 E*))^(1/3) = 6.06 mm."""
-    result = microslip.predict("transverse", **EXAMPLE | FITTING)
-    assert result.contact_radius_m == pytest.approx(6.057e-3, rel=1e-3)
-    assert any("0.43 of the smaller radius" in text for text in result.warnings)
+def rigid_at(contact_radius, radius):
+    """Load with a contact radius on a rigid counterbody: F = 4 E* a^3 / (3 R)."""
+    load = 4.0 / 3.0 * (210e9 / 0.91) * contact_radius**3 / radius
+    return {"load": load, "counterbody": "rigid"}
 
 
-def test_two_equal_balls_are_judged_against_their_relative_curvature_too():
-    """A contact radius of 0.15 times either radius is 0.3 times that of relative curvature."""
-    load = 4.0 / 3.0 * (210e9 / 0.91) * (0.15 * 5e-3) ** 3 / 2.5e-3
-    result = microslip.predict("transverse", **EXAMPLE | {"counter_radius": 5e-3, "load": load})
-    assert any("0.3 of the radius of relative curvature" in text for text in result.warnings)
-
-
-@pytest.mark.parametrize("share", [0.49, 0.51])
-def test_half_the_radius_is_where_hertz_ends(share):
-    """The load that gives a contact radius a is F = 4 E* a^3 / (3 R)."""
-    load = 4.0 / 3.0 * (210e9 / 0.91) * (share * 5e-3) ** 3 / 5e-3
-    request = EXAMPLE | {"load": load}
-    if share < 0.5:
-        result = microslip.predict("transverse", **request)
-        assert any("0.49 of the smaller radius" in text for text in result.warnings)
-    else:
-        with pytest.raises(InputError, match=r"^radius = '5 mm': .* 0\.51 of this"):
-            microslip.predict("transverse", **request)
-
-
-# Warnings
-
-MILD = EXAMPLE | {"counterbody": "210 GPa, 0.3", "amplitude": "0.3 um"}
 WARNED = {
     "yields": {"hardness": "1.5 GPa"},
     "contact yields": {"hardness": "7 GPa", "counter_hardness": "1.5 GPa"},
-    "half-spaces": {"young": "5 MPa", "nu": 0.5},
+    # E* = 50/0.75 MPa and R = 14 * 14.1/0.1 mm give a = (3 F R/(4 E*))^(1/3) = 6.06 mm
+    "0.43 of the smaller radius": FITTING | {"counterbody": "rigid"},
+    "0.49 of the smaller radius": rigid_at(0.49 * 5e-3, 5e-3),
+    # 0.15 times the radius of either ball
+    "0.3 of the radius of relative curvature": rigid_at(0.15 * 5e-3, 2.5e-3)
+    | {"counter_radius": 5e-3},
     "amplitude": {"amplitude": "20 um"},
     "shear wave crosses": {"density": "7850 kg/m^3", "frequency": "20 MHz"},
     "slip speed": {"density": "7850 kg/m^3", "speed": "400 m/s"},
@@ -215,21 +172,24 @@ WARNED = {
     "clean smooth surfaces adhere": {"load": "10 mN"},
     "distance between atoms": {"amplitude": "0.1 nm"},
     "every metal, ceramic or glass": {"load": "40 kN"},
+    "internal losses": {"nu": 0.47},
 }
 
 
-@pytest.mark.slow
 def test_nothing_is_warned_of_without_reason():
-    assert microslip.predict("transverse", **MILD).warnings == ()
-    sure = microslip.predict("transverse", **MILD | {"hardness": "7 GPa", "density": "7850 kg/m^3"})
-    assert sure.warnings == ()
+    known = MILD | {"hardness": "7 GPa", "density": "7850 kg/m^3"}
+    assert microslip.predict("transverse", **known).warnings == ()
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("word", WARNED)
-def test_what_breaks_is_warned_of(word, monkeypatch):
+def test_what_breaks_is_warned_of(word):
     result = microslip.predict("transverse", **MILD | WARNED[word])
     assert sum(word in text for text in result.warnings) == 1
+
+
+def test_a_contact_above_half_the_radius_is_refused():
+    with pytest.raises(InputError, match=r"^radius = '5 mm': .* 0\.51 of this"):
+        microslip.predict("transverse", **MILD | rigid_at(0.51 * 5e-3, 5e-3))
 
 
 @pytest.mark.parametrize(
@@ -248,34 +208,27 @@ def test_a_hardness_is_a_pressure_on_any_scale(text, pressure):
 
 def test_small_spheres_adhere_by_derjaguin_and_large_soft_ones_by_johnson():
     """The pull-off force is 2 pi R W for a small hard sphere, 3/2 pi R W for a large soft one."""
-    motion = RealMotion("transverse", 1e-3, 1e-8, 1e3)
+    motion = RealMotion("transverse", "m", 1e-3, 1e-8, 1e3)
     for young, radius, share, theory, unit, name in (
         (210e9, 1e-8, 2.0, "DMT", 1e-9, "nN"),
         (1e6, 1e-2, 1.5, "JKR", 1e-3, "mN"),
     ):
         contact = TwoBodies(Material(young, 0.3), RIGID, radius, 1e-9, 0.3)
-        message = [text for text in broken_assumptions(contact, motion) if "adhere" in text]
+        message = [
+            text for text in broken_assumptions(MovingContact(contact, motion)) if "adhere" in text
+        ]
         pull = share * math.pi * radius * 0.05 / unit
         assert len(message) == 1
         assert f"about {pull:.2g} {name}" in message[0] and f": {theory})" in message[0]
 
 
-@pytest.mark.slow
-def test_what_was_not_checked_is_said():
+def test_a_check_without_its_property_is_named_with_the_body():
     assert len(microslip.predict("transverse", **MILD).not_checked) == 2
-    both = {"hardness": "7 GPa", "counter_hardness": "6 GPa"}
-    both |= {"density": "7850 kg/m^3", "counter_density": "7850 kg/m^3"}
-    assert microslip.predict("transverse", **MILD | both).not_checked == ()
-    glass = BALL | {"material": "glass", "amplitude": "1 um", "frequency": "1 kHz"}
-    assert microslip.predict("transverse", **glass).not_checked == ()
-
-
-def test_a_missing_property_is_said_with_its_body():
-    settings = MILD | {"material": "glass", "young": None, "nu": None, "counterbody": "gold"}
-    result = microslip.predict("transverse", **settings)
-    assert result.not_checked == (
-        "whether the bodies stay elastic (the hardness of the counterbody is missing)",
-    )
+    glass = MILD | {"material": "glass", "young": None, "nu": None}
+    missing = {"rigid": (), "gold": ("hardness of the counterbody",)}
+    for counterbody, names in missing.items():
+        texts = microslip.predict("transverse", **glass | {"counterbody": counterbody}).not_checked
+        assert len(texts) == len(names) and all(map(str.__contains__, texts, names))
 
 
 @pytest.mark.parametrize(
@@ -296,18 +249,18 @@ def test_two_elastic_constants_give_the_published_third(name, shear_modulus, rou
 
 def test_a_material_of_ones_own_and_a_pair_of_numbers_are_bodies():
     gold = microslip.Material(young="79 GPa", poisson=0.42)
+    named = MILD | {"young": None, "nu": None, "material": STEEL}
+    assert microslip.predict("transverse", **named) == microslip.predict("transverse", **MILD)
     lines = [
         microslip.predict("transverse", **MILD | {"counterbody": body})
         for body in ("79 GPa, 0.42", (79e9, 0.42), ("79 GPa", 0.42), gold)
     ]
-    assert lines[1:] == lines[:1] * 3
+    assert lines == lines[:1] * 4
     with pytest.raises(InputError, match="its Poisson's ratio 0.6: .* at most 0.5"):
         microslip.predict("transverse", **MILD | {"counterbody": (79e9, 0.6)})
 
 
-@pytest.mark.parametrize(
-    "speeds", [np.array([1e-3, 2e-3]), ["1 mm/s"], pd.Series([1e-3]), Q([1.0], "m/s")]
-)
+@pytest.mark.parametrize("speeds", [["1 mm/s"], Q([1.0], "m/s")])
 def test_several_speeds_are_for_predict_table(speeds):
     with pytest.raises(InputError, match="predict_table") as caught:
         microslip.predict("transverse", **MILD | {"speed": speeds})
@@ -320,10 +273,3 @@ def test_several_speeds_are_for_predict_table(speeds):
 def test_a_bore_of_no_amplitude_has_no_velocity_to_tell():
     still = microslip.predict("bore", amplitude="0 deg", frequency="20 Hz", **SPIN)
     assert (still.velocity, still.mu_macro, still.force_reduction) == (None, 1.0, 0.0)
-
-
-def test_a_reduction_is_looked_for_at_any_speed():
-    """A small spin has no effect at a high speed, and no amplitude has the reduction."""
-    with pytest.raises(InputError, match="^reduction = '50 %': no amplitude up to"):
-        fast = SPIN | {"speed": "1000 m/s", "tolerance": 0.01}
-        microslip.predict("bore", reduction="50 %", frequency="20 kHz", **fast)

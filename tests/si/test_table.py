@@ -9,6 +9,7 @@ import microslip
 from microslip.foundation.errors import InputError
 
 SHARED = {"material": "steel", "radius": "5 mm", "mu": 0.3, "frequency": "20 kHz"}
+SHARED |= {"tolerance": 0.01}
 CASES = {"load": ["10 N", "20 N"], "speed": [0.01, 0.1], "amplitude": ["1 um", "0.3 um"]}
 
 
@@ -52,10 +53,9 @@ def test_pandas_tables_and_files_are_cases(tmp_path):
     """A DataFrame of pandas.read_csv and its file give equal datasets."""
     text = "label;load [N];speed [mm/s];amplitude [um];reduction\na;10;1,5;1;\nb;20;2,5;0,3;\n"
     (tmp_path / "cases.csv").write_text(text)
-    shared = SHARED | {"tolerance": 0.01}
     frame = pd.read_csv(tmp_path / "cases.csv", sep=";", decimal=",")
-    by_file = microslip.predict_table("transverse", tmp_path / "cases.csv", decimal=",", **shared)
-    by_frame = microslip.predict_table("transverse", frame, **shared)
+    by_file = microslip.predict_table("transverse", tmp_path / "cases.csv", decimal=",", **SHARED)
+    by_frame = microslip.predict_table("transverse", frame, **SHARED)
     assert by_frame.mu_macro.values.tolist() == by_file.mu_macro.values.tolist()
     assert by_frame.speed_m_s.values.tolist() == [1.5e-3, 2.5e-3]
     assert by_frame.label.values.tolist() == ["a", "b"]

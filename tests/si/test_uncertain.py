@@ -7,7 +7,7 @@ import pytest
 
 import microslip
 from microslip.foundation.errors import InputError
-from microslip.si.uncertain import without_uncertainty
+from microslip.si.inputs import read_uncertain
 
 BALL = {"material": "steel", "counterbody": "steel", "radius": "5 mm", "load": "10 N", "mu": 0.3}
 SPIN = BALL | {"speed": "1 mm/s", "rotation": "10 rad/s"}
@@ -73,10 +73,12 @@ def test_where_an_end_has_no_answer_the_spread_is_endless():
     ],
 )
 def test_a_spread_in_per_cent_is_a_share_of_the_value(mu, ends):
-    plain, (one,) = without_uncertainty("transverse", {"mu": mu})
-    assert (one.low, one.high) == pytest.approx(ends) and "+-" not in plain["mu"]
+    one = read_uncertain("mu", mu, "transverse")
+    assert (one.si - one.deviation, one.si + one.deviation) == pytest.approx(ends)
 
 
 def test_an_end_that_predict_refuses_is_named():
-    with pytest.raises(InputError, match="^mu = '9': at one standard uncertainty, 14: mu: allowed"):
+    with pytest.raises(
+        InputError, match=r"^mu = '9 \+- 5': at one standard uncertainty, 14: mu: allowed"
+    ):
         microslip.predict("continuous-bore", **SPIN | {"mu": "9 +- 5"})

@@ -3,8 +3,10 @@
 import numpy as np
 import xarray as xr
 
+import microslip
+from microslip.app import question
 from microslip.config import load
-from microslip.datasets import certified_map
+from microslip.datasets import certified_map, netcdf
 from microslip.si.friction_map import FrictionMap
 from microslip.sweeps import evaluate, map_refinement
 from microslip.sweeps.batches import key_of
@@ -39,6 +41,19 @@ def played(map_, answer):
     return records
 
 
+def built(map_, answer):
+    """Dataset of a map; answer: function from a request to its record."""
+    return certified_map.build(map_, played(map_, answer))
+
+
+def reopened(dataset, folder) -> xr.Dataset:
+    """A dataset of a map, written to a file and read from it."""
+    path = folder / "certified.nc"
+    netcdf.write(path, dataset)
+    with microslip.open_map(path) as opened:
+        return opened.load()
+
+
 def first_requests(map_):
     """Requests of the first round, the only round for a constant."""
     result = {"mu_macro": 0.5, "velocity": 0.5, "converged": True}
@@ -57,7 +72,7 @@ def bore(**settings) -> xr.Dataset:
 
     axes = {"velocity": [0.01, 10], "amplitude": [0, 5], "adaptive": {"error": 0.02}}
     map_ = configured("bore", **axes | settings)
-    return certified_map.build(map_, played(map_, answer))
+    return built(map_, answer)
 
 
 def drift(force, amplitude):
@@ -82,7 +97,7 @@ def drifting(*, fails=lambda force, amplitude: False, **settings) -> xr.Dataset:
 
     drives = {"weights": DRIFT | {"adaptive": {"error": 1e-2}} | settings}
     (map_,) = load.from_mapping({"sweeps": PAPER, "drives": drives}).certified.values()
-    return certified_map.build(map_, played(map_, answer))
+    return built(map_, answer)
 
 
 def solved(request):
@@ -91,12 +106,12 @@ def solved(request):
     return {"key": key_of(request), "request": request, "result": result, "versions": {}}
 
 
-def open_without_points(monkeypatch, command):
-    """Let a command open a map of transverse that contains no point."""
+def open_without_points(monkeypatch):
+    """Let commands open a map of transverse that contains no point."""
 
     def outside(*_):
         raise ValueError("outside the map")
 
     monkeypatch.setattr(FrictionMap, "at", outside)
     dataset = xr.Dataset(attrs={"motion": "transverse"})
-    monkeypatch.setattr(command, "opened_map", lambda _: dataset)
+    monkeypatch.setattr(question, "_opened_map", lambda _: dataset)

@@ -102,7 +102,7 @@ def answered(results=result):
 
     def answer(request):
         calls.append(request)
-        key = batches.key_of(request, "d")
+        key = batches.key_of(request)
         return {"key": key, "result": results(request), "versions": {"numpy": "2.0"}}
 
     return answer, calls

@@ -8,6 +8,15 @@ from microslip.theory import paper
 FINE = {"velocity": np.geomspace(0.01, 10, 41), "amplitude": np.linspace(0.05, 4, 41)}
 
 
+def places(count, decades=(-3, 1), amplitude=(0, 3), seed=3):
+    """Velocities, random in these decades, and amplitudes in a range, as arrays of equal length."""
+    rng = np.random.default_rng(seed)
+    return (
+        xr.DataArray(10 ** rng.uniform(*decades, count), dims="n"),
+        xr.DataArray(rng.uniform(*amplitude, count), dims="n"),
+    )
+
+
 def eq6_map(error, velocity=FINE["velocity"], amplitude=FINE["amplitude"]):
     """Friction that increases with velocity and decreases with amplitude."""
     v, a = np.meshgrid(velocity, amplitude)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import xarray as xr
+from matplotlib.text import Text
 from stubs import claims_stub, drives_stub, propulsion_stub, studies_stub
 
 from microslip.studies import registry
@@ -36,7 +37,7 @@ def fake_transverse(n: int = 9) -> xr.Dataset:
             "history_velocity": 0.2,
             "history_amplitude": 1.0,
         },
-        coords={"amplitude": amplitude, "velocity": velocity},
+        coords={"amplitude": amplitude, "velocity": velocity, "poisson": 0.0},
         attrs={"tolerance": 1e-3},
     )
 
@@ -53,7 +54,7 @@ def fake_bore(n: int = 9) -> xr.Dataset:
             "mu_static_stick_zone_printed": (("amplitude",), paper.static_bore_printed(amplitude)),
             "mu_static": (("amplitude",), exact),
         },
-        coords={"amplitude": amplitude, "velocity": velocity},
+        coords={"amplitude": amplitude, "velocity": velocity, "poisson": 0.0},
     )
 
 
@@ -104,12 +105,17 @@ def fake_continuous_bore(n: int = 9, rings: int = 8) -> xr.Dataset:
             "transient_force_theory": end[0],
             "transient_torque_theory": end[1],
         },
-        coords={"velocity": velocity, "start": ["stress-free", "full-rotation", "full-slip"]},
+        coords={
+            "velocity": velocity,
+            "poisson": 0.0,
+            "start": ["stress-free", "full-rotation", "full-slip"],
+        },
     )
 
 
 def at_ratios(dataset, *ratios):
     """A dataset with a dimension poisson; each ratio adds a tenth of itself to mu_macro."""
+    dataset = dataset.drop_vars("poisson")
     parts = [dataset.assign(mu_macro=dataset.mu_macro + 0.1 * nu) for nu in ratios]
     both = xr.concat(parts, xr.Variable("poisson", list(ratios)), data_vars=["mu_macro"])
     both["mu_macro_change"] = both.mu_macro - both.mu_macro.isel(poisson=0)
@@ -187,6 +193,11 @@ def pulled() -> dict[str, xr.Dataset]:
     """Datasets of the figures of drives."""
     maps = {f"drift_{motion}": drives_stub.drift(motion) for motion in ("transverse", "bore")}
     return maps | drives_stub.pulled() | drives_stub.pairs()
+
+
+def words(figure) -> str:
+    """All texts of a figure."""
+    return " ".join(text.get_text() for text in figure.findobj(Text))
 
 
 def artists(where, gid: str) -> list:

@@ -1,10 +1,19 @@
-"""The command line in this process, which saves the start of Python."""
+"""The command line in this process, which saves the start of Python, and in another process."""
 
 import io
+import os
+import subprocess
+import sys
 from contextlib import redirect_stderr, redirect_stdout
+from pathlib import Path
 from subprocess import CompletedProcess
 
+import microslip
 from microslip.app import cli
+
+SOURCE = str(Path(microslip.__file__).parents[1])
+ENVIRONMENT = {**os.environ, "PYTHONPATH": SOURCE}
+"""Environment of a process that imports this package."""
 
 
 def run(*arguments):
@@ -16,3 +25,16 @@ def run(*arguments):
         except SystemExit as end:  # raised by argparse after --help
             code = end.code or 0
     return CompletedProcess(arguments, code, out.getvalue(), err.getvalue())
+
+
+def run_apart(*words, folder=None, **environment):
+    """Result of `microslip` with these arguments in another process, as users run it."""
+    return subprocess.run(
+        [sys.executable, "-m", "microslip", *map(str, words)],
+        cwd=folder,
+        env=ENVIRONMENT | environment,
+        capture_output=True,
+        text=True,
+        timeout=300,
+        check=False,
+    )

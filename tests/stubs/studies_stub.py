@@ -53,7 +53,7 @@ def answered(results):
 
     def answer(request):
         calls.append(canonical.canonical_json(request))
-        key = batches.key_of(request, "d")
+        key = batches.key_of(request)
         return {"key": key, "result": results(request), "versions": {"numpy": "2.0"}}
 
     return answer, calls

@@ -6,7 +6,8 @@ from scipy.integrate import quad
 from scipy.optimize import brentq
 from stubs.claims_stub import answered, configured, friction, result
 
-from microslip.datasets import netcdf, sweep_dataset
+from microslip.datasets import netcdf
+from microslip.report import claims_page
 from microslip.studies import registry
 from microslip.studies.claims import claims as requests
 from microslip.studies.claims import verdicts
@@ -32,7 +33,7 @@ def words(data):
 def claims(tmp_path_factory):
     """Dataset of the claims with invented results, read from disk."""
     path = tmp_path_factory.mktemp("claims") / "claims.nc"
-    sweep_dataset.write(judged(), path, registry.groups("claims"))
+    netcdf.write(path, *netcdf.divide(judged(), registry.groups("claims")))
     return netcdf.whole(path)
 
 
@@ -127,12 +128,10 @@ def turned_back(request, changed):
     }
 
 
-def full_sliding(request, changed):
-    return {"stick_left": [0.0] * 9, "stick_right": [0.0] * 9}
-
-
-def even_sides(request, changed):
-    return {"stick_left": [0.2] * 9, "stick_right": [0.2] * 9}
+def sticking(share):
+    """Both sides stick over a share of the contact all the time."""
+    sides = {"stick_left": [share] * 9, "stick_right": [share] * 9}
+    return of_kind("patches", lambda request, changed: sides)
 
 
 def beyond_eq38(velocity, amplitude):
@@ -158,8 +157,8 @@ FLIPPED = {
     "Eq 33 exact": (6, of_points("bore", eq33, static=True), NOT_DECIDED),
     "Eq 33 as the paper has it": (6, of_points("bore", below_eq33_below_two, static=True), HOLDS),
     "Eq 33 too low": (6, of_points("bore", lambda v, a: 0.8, static=True), NOT),
-    "full sliding": (7, of_kind("patches", full_sliding), NOT),
-    "stick on both sides": (7, of_kind("patches", even_sides), PARTLY),
+    "full sliding": (7, sticking(0.0), NOT),
+    "stick on both sides": (7, sticking(0.2), PARTLY),
     "no friction left": (8, of_points("bore", lambda v, a: 0.0, static=True), NOT),
     "bore falls with velocity": (9, of_points("bore", lambda v, a: 1 / (1 + v)), PARTLY),
     "Eq 37 exact": (10, of_points(STIFF, lambda v, a: eq37(a, v)), HOLDS),
@@ -169,14 +168,14 @@ FLIPPED = {
 
 @pytest.mark.slow
 @pytest.mark.parametrize("case", FLIPPED)
-def test_verdicts_follow_the_runs(case):
+def test_verdicts_follow_the_runs(case, claims):
     claim, results, expected = FLIPPED[case]
     # with one amplitude above 2, whose limit is large enough against the error of rings
     verdict = words(judged(results, amplitude_bore=[1, 3] if claim == 6 else [1, 3, 5]))
     assert verdict[claim] == expected
     elsewhere = {2: {1, 9}, 6: {5, 8, 9}, 8: {6, 9}, 1: {2, 9}, 5: {6, 9}, 9: {5, 6, 8}}
     untouched = set(verdict) - {claim} - elsewhere.get(claim, set())
-    base = words(judged())
+    base = words(claims)
     assert {k: verdict[k] for k in untouched} == {k: base[k] for k in untouched}
 
 
@@ -211,7 +210,7 @@ def test_a_solver_that_gives_up_leaves_gaps_and_no_more():
     assert {verdict[claim] for claim in (1, 2, 5, 6, 7, 8, 9, 10)} == {NOT_DECIDED}
     assert np.isnan(data["bore_paper"]).all()
     assert "patch_share" not in data
-    assert "none" in studies_page(data)
+    assert "none" in claims_page.page(data, ["a line"])
 
 
 # The dataset
@@ -294,9 +293,3 @@ def test_what_the_papers_run_is_off_by_is_split(claims):
 def test_the_report_has_a_line_for_every_statement(claims):
     lines = list(registry.report("claims", claims))
     assert lines == [f"claim {number}: {text}" for number, text in words(claims).items()]
-
-
-def studies_page(data):
-    from microslip.report import claims_page
-
-    return claims_page.page(data, ["a line"])

@@ -1,6 +1,7 @@
 """Numbers of the claims against quadrature, other models and the solver."""
 
 import math
+from unittest.mock import Mock
 
 import numpy as np
 import pytest
@@ -107,9 +108,7 @@ def test_a_single_run_is_what_the_command_line_has_and_is_timed_by_nobody(tmp_pa
 
 @pytest.mark.parametrize("error", [NoPeriodicState, StepFailure])
 def test_a_period_that_is_not_found_is_a_gap(error, tmp_path, monkeypatch):
-    def fails(*place, **sizes):
-        raise error("no periodic state")
-
+    fails = Mock(side_effect=error("no periodic state"))
     monkeypatch.setattr("microslip.adaptive.stick_area.period", fails)
     place = {"motion": "bore", "velocity": "0.1", "amplitude": "1", "poisson": "0"}
     request = {"kind": "patches", "cells": 8, "angles": 8, "steps": 16} | place

@@ -2,13 +2,11 @@
 
 import json
 
-import netCDF4
-import numpy as np
 import pytest
 import xarray as xr
 from stubs import claims_stub, propulsion_stub, studies_stub
 
-from microslip.datasets import netcdf, sweep_dataset
+from microslip.datasets import netcdf
 from microslip.foundation.canonical import canonical_json
 from microslip.studies import registry
 
@@ -32,7 +30,7 @@ def file(request, tmp_path_factory):
     """Name of a study, and the file of its dataset."""
     study = request.param
     path = tmp_path_factory.mktemp(study) / f"{study}.nc"
-    sweep_dataset.write(answered(study)[0], path, registry.groups(study))
+    netcdf.write(path, *netcdf.divide(answered(study)[0], registry.groups(study)))
     return study, path
 
 
@@ -70,13 +68,5 @@ def test_conventions_and_provenance(file):
 
 def test_equal_results_give_equal_bytes(file, tmp_path):
     study, path = file
-    sweep_dataset.write(answered(study)[0], tmp_path / "again.nc", registry.groups(study))
+    netcdf.write(tmp_path / "again.nc", *netcdf.divide(answered(study)[0], registry.groups(study)))
     assert (tmp_path / "again.nc").read_bytes() == path.read_bytes()
-
-
-def test_codes_are_bytes_with_meanings(tmp_path):
-    path = tmp_path / "claims.nc"
-    sweep_dataset.write(answered("claims")[0], path, registry.groups("claims"))
-    with netCDF4.Dataset(path) as raw:
-        assert raw["verdict"].flag_meanings == "not_decided holds holds_in_part does_not_hold"
-        assert raw["checks/check_outcome"].dtype == np.int8

@@ -3,8 +3,9 @@
 import numpy as np
 import pytest
 from stubs import propulsion_stub, studies_stub
+from stubs.figures_stub import artists
 
-from microslip.datasets import netcdf, sweep_dataset
+from microslip.datasets import netcdf
 from microslip.report.figures import drawing
 from microslip.studies import registry
 from microslip.sweeps import batches
@@ -29,7 +30,7 @@ def test_every_line_is_asked_for_once():
 
 
 def test_the_dataset_holds_what_was_answered_and_outlives_its_file(data, tmp_path):
-    sweep_dataset.write(data, tmp_path / "propulsion.nc", registry.groups("propulsion"))
+    netcdf.write(tmp_path / "propulsion.nc", *netcdf.divide(data, registry.groups("propulsion")))
     stored = netcdf.whole(tmp_path / "propulsion.nc")
     assert stored["stall_force"].values.tolist() == [0.2, -0.2, 0.0]
     middle = stored.sel(line="back").isel(point=1)  # middle of the line from (0, -0.2) to (-0.5, 0)
@@ -52,7 +53,7 @@ def test_the_figure_draws_every_line_and_computes_nothing(data):
     figure = drawing.draw("propulsion", {"propulsion": data})
     above, beside, below, _ = figure.axes
     for axes, name in ((above, "force"), (below, "efficiency")):
-        drawn = [line for line in axes.get_lines() if line.get_gid() == name]
+        drawn = artists(axes, name)
         lines = [line for line in drawn if line.get_linestyle() != "None"]  # without error bars
         assert len(lines) == 2
         for index, line in enumerate(lines):

@@ -7,6 +7,7 @@ from dataclasses import fields
 from pathlib import Path
 from types import SimpleNamespace
 from typing import get_args
+from unittest.mock import Mock
 
 import numpy as np
 import pytest
@@ -88,7 +89,7 @@ def test_references_are_ordinary_points_and_tight():
 @pytest.mark.parametrize("study", registry.DATASETS)
 def test_requests_are_plain_and_named_apart(study):
     requests = [json.loads(text) for text in asked(study, configured())]
-    names = {batches.key_of(request, "d") for request in requests}
+    names = {batches.key_of(request) for request in requests}
     assert len(names) == len({canonical_json(request) for request in requests})
     for request in requests:
         assert batches.group(request).split("/")[0] in set(batches.FOLDERS.values())
@@ -301,19 +302,10 @@ def test_what_does_not_apply_is_not_run(monkeypatch):
     assert not stub.calls
 
 
-@pytest.mark.parametrize(
-    "error",
-    [
-        SolverError("no"),
-        StepFailure("diverged"),
-    ],
-)
+@pytest.mark.parametrize("error", [SolverError("no"), StepFailure("diverged")])
 def test_a_method_that_fails_is_data(monkeypatch, error):
     Trials(monkeypatch)
-
-    def fail(*_, **__):
-        raise error
-
+    fail = Mock(side_effect=error)
     monkeypatch.setattr("microslip.adaptive.single_run.run_trial", fail)
     monkeypatch.setattr("microslip.solve", fail)
     probe = stability.probe(
@@ -327,16 +319,12 @@ def test_a_method_that_fails_is_data(monkeypatch, error):
 
 def test_probes_hand_on_the_method_and_the_resolution(monkeypatch):
     Trials(monkeypatch)
-    calls = {}
-
-    def solve(motion, velocity, amplitude, **settings):
-        calls.update(settings)
-        return SimpleNamespace(to_dict=lambda: {"mu_macro": math.nan, "solve_time_s": 1.0})
-
+    fields = {"mu_macro": math.nan, "solve_time_s": 1.0}
+    solve = Mock(return_value=SimpleNamespace(to_dict=lambda: fields))
     monkeypatch.setattr("microslip.solve", solve)
     study = configured(stability={"axes": ["steps"]}).stability
     result = evaluate.computed(stability.probe(study, "euler", *stability.cases(study)[2]))
-    assert calls == {
+    assert solve.call_args.kwargs == {
         "poisson": 0.0,
         "model": "auto",
         "method": "euler",
@@ -377,14 +365,8 @@ def test_a_rung_is_as_good_as_the_worst_of_it_and_the_finer_ones():
 
 def test_the_cheapest_is_within_the_tolerance():
     cost, error = [1.0, 2.0, 3.0, math.nan], [0.1, 0.01, 0.001, 0.0]
-    assert [fronts.cheapest(cost, error, t) for t in (1.0, 0.1, 0.05, 0.01, 0.005, 1e-4)] == [
-        0,
-        0,
-        1,
-        1,
-        2,
-        None,
-    ]
+    for tolerance, place in {1.0: 0, 0.1: 0, 0.05: 1, 0.01: 1, 0.005: 2, 1e-4: None}.items():
+        assert fronts.cheapest(cost, error, tolerance) == place
     assert fronts.cheapest([1.0], [math.nan], 1.0) is None
     assert fronts.cheapest([1.2, 1.0, 3.0], [0.0, 0.0, 0.0], 1.0) == 0  # equally cheap, and coarser
     assert fronts.cheapest([], [], 1.0) is None

@@ -2,6 +2,7 @@
 
 import errno
 import json
+from unittest.mock import Mock
 
 import numpy as np
 import pytest
@@ -106,29 +107,31 @@ REQUEST = {"kind": "point", "motion": "bore", "velocity": "0.1", "amplitude": "1
     ("name", "value"),
     [("motion", "transverse"), ("velocity", "0.11"), ("amplitude", "0"), ("cells", 8), ("new", 1)],
 )
-def test_everything_in_a_request_counts_for_the_name_of_its_result(name, value):
-    key = sweep.key_of(REQUEST, "d")
-    assert sweep.key_of({**REQUEST, name: value}, "d") != key
-    assert sweep.key_of(REQUEST, "e") != key
-    assert sweep.key_of(dict(reversed(REQUEST.items())), "d") == key
+def test_everything_in_a_request_counts_for_the_name_of_its_result(name, value, monkeypatch):
+    monkeypatch.setattr(source_digest, "of_request", lambda request: "of these sources")
+    key = sweep.key_of(REQUEST)
+    assert sweep.key_of({**REQUEST, name: value}) != key
+    assert sweep.key_of(dict(reversed(REQUEST.items()))) == key
+    monkeypatch.setattr(source_digest, "of_request", lambda request: "of other sources")
+    assert sweep.key_of(REQUEST) != key
 
 
 def test_swapped_values_and_the_format_of_records_count(monkeypatch):
-    key = sweep.key_of(REQUEST, "d")
-    assert sweep.key_of({**REQUEST, "velocity": "1", "amplitude": "0.1"}, "d") != key
+    key = sweep.key_of(REQUEST)
+    assert sweep.key_of({**REQUEST, "velocity": "1", "amplitude": "0.1"}) != key
     monkeypatch.setattr(sweep, "RECORD_FORMAT", 99)
-    assert sweep.key_of(REQUEST, "d") != key
+    assert sweep.key_of(REQUEST) != key
 
 
-def failing_at(monkeypatch, error, amplitude=2.0):
-    """Let the stub of the solver raise an error at one amplitude."""
+def failing_at(monkeypatch, error):
+    """Let the stub of the solver raise an error at the amplitude 2."""
     Solver(monkeypatch)
     solve = microslip.solve
 
-    def fail(motion, velocity, place, **settings):
-        if place == amplitude:
+    def fail(**arguments):
+        if arguments["amplitude"] == 2.0:
             raise error
-        return solve(motion, velocity, place, **settings)
+        return solve(**arguments)
 
     monkeypatch.setattr("microslip.solve", fail)
 
@@ -239,21 +242,14 @@ def test_an_error_of_the_code_or_the_machine_fails_the_batch(monkeypatch, store,
 
 
 def test_a_batch_in_which_every_point_fails_is_no_data(monkeypatch, store):
-    Solver(monkeypatch)
-
-    def fail(*_, **__):
-        raise SolverError("stalled")
-
-    monkeypatch.setattr("microslip.solve", fail)
-    with pytest.raises(SolverError, match=r"every point of this batch failed \(6\).*: stalled"):
-        sweep.run_batch(requests_of(), store)
+    failing_at(monkeypatch, SolverError("stalled"))
+    with pytest.raises(SolverError, match=r"every point of this batch failed \(2\).*: stalled"):
+        sweep.run_batch(requests_of(amplitude=[2]), store)
 
 
 @pytest.mark.parametrize("kind", sorted(sweep.FOLDERS))
 def test_a_failure_of_the_solver_is_a_gap_for_every_kind_of_request(monkeypatch, kind):
-    def fail(request):
-        raise SolverError("a root finder\nfound none")
-
+    fail = Mock(side_effect=SolverError("a root finder\nfound none"))
     monkeypatch.setitem(evaluate._KINDS, kind, fail)
     result = evaluate.computed({"kind": kind})
     assert result["converged"] is False

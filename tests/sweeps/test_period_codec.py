@@ -1,6 +1,7 @@
 """Stored periods: unpacked tractions, slips and forces equal the computed ones."""
 
 import json
+from unittest.mock import Mock
 
 import numpy as np
 import pytest
@@ -48,9 +49,7 @@ def test_a_stored_period_takes_few_bytes():
 
 
 def test_where_there_is_no_state_a_result_says_so(monkeypatch):
-    def none(**settings):
-        raise NoPeriodicState("velocity = 0.1: no periodic state")
-
+    none = Mock(side_effect=NoPeriodicState("velocity = 0.1: no periodic state"))
     monkeypatch.setattr("microslip.period", none, raising=False)
     result = evaluate.computed(asked(POINTS[0]))
     assert result == {"converged": False, "reason": "velocity = 0.1: no periodic state"}

@@ -67,10 +67,10 @@ def test_a_path_that_is_not_one_of_finite_numbers_is_refused(path):
         microslip.iwan(elements=2).force(path)
 
 
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=20, deadline=None)
 @given(st.sampled_from(PRESSURES), st.integers(1, 30), st.floats(-1.5, 1.5), st.floats(-1.5, 1.5))
 def test_loops_are_those_of_masing_within_the_error(pressure, elements, first, second):
-    model, fine = (microslip.iwan(pressure, elements=n) for n in (elements, 2000))
+    model, fine = (microslip.iwan(pressure, elements=n) for n in (elements, 1000))
     ends = [0.0, first, second, first, second]
     path = np.concatenate([np.linspace(a, b, 40) for a, b in zip(ends, ends[1:], strict=False)])
     difference = np.abs(model.force(path) - fine.force(path)).max()
@@ -83,16 +83,16 @@ def test_a_response_of_the_full_contact_agrees(pressure):
     path = np.array([0.0, 0.6, 1.2, 0.3, -0.7, -0.2, -0.5, 0.4, 0.1, 0.9])
     path = path if round_ else path[:4]
     model = microslip.iwan(pressure, elements=12)
-    full = microslip.response(path, pressure=pressure, tolerance=1e-4 if round_ else 2e-2)
+    full = microslip.response(path, pressure=pressure, tolerance=1e-3 if round_ else 2e-2)
     difference = np.abs(model.force(path) - full.force_forward)
     assert np.all(difference <= model.error_on_any_path + full.force_error[:, 0])
     assert np.all(difference[:3] <= model.error + full.force_error[:3, 0])
 
 
-@settings(max_examples=30, deadline=None)
+@settings(max_examples=20, deadline=None)
 @given(st.lists(st.floats(-2.0, 2.0), min_size=2, max_size=12), st.integers(1, 20))
 def test_random_paths_are_within_the_bound(path, elements):
-    model, fine = (microslip.iwan(elements=n) for n in (elements, 4000))
+    model, fine = (microslip.iwan(elements=n) for n in (elements, 1000))
     difference = np.abs(model.force(path) - fine.force(path)).max()
     assert difference <= model.error_on_any_path + fine.error_on_any_path
 
@@ -101,7 +101,7 @@ def test_the_error_contains_the_effect_of_poissons_ratio():
     model = microslip.iwan(poisson=0.4, elements=100)
     amplitude = 0.7
     path = amplitude * np.array([0, 0.5, 1, 0.5, 0, -0.5, -1, -0.5, 0, 0.5, 1])
-    full = microslip.response(path, poisson=0.4)
+    full = microslip.response(path, poisson=0.4, tolerance=2e-3)
     difference = np.abs(model.force(path) - full.force_forward)
     assert np.all(difference <= model.error + full.force_error[:, 0])
     assert difference.max() > 3.0 * model.force_error.max()  # so that the discretisation is smaller

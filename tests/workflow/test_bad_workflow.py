@@ -1,5 +1,6 @@
 """Bad input to the workflow: runs of Snakemake that end with one line, before any job."""
 
+import re
 from pathlib import Path
 
 import pytest
@@ -105,42 +106,37 @@ def content(folder):
     return {p: p.is_file() and p.read_bytes() for p in files}
 
 
-@pytest.fixture(scope="module")
-def done(tmp_path_factory):
-    """Finished runs of all cases, and the contents of their folders before."""
-
-    def run(case):
-        prepare, arguments, _ = CASES[case]
-        folder = project(tmp_path_factory.getbasetemp() / case.replace(" ", "_"), prepare)
-        before = content(folder)
-        return snakemake(folder, *MODES[case], *arguments), folder, before
-
-    return {case: run(case) for case in CASES}
-
-
 @pytest.mark.parametrize("case", CASES)
-def test_the_workflow_ends_with_one_line_before_any_job(case, done):
-    ended, folder, before = done[case]
+def test_the_workflow_ends_with_one_line_before_any_job(case, tmp_path):
+    prepare, arguments, message = CASES[case]
+    folder = project(tmp_path / "it", prepare)
+    before = content(folder)
+    ended = snakemake(folder, *MODES[case], *arguments)
     assert ended.returncode == 1
     assert ended.stdout == ""
     lines = [line for line in ended.stderr.splitlines() if "specific profile" not in line]
     assert len(lines) == 1
-    assert lines[0].startswith(f"Error in {CASES[case][2]}")
+    assert lines[0].startswith(f"Error in {message}")
     assert content(folder) == before
 
 
-def test_half_of_the_cases_are_runs():
-    assert sum(mode == ["-j1"] for mode in MODES.values()) >= 6
-    assert {mode for (mode,) in MODES.values()} == {"-n", "-j1"}
-
-
-def test_results_that_cannot_be_written_end_a_run_before_its_first_job(tmp_path):
-    folder = project(tmp_path / "full", given("results: /proc/none/here\n" + GOOD))
-    ended = snakemake(folder, "-j1", *GIVEN)
+@pytest.mark.parametrize(
+    ("content", "target", "message"),
+    [
+        (f"results: /proc/none/here\n{GOOD}", [],
+         "results: cannot write /proc/none/here/.again: .*make room or set perm"),
+        ("sweeps: {transverse: {velocity: [1], amplitude: [1]}}\n", ["explorer"],
+         "sweeps: no map for the explorer"),
+    ],
+)  # fmt: skip
+def test_results_that_cannot_be_made_end_a_run_before_its_first_job(
+    content, target, message, tmp_path
+):
+    folder = project(tmp_path / "it", given(content))
+    ended = snakemake(folder, *target, "-j1", *GIVEN)
     assert ended.returncode == 1
     line = ended.stderr.strip().splitlines()[-1]
-    assert line.startswith("Error in given.yaml: results: cannot write /proc/none/here/.again: ")
-    assert "make room or set perm" in line
+    assert re.match(f"Error in given.yaml: {message}", line)
     assert "rule warm_up" not in ended.stderr and "Traceback" not in ended.stderr
     assert not list((folder / ".snakemake" / "locks").glob("*"))  # no lock prevents the next run
 

@@ -145,9 +145,7 @@ def test_a_module_of_another_workflow_gives_the_same_dataset(ordinary):
     assert place.planned() == {}
 
 
-def test_a_module_may_be_the_whole_workflow_and_says_when_its_configuration_is_bad(
-    ordinary,
-):
+def test_a_module_may_be_the_whole_workflow_and_says_when_its_configuration_is_bad(ordinary):
     place = beside(ordinary, "deployed")
     (place.folder / "Snakefile").write_text(DEPLOYED)
     assert place.planned()["collect"] == 1
@@ -172,7 +170,7 @@ def installed(ordinary):
 
     def microslip(place, *arguments):
         return subprocess.run(
-            [sys.executable, "-m", "microslip.app.cli", *arguments],
+            [sys.executable, "-m", "microslip", *arguments],
             cwd=place.folder,
             env={**ENVIRONMENT, "PYTHONPATH": str(folder)},
             capture_output=True,

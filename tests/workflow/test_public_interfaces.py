@@ -22,9 +22,7 @@ MODULES = {
 }
 """Modules that the source may use.  In those of a package, the names in `__all__` are public."""
 OTHERS = {module.partition(".")[0] for module in MODULES}
-EXCEPTIONS = {
-    ROOT / "src/microslip/foundation/compiled.py": {"numba.config", "numba.np.arraymath"},
-}
+EXCEPTIONS = {ROOT / "src/microslip/foundation/compiled.py": {"numba.config", "numba.np.arraymath"}}
 """Other modules: the settings of Numba, and an import that Numba would do more slowly."""
 STANDARD = {"_asdict", "_exit", "_fields", "_replace"}
 """Public names of the standard library that begin with an underscore."""

@@ -5,8 +5,8 @@ import shutil
 
 import pytest
 import xarray as xr
-from matplotlib.text import Text
 from stubs import studies_stub
+from stubs.figures_stub import words
 from stubs.propulsion_stub import DRIVING
 from stubs.workflow_project import Project, jobs_in
 
@@ -229,8 +229,7 @@ def studies(tmp_path_factory):
 def texts(name, path):
     """All texts of a figure drawn from the dataset at `path`."""
     with netcdf.whole(path) as data:
-        figure = drawing.draw(name, {drawing.FIGURES[name][0]: data})
-        return " ".join(text.get_text() for text in figure.findobj(Text))
+        return words(drawing.draw(name, {drawing.FIGURES[name][0]: data}))
 
 
 def test_a_method_in_one_new_file_is_in_the_datasets_and_in_the_figures(studies):

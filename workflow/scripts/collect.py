@@ -17,8 +17,8 @@ import logging
 import xarray as xr
 
 from microslip.app.plan import product_job
-from microslip.datasets import certified_map, sweep_dataset
-from microslip.report import dataset_page, study_page
+from microslip.datasets import certified_map, netcdf, sweep_dataset
+from microslip.report import claims_page, dataset_page
 from microslip.studies import registry
 from microslip.sweeps import batches
 
@@ -39,7 +39,7 @@ def write_sweep(grid, paths) -> list[str]:
 def write_map(map_, records) -> list[str]:
     """Write the dataset and the page of a certified map; return the lines of its report."""
     data = certified_map.build(map_, records)
-    certified_map.write(path, data)
+    netcdf.write(path, data)
     lines = list(certified_map.report(data, name))
     dataset_page.write(snakemake.output.summary, data, lines)
     return lines
@@ -48,9 +48,10 @@ def write_map(map_, records) -> list[str]:
 def write_study(study, records) -> list[str]:
     """Write the dataset and the page of a study; return the lines of its report."""
     data = registry.build(study, configuration, batches.lookup(records))
-    sweep_dataset.write(data, path, registry.groups(study))
+    netcdf.write(path, *netcdf.divide(data, registry.groups(study)))
     lines = list(registry.report(study, data))
-    study_page.write(study, snakemake.output.summary, data, lines)
+    page = claims_page if study == "claims" else dataset_page
+    page.write(snakemake.output.summary, data, lines)
     return lines
 
 

@@ -3,14 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from typing import Any
 
 from microslip.foundation.arguments import (
     LARGEST,
     LARGEST_BODY,
     SMALLEST_STIFFNESS,
-    SMALLEST_TOLERANCE,
-    count,
-    is_real,
     real,
 )
 from microslip.foundation.errors import InputError
@@ -51,7 +49,7 @@ def checked_problem(
         If an argument is out of range, if a Problem is combined with other arguments, or if the
         Problem has a drive or several contacts.  The message names the argument.
     """
-    problem = _problem(motion, (velocity, amplitude, poisson), pressure)
+    problem = _problem(motion, velocity, amplitude, poisson, pressure)
     if problem.drive is not None:
         allowed = "allowed is none here: the velocity is prescribed"
         raise InputError("drive", str(problem.drive), allowed)
@@ -86,17 +84,17 @@ def checked_driven_problem(
         If an argument is out of range, or if a Problem is combined with other arguments.  The
         message names the argument.
     """
-    place = (velocity, amplitude, poisson)
+    more: dict[str, Any] = {}
     if isinstance(motion, Problem):
         _refuse_beside_problem(contacts=contacts, **drive)
-        problem = _problem(motion, place, pressure, backward=True)
-        if problem.drive is not None:
-            _refuse_drive(problem)
+        if motion.drive is not None:
+            _refuse_drive(motion)
     else:
-        checked = checked_drive(velocity, **drive)
-        problem = _problem(motion, place, pressure, backward=True)
-        several = () if contacts is None else contacts_of(contacts)
-        problem = replace(problem, drive=checked, contacts=several)
+        more["drive"] = checked_drive(velocity, **drive)
+        more["contacts"] = () if contacts is None else contacts_of(contacts)
+    problem = replace(
+        _problem(motion, velocity, amplitude, poisson, pressure, backward=True), **more
+    )
     refusal = contacts_refusal(problem) if problem.contacts else ""
     if refusal:
         raise InputError("contacts", contacts or contacts_text(problem.contacts), refusal)
@@ -105,21 +103,33 @@ def checked_driven_problem(
 
 def _problem(
     motion: str | Motion | Problem,
-    place: tuple[float | None, float | None, float],
+    velocity: float | None,
+    amplitude: float | None,
+    poisson: float,
     pressure: str | Pressure,
     backward: bool = False,
 ) -> Problem:
-    """Build the Problem at `place` = (velocity, amplitude, poisson), or return a given Problem."""
+    """Build a Problem, or check and return a given Problem.
+
+    backward: whether the velocity of a self-propelled motion can be negative.
+    """
+    given = motion if isinstance(motion, Problem) else None
     if isinstance(motion, Problem):
-        velocity, amplitude, poisson = place
         changed = {"pressure": None if pressure == HERTZ else pressure, "poisson": poisson or None}
         _refuse_beside_problem(velocity=velocity, amplitude=amplitude, **changed)
-        place = (motion.velocity, motion.amplitude, motion.poisson)
-        _place(motion.motion, motion.pressure, place, backward)
-        return motion
+        velocity, amplitude, poisson = motion.velocity, motion.amplitude, motion.poisson
+        pressure, motion = motion.pressure, motion.motion
     motion = motion if isinstance(motion, Motion) else motion_named(motion)
     pressure = pressure if isinstance(pressure, Pressure) else pressure_named(pressure)
-    return Problem(motion, *_place(motion, pressure, place, backward), pressure)
+    slowest = -LARGEST["velocity"] if backward and motion.propels else 0.0
+    velocity = real("velocity", 0.0 if velocity is None else velocity, slowest, LARGEST["velocity"])
+    if velocity < 0.0 and not pressure.mirrored:
+        allowed = f"allowed is a number of at least 0 under {pressure.name}"
+        raise InputError("velocity", velocity, f"{allowed}, which need not be symmetric")
+    poisson = real("poisson", poisson, 0.0, 0.5)
+    if motion.periodic and amplitude is not None:
+        amplitude = real("amplitude", amplitude, 0.0, LARGEST["amplitude"])
+    return given or Problem(motion, velocity, amplitude, poisson, pressure)
 
 
 def _refuse_drive(problem: Problem) -> None:
@@ -137,25 +147,6 @@ def _refuse_beside_problem(**arguments: object) -> None:
     for name, value in arguments.items():
         if value is not None:
             raise InputError(name, value, "allowed is none beside a Problem, which has its own")
-
-
-def _place(
-    motion: Motion,
-    pressure: Pressure,
-    place: tuple[float | None, float | None, float],
-    backward: bool,
-) -> tuple[float, float | None, float]:
-    """Check velocity, amplitude and Poisson's ratio; raises InputError if one is out of range."""
-    velocity, amplitude, poisson = place
-    slowest = -LARGEST["velocity"] if backward and motion.propels else 0.0
-    velocity = real("velocity", 0.0 if velocity is None else velocity, slowest, LARGEST["velocity"])
-    if velocity < 0.0 and not pressure.mirrored:
-        allowed = f"allowed is a number of at least 0 under {pressure.name}"
-        raise InputError("velocity", velocity, f"{allowed}, which need not be symmetric")
-    poisson = real("poisson", poisson, 0.0, 0.5)
-    if motion.periodic and amplitude is not None:
-        amplitude = real("amplitude", amplitude, 0.0, LARGEST["amplitude"])
-    return velocity, amplitude, poisson
 
 
 def checked_propulsion(
@@ -194,7 +185,7 @@ def checked_drive(
     Raises InputError, which names the argument.
     """
     if velocity is None and force is None:
-        raise InputError("velocity", None, "allowed is a number, or a force in its place")
+        raise InputError("velocity", None, "needed; allowed is a number, or a force in its place")
     if velocity is not None and force is not None:
         raise InputError("force", force, "allowed is a force or a velocity, not both")
     body = {"stiffness": stiffness, "mass": mass, "damping": damping}
@@ -216,27 +207,3 @@ def checked_drive(
                 raise InputError(name, body[name], allowed)
         return None
     return Spring(stiff, body["mass"] or 0.0, body["damping"] or 0.0)
-
-
-def checked_request(
-    tolerance: float | None, cells: int | None, steps: int | None
-) -> tuple[float | None, int | None, int | None]:
-    """Check the tolerance and the imposed resolution.
-
-    Raises InputError, which names the argument.
-    """
-    cells, steps = _count("cells", cells, 4), _count("steps", steps, 8)
-    if tolerance is not None:
-        tolerance = real("tolerance", tolerance, SMALLEST_TOLERANCE, 0.1)
-    return tolerance, cells, steps
-
-
-def refuse_bounds(**arguments: float | None) -> None:
-    """Raise InputError if an argument is neither None nor a number above 0."""
-    for name, value in arguments.items():
-        if value is not None and not (is_real(value) and value > 0.0):
-            raise InputError(name, value, "allowed is a number above 0")
-
-
-def _count(name: str, value: int | None, low: int) -> int | None:
-    return None if value is None else count(name, value, low, most=LARGEST[name], even=True)

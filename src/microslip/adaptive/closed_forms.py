@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
+from typing import NamedTuple
 
 from microslip.adaptive.request import Request
-from microslip.adaptive.result import Exact, Result, of_closed_form
+from microslip.adaptive.result import Result
 from microslip.estimate.estimate import Estimate
 from microslip.motions.problem import Problem
 from microslip.pressures.hertz import HERTZ
@@ -14,8 +15,6 @@ from microslip.solver.method_names import SHIPPED
 from microslip.theory import hertz, masing, paper
 from microslip.theory.exact import LARGEST_DROPS, STATIC_LIMITS
 
-CLOSED_FORM = "closed-form"
-"""Model name in results that need no run."""
 QUADRATURE = 1e-7
 """Error of the quadrature in Eqs 17 and 18 for pressures other than Hertz.  Such pressures can have
 kinks."""
@@ -27,36 +26,64 @@ ROUNDING = 1e-12
 """Error of closed forms that need no quadrature."""
 
 
-def exact_result(request: Request) -> Result | None:
-    """Result in closed form, or None if there is no closed form."""
-    exact = no_vibration(request.problem)
-    if exact is None and request.chosen and request.method == SHIPPED:
-        exact = unless_imposed(request.problem, request.tolerance, request.cells, request.steps)
-    if exact is None:
-        return None
-    used = CLOSED_FORM if request.chosen else request.model
-    return of_closed_form(request.point | {"model": used}, exact, request.seconds)
+class Exact(NamedTuple):
+    """Quantities of a Result in closed form.
+
+    Attributes
+    ----------
+    friction : Estimate
+        Mean friction.
+    torque : Estimate or None
+        Torque divided by its value at zero forward velocity; None for oscillating motions.
+    dissipation : Estimate or None
+        Dissipated energy per period, divided by mu F_z u_lim; None for steady motions.
+    """
+
+    friction: Estimate
+    torque: Estimate | None = None
+    dissipation: Estimate | None = None
+
+
+def exact_for(request: Request) -> Exact | None:
+    """Closed form for a request; None if there is none or if an imposed resolution requires a
+    march."""
+    problem = request.problem
+    exact = no_vibration(problem)
+    needs_march = problem.velocity > 0.0 and not (request.cells is None and request.steps is None)
+    if exact is None and request.chosen and request.method == SHIPPED and not needs_march:
+        exact = closed_form(problem, request.tolerance or 0.0)
+    return exact
+
+
+def of_closed_form(request: Request, exact: Exact) -> Result:
+    """Build the Result of a closed form."""
+    error, tolerance = exact.friction.error, request.tolerance
+    within = tolerance is None or error <= tolerance
+    return Result(
+        **request.point | exact._asdict(),
+        model=request.model_without_runs,
+        converged=within,
+        periodic=True,
+        reason="" if within else f"the error is {error:.1e}, above the tolerance of {tolerance:g}",
+        solve_time_s=request.seconds,
+    )
 
 
 def no_vibration(problem: Problem) -> Exact | None:
     """Closed form for any model if the amplitude is 0, otherwise None."""
     still = problem.motion.periodic and problem.amplitude == 0.0
-    return Exact(1.0, ROUNDING, energy=_of_drag(problem, 1.0, ROUNDING)) if still else None
+    return _of_drag(problem, _within(1.0, ROUNDING), _within(1.0, ROUNDING)) if still else None
 
 
-def _of_drag(problem: Problem, mu: float, error: float) -> Estimate:
-    """Energy that the friction force `mu` dissipates over the mean displacement in a period."""
+def _within(value: float, error: float) -> Estimate:
+    """Estimate of a value in closed form."""
+    return Estimate(value, {"model": error})
+
+
+def _of_drag(problem: Problem, friction: Estimate, drag: Estimate) -> Exact:
+    """Closed form of a contact that dissipates the work of the force `drag` over its drift."""
     work = 2.0 * math.pi * problem.mean_load * problem.drift
-    return work * Estimate(mu, {"model": error})
-
-
-def unless_imposed(
-    problem: Problem, tolerance: float | None, cells: int | None, steps: int | None
-) -> Exact | None:
-    """Result of `closed_form`, or None if an imposed resolution requires a march."""
-    if problem.velocity > 0.0 and not (cells is None and steps is None):
-        return None
-    return closed_form(problem, tolerance or 0.0)
+    return Exact(friction, dissipation=work * drag)
 
 
 def closed_form(problem: Problem, tolerance: float) -> Exact | None:
@@ -93,42 +120,45 @@ def closed_form(problem: Problem, tolerance: float) -> Exact | None:
         if limit is None or (problem.poisson > 0.0 and not limit.any_poisson):
             return None
         return _static(problem, limit.function)
-    largest_drop = LARGEST_DROPS.get(motion.name)
-    if largest_drop is not None and not (motion.rotates and problem.pressure != HERTZ):
-        drop = largest_drop(velocity, amplitude)
-        if 0.5 * drop + ROUNDING <= tolerance:
-            return bracket(problem, drop)
-    return None
+    return fast_sliding(problem, tolerance)
 
 
-def bracket(problem: Problem, drop: float) -> Exact:
-    """Midpoint of the bounds for fast sliding; `drop` is the largest value of 1 - mu.
+def fast_sliding(problem: Problem, tolerance: float) -> Exact | None:
+    """Midpoint of the bounds for fast sliding, or None if they differ by more than the tolerance.
 
     Per radian, the dissipated energy is between the drift d and d (1 + drop / (4 - 2 drop)), see
-    theory/bounds.py.
+    theory/bounds.py.  `drop` is the largest value of 1 - mu.
     """
-    error, excess = 0.5 * drop + ROUNDING, 0.5 * drop / (4.0 - 2.0 * drop)
-    energy = _of_drag(problem, 1.0 + excess, excess + ROUNDING)
-    return Exact(1.0 - 0.5 * drop, error, energy=energy)
+    motion = problem.motion
+    largest_drop = LARGEST_DROPS.get(motion.name)
+    if largest_drop is None or (motion.rotates and problem.pressure != HERTZ):
+        return None
+    drop = largest_drop(problem.velocity, problem.size)
+    error = 0.5 * drop + ROUNDING
+    if error > tolerance:
+        return None
+    excess = 0.5 * drop / (4.0 - 2.0 * drop)
+    drag = _within(1.0 + excess, excess + ROUNDING)
+    return _of_drag(problem, _within(1.0 - 0.5 * drop, error), drag)
 
 
 def _steady_bore(problem: Problem) -> Exact | None:
     """Steady bore motion from Eqs 17 and 18, or from Eqs 21 and 22 for a sphere."""
     velocity = problem.velocity
     if problem.pressure == HERTZ:
-        forward, torque = paper.bore_forward(velocity), paper.bore_torque(velocity)
-        return Exact(float(forward), ROUNDING, float(torque))
+        both = paper.bore_forward(velocity), paper.bore_torque(velocity)
+        return Exact(*(_within(float(value), ROUNDING) for value in both))
     if not problem.pressure.is_round:
         return None
     from microslip.theory import axisymmetric  # imported here because it loads slowly
 
-    forward, torque = axisymmetric.bore_of(problem.pressure.bound, velocity)
-    return Exact(float(forward), QUADRATURE, float(torque))
+    both = axisymmetric.bore_of(problem.pressure.bound, velocity)
+    return Exact(*(_within(float(value), QUADRATURE) for value in both))
 
 
 def _exact(mu: float, energy: float, error: float) -> Exact:
     """Build an Exact; `error` is absolute for the friction, and relative for an energy above 1."""
-    return Exact(mu, error, energy=Estimate(energy, {"model": error * max(1.0, energy)}))
+    return Exact(_within(mu, error), dissipation=_within(energy, error * max(1.0, energy)))
 
 
 def _static(problem: Problem, of_sphere: Callable) -> Exact | None:
@@ -146,4 +176,4 @@ def _static(problem: Problem, of_sphere: Callable) -> Exact | None:
     place = float(hertz.bore_angle(amplitude, problem.poisson)), problem.poisson
     mu = of_sphere(amplitude) if sphere else limits.static_bore(pressure, *place)
     energy = limits.torsion_energy(pressure, *place)
-    return _exact(float(mu), energy, OF_RECORD)._replace(error=error)
+    return _exact(float(mu), energy, OF_RECORD)._replace(friction=_within(float(mu), error))

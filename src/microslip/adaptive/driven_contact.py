@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
-from functools import partial
 from operator import attrgetter
 
-from microslip.adaptive.closed_forms import CLOSED_FORM, ROUNDING, bracket
-from microslip.adaptive.request import Request, driven_by, verdict, within_friction
-from microslip.adaptive.result import Exact, Result, of_closed_form
+from microslip.adaptive.closed_forms import Exact, fast_sliding, of_closed_form
+from microslip.adaptive.friction import ladder_of
+from microslip.adaptive.request import Request, driven_by, result_of_runs
+from microslip.adaptive.result import Result
 from microslip.adaptive.several import solve_each
 from microslip.adaptive.under_force import (
     CLOSEST_FORCE,
@@ -18,28 +18,21 @@ from microslip.adaptive.under_force import (
     force_of,
     is_even,
     oscillates,
-    refuse_nearly_full,
-    refuse_steady,
     runs_away,
     steady_velocity,
     velocity_near,
     without_forward_motion,
 )
 from microslip.estimate.estimate import Estimate
-from microslip.estimate.ladder import ladder_for, refuse_free, with_mass
-from microslip.estimate.refine import UNKNOWN, Refined, refine, run_tolerance
-from microslip.foundation.errors import InputError
-from microslip.models.registry import MODELS
+from microslip.estimate.ladder import with_mass
+from microslip.estimate.refine import UNKNOWN, Levels, Refined, refine, run_tolerance
 from microslip.motions.drive import Force
 from microslip.motions.problem import Problem
-from microslip.pressures.hertz import HERTZ
 from microslip.solver.body_run import simulate_each
 from microslip.solver.budget import Spent
 from microslip.solver.discretise import Resolution, contact_of
 from microslip.solver.driven_run import Accuracy, simulate_driven
-from microslip.solver.method_names import SHIPPED
 from microslip.solver.run import Run, Settings
-from microslip.theory.exact import LARGEST_DROPS
 
 STEADY_ERROR = 1e-9
 """Error estimate of the velocity v of a steady motion under a force, divided by max(1, v)."""
@@ -66,38 +59,8 @@ GAP_MARGIN = 2.0
 error."""
 
 
-def refuse_drive(problem: Problem, model: str) -> None:
-    """Raise InputError if the model or the motion cannot be combined with the drive."""
-    motion, drive = problem.motion, drive_of(problem)
-    pulls = "stiffness" if drive.force is None else "force"
-    if drive.force is not None and drive.force < 0.0 and not problem.propels:
-        allowed = f"allowed is a number of at least 0: {motion.name} propels nothing"
-        raise InputError("force", drive.force, allowed)
-    if not MODELS[model].drivable:
-        raise InputError("model", model, f"supports no {pulls}, only a prescribed velocity")
-    if drive.force is not None:
-        if not motion.periodic:
-            refuse_steady(problem)
-        refuse_nearly_full(problem)
-    elif motion.periodic and problem.velocity == 0.0 and not is_even(problem):
-        allowed = f"allowed is a number above 0 where a spring pulls {motion.name}"
-        raise InputError("velocity", 0.0, allowed)
-
-
-def refuse_request(request: Request) -> None:
-    """Raise InputError if the model, the motion or the method cannot be combined with the drive."""
-    drive = drive_of(request.problem)
-    refuse_drive(request.problem, request.model)
-    if request.method != SHIPPED:
-        pulls = "stiffness" if drive.force is None else "force"
-        raise InputError("method", request.method, f"allowed is {SHIPPED} with a {pulls}")
-
-
 def solve_driven(request: Request) -> Result:
-    """Compute the friction of a driven contact, or its velocity under a prescribed force.
-
-    The caller must check the request with `refuse_request` first.
-    """
+    """Compute the friction of a driven contact, or its velocity under a prescribed force."""
     problem, drive = request.problem, drive_of(request.problem)
     if drive.force is not None:
         return _under_force(request)
@@ -107,15 +70,8 @@ def solve_driven(request: Request) -> Result:
         return replace(answer, **driven_by(drive))
     exact = _fast(request)
     if exact is not None:
-        return of_closed_form(request.point | {"model": CLOSED_FORM}, exact, request.seconds)
-    refined = _refined(request, Accuracy(request.accuracy))
-    return Result(
-        **request.point,
-        model=request.model,
-        friction=within_friction(problem, refined.value),
-        dissipation=refined.energy,
-        **verdict(request, refined, request.tolerance),
-    )
+        return of_closed_form(request, exact)
+    return result_of_runs(request, _refined(request, Accuracy(request.accuracy)), request.tolerance)
 
 
 def _fast(request: Request) -> Exact | None:
@@ -125,24 +81,19 @@ def _fast(request: Request) -> Exact | None:
     applies to a body on a spring.  Over a period, the spring does the work of the mean force, a
     mass does no work, and a dashpot dissipates energy.
     """
-    motion = request.problem.motion
-    imposed = request.cells is not None or request.steps is not None
-    if not request.chosen or imposed or request.tolerance is None or request.problem.parts:
-        return None
-    if motion.name not in ("transverse", "bore") or (
-        motion.rotates and request.problem.pressure != HERTZ
-    ):
-        return None
-    drop = LARGEST_DROPS[motion.name](request.problem.velocity, request.problem.size)
-    return bracket(request.problem, drop) if 0.5 * drop + ROUNDING <= request.tolerance else None
-
-
-def _driven(request: Request, **drive: float) -> Request:
-    """Copy a request and replace fields of its drive."""
     problem = request.problem
-    changed = problem.drive
-    assert isinstance(changed, Force)
-    return replace(request, problem=replace(problem, drive=replace(changed, **drive)))
+    imposed = request.cells is not None or request.steps is not None
+    if not request.chosen or imposed or request.tolerance is None or problem.parts:
+        return None
+    if problem.motion.name not in ("transverse", "bore"):
+        return None
+    return fast_sliding(problem, request.tolerance)
+
+
+def _under(force: float, request: Request) -> Request:
+    """Copy a request and replace its force."""
+    drive = Force(force, drive_of(request.problem).mass)
+    return replace(request, problem=replace(request.problem, drive=drive))
 
 
 def _under_force(request: Request) -> Result:
@@ -152,7 +103,7 @@ def _under_force(request: Request) -> Result:
         request = replace(request, problem=without_forward_motion(request.problem))
     problem, force = request.problem, force_of(request.problem)
     if force < 0.0 and not problem.propels:  # solved as the mirror image of a forward force
-        ahead = _under_force(_driven(request, force=-force))
+        ahead = _under_force(_under(-force, request))
         return replace(
             ahead, force=force, friction=-ahead.friction, mean_velocity=-ahead.mean_velocity
         )
@@ -243,7 +194,7 @@ def _without_runs(
     force, tolerance = force_of(request.problem), request.tolerance
     return Result(
         **request.point | {"mean_velocity": Estimate(velocity, {"model": error})},
-        model=CLOSED_FORM if request.chosen else request.model,
+        model=request.model_without_runs,
         friction=Estimate(math.copysign(1.0, force) if reason else force),
         dissipation=energy if request.problem.motion.periodic else None,
         converged=not reason and (tolerance is None or error <= tolerance * max(1.0, velocity)),
@@ -260,7 +211,7 @@ def _moving(request: Request, moving_force: float) -> Result:
     than the requested force, the velocity lies between 0 and the velocity in the runs.
     """
     force, original = force_of(request.problem), request
-    request = _driven(request, force=moving_force)
+    request = _under(moving_force, request)
     try:
         near = _near(request)
     except Spent as spent:
@@ -286,13 +237,8 @@ def _moving(request: Request, moving_force: float) -> Result:
     refined = replace(refined, value=estimate)
     tolerance = request.tolerance
     largest = None if tolerance is None else tolerance * max(1.0, abs(estimate.value))
-    return Result(
-        **original.point | {"mean_velocity": estimate},
-        model=request.model,
-        friction=Estimate(force),
-        dissipation=refined.energy,
-        **verdict(request, refined, largest),
-    )
+    more = {"mean_velocity": estimate, "friction": Estimate(force)}
+    return result_of_runs(original, refined, largest, **more)
 
 
 def _near(request: Request) -> Near:
@@ -303,13 +249,10 @@ def _near(request: Request) -> Near:
     """
     moving = replace(request.problem, velocity=FIRST_VELOCITY)
     force = force_of(request.problem)
-    ladder = ladder_for(moving, request.model, COARSE_TOLERANCE, request.cells, request.steps)
-    if request.tolerance is None:
-        refuse_free(ladder, request.cells, request.steps)
+    ladder = ladder_of(replace(request, problem=moving), COARSE_TOLERANCE)
     coarse = ladder.resolution(ladder.levels(COARSE_TOLERANCE)[0])
     settings = Settings(request.how, budget=request.budget)
-    if request.progress is not None:
-        request.progress(coarse)
+    request.show(coarse)
 
     def friction_at(velocity: float) -> float:
         there = replace(moving, velocity=velocity)
@@ -340,26 +283,24 @@ def _refined(request: Request, accuracy: Accuracy) -> Refined:
     """Refine the runs of a driven contact to an accuracy."""
     problem, tolerance = request.problem, accuracy.tolerance
     drive = drive_of(problem)
-    ladder = ladder_for(problem, request.model, tolerance, request.cells, request.steps)
     contact = contact_of(problem, request.model, COARSEST)
-    ladder, unresolved = with_mass(ladder, problem, contact, drive.mass, tolerance)
+    ladder, unresolved = with_mass(
+        ladder_of(request, tolerance), problem, contact, drive.mass, tolerance
+    )
     share = accuracy._replace(tolerance=run_tolerance(tolerance))
-    if request.tolerance is None:
-        refuse_free(ladder, request.cells, request.steps)
     settings = Settings(request.how, budget=request.budget)
 
-    def run(resolution: Resolution, guess: Run | None, problem: Problem = problem) -> Run:
-        if request.progress is not None:
-            request.progress(resolution)
+    def run(problem: Problem, resolution: Resolution, guess: Run | None) -> Run:
+        request.show(resolution)
         return simulate_driven(problem, request.model, resolution, share, settings, guess=guess)
 
-    readings = [partial(run, problem=other) for other in problem.readings]
+    levels = Levels(run, ladder, problem, *problem.readings)
     read = attrgetter("mu" if drive.force is None else "velocity")
     unit, work = problem.largest_energy, 0.0
     if drive.force is not None:  # a velocity error changes the drift and the forces
         work = 2.0 * math.pi * problem.mean_load * problem.unit_drift * abs(drive.force)
         unit = accuracy.slope * unit + work
-    refined = refine(run, ladder, tolerance, readings, read, energy_unit=unit, drive_work=work)
+    refined = refine(levels, tolerance, read, energy_unit=unit, drive_work=work)
     if unresolved and refined.converged:
         refined = replace(refined, converged=False, reason=unresolved)
     return refined

@@ -2,18 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import replace
-from functools import cache, partial
-from typing import NamedTuple
+from functools import cache
 
-from microslip.adaptive.choice import choose_model
-from microslip.adaptive.closed_forms import no_vibration, unless_imposed
+from microslip.adaptive.closed_forms import exact_for
 from microslip.adaptive.continuation import run_safely
-from microslip.adaptive.request import TOLERANCE, Request, verdict, within_friction
+from microslip.adaptive.request import Request, result_of_runs
 from microslip.adaptive.result import Result
 from microslip.estimate.ladder import Ladder, ladder_for, refuse_free
-from microslip.estimate.refine import refine, run_tolerance
+from microslip.estimate.refine import Levels, refine, run_tolerance
 from microslip.motions.problem import Problem
 from microslip.solver.discretise import Resolution
 from microslip.solver.method_names import SHIPPED
@@ -23,44 +20,34 @@ from microslip.solver.static_run import simulate_static
 from microslip.solver.stick_edge import edge_focus
 
 
-class Plan(NamedTuple):
-    """Runs of a contact at a prescribed velocity, as arguments of refine.refine.
+def ladder_of(request: Request, tolerance: float) -> Ladder:
+    """Ladder for the problem of a request.
 
-    Attributes
-    ----------
-    run : callable
-        Function `run(resolution, guess)` that returns a run.Run.
-    ladder : ladder.Ladder
-        Ladder of resolutions.
-    readings : list of callable
-        Functions like `run` that use other interpolations of the same data, see Problem.readings.
+    Raises InputError if a resolution would have to be chosen without a tolerance of the request.
     """
-
-    run: Callable
-    ladder: Ladder
-    readings: list[Callable]
-
-
-def plan_for(request: Request) -> Plan:
-    """Make the Plan of a point whose velocity is at least 0.
-
-    The runs of the plan raise budget.Spent if the point's budget is exceeded.
-    """
-    problem, motion, tolerance = request.problem, request.problem.motion, request.accuracy
-    ladder = ladder_for(problem, request.model, tolerance, request.cells, request.steps)
+    imposed = request.cells, request.steps
+    ladder = ladder_for(request.problem, request.model, tolerance, *imposed)
     if request.tolerance is None:
-        refuse_free(ladder, request.cells, request.steps)
-    share = run_tolerance(tolerance)
+        refuse_free(ladder, *imposed)
+    return ladder
+
+
+def levels_for(request: Request) -> Levels:
+    """Runs of a contact at a prescribed velocity of at least 0.
+
+    The runs raise budget.Spent if the point's budget is exceeded.
+    """
+    problem, motion = request.problem, request.problem.motion
+    share = run_tolerance(request.accuracy)
 
     @cache  # the search for the slip front is charged once
     def settings() -> Settings:
         focus = edge_focus(problem, request.model, request.budget, request.progress)
         return Settings(request.how, budget=request.budget, focus=focus)
 
-    def run(resolution: Resolution, guess: Run | None, problem: Problem = problem) -> Run:
+    def run(problem: Problem, resolution: Resolution, guess: Run | None) -> Run:
         how = settings()
-        if request.progress is not None:
-            request.progress(resolution)
+        request.show(resolution)
         if problem.velocity == 0.0 and motion.periodic:
             return simulate_static(problem, request.model, resolution, share, how)
 
@@ -73,29 +60,17 @@ def plan_for(request: Request) -> Plan:
             return run_at(problem.velocity, guess)
         return run_safely(run_at, problem.velocity, guess)
 
-    readings: list[Callable] = [partial(run, problem=other) for other in problem.readings]
-    return Plan(run, ladder, readings)
+    return Levels(run, ladder_of(request, request.accuracy), problem, *problem.readings)
 
 
 def solve_friction(request: Request) -> Result:
     """Compute the Result of a contact at a prescribed velocity, by runs of a model."""
-    problem, (run, ladder, readings) = request.problem, plan_for(request)
-    refined = refine(run, ladder, request.accuracy, readings, energy_unit=problem.largest_energy)
-    return Result(
-        **request.point,
-        model=request.model,
-        friction=within_friction(problem, refined.value),
-        torque=None if problem.motion.periodic else refined.torque,
-        dissipation=refined.energy if problem.motion.periodic else None,
-        **verdict(request, refined, request.tolerance),
-    )
+    unit = request.problem.largest_energy
+    refined = refine(levels_for(request), request.accuracy, energy_unit=unit)
+    return result_of_runs(request, refined, request.tolerance)
 
 
-def refuse_choice(problem: Problem, model: str, cells: int | None, steps: int | None) -> None:
+def refuse_choice(request: Request) -> None:
     """Raise InputError if a resolution would have to be chosen without a tolerance."""
-    exact = no_vibration(problem)
-    if exact is None and model == "auto":
-        exact = unless_imposed(problem, None, cells, steps)
-    if exact is None:
-        name = choose_model(problem, model)
-        refuse_free(ladder_for(problem, name, TOLERANCE, cells, steps), cells, steps)
+    if exact_for(request) is None:
+        ladder_of(request, request.accuracy)

@@ -132,9 +132,8 @@ def _answer(request: Request) -> Result:
     if request.problem.drive is None:
         return solve_each(request)
     # imported here because it loads compiled code
-    from microslip.adaptive.driven_contact import refuse_request, solve_driven
+    from microslip.adaptive.driven_contact import solve_driven
 
-    refuse_request(request)
     return solve_driven(request)
 
 

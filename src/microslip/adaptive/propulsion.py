@@ -29,16 +29,16 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import dataclass, replace
-from functools import partial
+from functools import cache
 from operator import attrgetter
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
 from microslip.adaptive.checks import checked_propulsion
-from microslip.adaptive.friction import Plan, plan_for
+from microslip.adaptive.friction import levels_for
 from microslip.adaptive.request import TOLERANCE, Request, request_for
-from microslip.estimate.refine import refine
+from microslip.estimate.refine import Levels, refine
 from microslip.foundation.arguments import count
 from microslip.foundation.errors import InputError
 from microslip.foundation.number_text import number_text
@@ -46,7 +46,6 @@ from microslip.motions.motion import Motion
 from microslip.motions.problem import Problem
 from microslip.pressures.hertz import HERTZ
 from microslip.pressures.pressure import Pressure
-from microslip.solver.discretise import Resolution
 from microslip.solver.run import Run
 
 POINTS, MOST_POINTS = 9, 1000
@@ -213,84 +212,62 @@ class Answer(NamedTuple):
 
 
 class _Contact:
-    """Friction and power of a motion at velocities of at least 0.  No run is repeated."""
+    """Friction and power of a motion at velocities of at least 0.  No run is repeated.
 
-    def __init__(self, request: Request):
-        self.request, self.sign = request, 1
-        self.cache: dict[object, Any] = {}
-        self.speed = request.problem.mean_speed
+    Attributes
+    ----------
+    sign : int
+        1 for the forward direction of the request, -1 for the opposite direction.
+    speed : float
+        Mean speed of the oscillation.
+    drift : float
+        Forward displacement per radian of phase at the velocity 1, in u_lim.
+    first : float
+        Velocity equal to the mean speed of the oscillation, at which a search starts.
+    friction, power : callable
+        Functions of the velocity that return an Answer: the friction, and the mean power of the
+        oscillation.
+    """
 
-    @property
-    def drift(self) -> float:
-        """Forward displacement per radian of phase at the velocity 1, in u_lim."""
-        problem = self.request.problem
-        return problem.unit_drift
-
-    @property
-    def first(self) -> float:
-        """Velocity equal to the mean speed of the oscillation, at which a search starts."""
-        return self.speed / self.drift
+    def __init__(self, request: Request, sign: int = 1):
+        self.request, self.sign = request, sign
+        self.speed, self.drift = request.problem.mean_speed, request.problem.unit_drift
+        self.first = self.speed / self.drift
+        self._levels = cache(self._levels_at)
+        self.friction, self.power = cache(self._friction_at), cache(self._power_at)
 
     def reversed(self) -> _Contact:
         """The contact with the forward direction reversed."""
         problem = self.request.problem
         behind = replace(problem, backward=not problem.backward)
-        image = _Contact(replace(self.request, problem=behind))
-        image.sign = -self.sign
-        return image
+        return _Contact(replace(self.request, problem=behind), -self.sign)
 
-    def friction(self, velocity: float) -> Answer:
-        return self._certified(velocity, "mu")
+    def _friction_at(self, velocity: float) -> Answer:
+        return self._refined(velocity, "mu", attrgetter("mu"))
 
-    def power(self, velocity: float) -> Answer:
-        """Mean power of the oscillation, computed as a force times the mean speed."""
-        answer = self._certified(velocity, "power")
-        return Answer(self.speed * answer.value, self.speed * answer.error, answer.reason)
+    def _power_at(self, velocity: float) -> Answer:
+        load = 2.0 * math.pi * self.request.problem.mean_load
 
-    def _certified(self, velocity: float, quantity: str) -> Answer:
-        if (velocity, quantity) not in self.cache:
-            run, ladder, readings = self._plan(velocity)
-            read: Callable[[Run], float] = attrgetter("mu")
-            if quantity == "power":
-                read = partial(self._power_as_force, velocity)
-            answer = refine(run, ladder, self.request.accuracy, readings, read)
-            reason, estimate = answer.reason, answer.value
-            if answer.converged and estimate.error > self.request.accuracy:
-                reason = f"the estimated error of its {quantity} is {estimate.error:.1e}"
-            if reason:
-                reason = f"velocity = {self.sign * velocity:g}: {reason}"
-            self.cache[velocity, quantity] = Answer(estimate.value, estimate.error, reason)
-        return self.cache[velocity, quantity]
+        def power_as_force(run: Run) -> float:
+            """Dissipated power minus drive power, divided by the mean speed."""
+            return (run.energy / load - run.mu * velocity * self.drift) / self.speed
 
-    def _power_as_force(self, velocity: float, run: Run) -> float:
-        """Power of the oscillation (dissipated power minus drive power), divided by the mean
-        speed."""
-        dissipated = run.energy / (2.0 * math.pi * self.request.problem.mean_load)
-        return (dissipated - run.mu * velocity * self.drift) / self.speed
+        force = self._refined(velocity, "power", power_as_force)
+        return Answer(self.speed * force.value, self.speed * force.error, force.reason)
 
-    def _plan(self, velocity: float) -> Plan:
-        if velocity not in self.cache:
-            there = replace(
-                self.request,
-                problem=replace(self.request.problem, velocity=velocity),
-                budget=self.request.budget.renewed(),
-            )
-            plan = plan_for(there)
-            readings = [_remembered(run) for run in plan.readings]
-            self.cache[velocity] = plan._replace(run=_remembered(plan.run), readings=readings)
-        return self.cache[velocity]
+    def _refined(self, velocity: float, quantity: str, read: Callable[[Run], float]) -> Answer:
+        refined = refine(self._levels(velocity), self.request.accuracy, read)
+        reason, estimate = refined.reason, refined.value
+        if refined.converged and estimate.error > self.request.accuracy:
+            reason = f"the estimated error of its {quantity} is {estimate.error:.1e}"
+        if reason:
+            reason = f"velocity = {self.sign * velocity:g}: {reason}"
+        return Answer(estimate.value, estimate.error, reason)
 
-
-def _remembered(run: Callable[..., Run]) -> Callable[..., Run]:
-    """Cache `run` by resolution, so that two quantities use the same runs."""
-    cache = {}
-
-    def again(resolution: Resolution, guess: Run | None) -> Run:
-        if resolution not in cache:
-            cache[resolution] = run(resolution, guess)
-        return cache[resolution]
-
-    return again
+    def _levels_at(self, velocity: float) -> Levels:
+        problem = replace(self.request.problem, velocity=velocity)
+        budget = self.request.budget.renewed()
+        return levels_for(replace(self.request, problem=problem, budget=budget))
 
 
 def _line(contact: _Contact, points: int) -> PropulsionLine:
@@ -302,46 +279,41 @@ def _line(contact: _Contact, points: int) -> PropulsionLine:
     back = behind.friction(0.0)
     if back.value < 0.0 or not math.isfinite(back.value):
         return _moving(behind, points)
-    reason = ahead.reason or back.reason
-    converged = not reason
-    holding: dict[str, Any] = {
-        "holding_force_low": -back.value + 0.0,
-        "holding_force_low_error": back.error,
-        "holding_force_high": ahead.value,
-        "holding_force_high_error": ahead.error,
-    }
-    if converged:
-        ends = number_text(-back.value, back.error), number_text(ahead.value, ahead.error)
-        reason = PROPELS_NOTHING.format(*ends)
     stall_error = max(ahead.error - ahead.value, back.error - back.value, 0.0)
     uncertain = [c for c, k in ((contact, ahead), (behind, back)) if k.value < k.error]
     spread = max((no_load(one.friction, one.first).error for one in uncertain), default=0.0)
-    stall, fastest = Answer(0.0, stall_error, ""), Answer(0.0, spread, "")
-    line = _record(contact, stall, fastest, np.zeros(0), (converged, reason))
-    return replace(line, **holding)
+    stall = Answer(0.0, stall_error, ahead.reason or back.reason)
+    line = _record(contact, stall, Answer(0.0, spread), np.zeros(0))
+    if line.converged:
+        ends = number_text(-back.value, back.error), number_text(ahead.value, ahead.error)
+        line = replace(line, reason=PROPELS_NOTHING.format(*ends))
+    return replace(
+        line,
+        holding_force_low=-back.value + 0.0,
+        holding_force_low_error=back.error,
+        holding_force_high=ahead.value,
+        holding_force_high_error=ahead.error,
+    )
 
 
 def _moving(contact: _Contact, points: int) -> PropulsionLine:
     """The PropulsionLine of a motion that propels forward."""
-    stall, fastest = contact.friction(0.0), Answer(math.nan, math.inf, "")
+    stall, fastest = contact.friction(0.0), Answer(math.nan, math.inf)
     velocity = np.zeros(0)
     if math.isfinite(stall.value):
         fastest = no_load(contact.friction, contact.first)
     if math.isfinite(fastest.value):
         velocity = np.linspace(0.0, fastest.value, points)
-    reason = stall.reason or fastest.reason
-    return _record(contact, stall, fastest, velocity, (not reason, reason))
+    return _record(contact, stall, fastest, velocity)
 
 
 def _record(
-    contact: _Contact,
-    stall: Answer,
-    fastest: Answer,
-    velocity: np.ndarray,
-    verdict: tuple[bool, str],
+    contact: _Contact, stall: Answer, fastest: Answer, velocity: np.ndarray
 ) -> PropulsionLine:
+    """The PropulsionLine at some velocities.  stall, fastest: friction at velocity 0, and no-load
+    velocity."""
     request, sign = contact.request, contact.sign
-    problem, (converged, reason) = request.problem, verdict
+    problem = request.problem
     friction = [contact.friction(v) for v in velocity]
     power = [contact.power(v) for v in velocity]
     force, error = (np.array([one[k] for one in friction]) for k in (0, 1))
@@ -351,7 +323,7 @@ def _record(
     efficiency = power_out / power_in
     least = np.maximum(power_in - power_in_error, np.finfo(float).tiny)
     efficiency_error = (power_out_error + np.abs(efficiency) * power_in_error) / least
-    reason = reason or next((one.reason for one in friction + power if one.reason), "")
+    reason = next((one.reason for one in (stall, fastest, *friction, *power) if one.reason), "")
     return PropulsionLine(
         motion=problem.motion.name,
         pressure=problem.pressure.name,
@@ -372,7 +344,7 @@ def _record(
         power_in_error=power_in_error,
         efficiency=efficiency,
         efficiency_error=efficiency_error,
-        converged=converged and (not reason or not len(velocity)),
+        converged=not reason,
         reason=reason,
         solve_time_s=request.seconds,
     )
@@ -402,9 +374,8 @@ def no_load(friction: Callable, first: float) -> Answer:
             return Answer(math.nan, math.inf, reason)
     below = _certain(friction, velocity, -1.0, slope)
     above = _certain(friction, velocity, 1.0, slope)
-    if above is None or below is None:
-        return Answer(velocity, math.inf, "no velocity is known at which it resists for certain")
-    return Answer(velocity, max(above - velocity, velocity - below), "")
+    reason = "" if math.isfinite(above) else "no velocity is known at which it resists for certain"
+    return Answer(velocity, max(above - velocity, velocity - below), reason)
 
 
 def _root(
@@ -432,21 +403,22 @@ def _root(
     return middle, slope, ""
 
 
-def _certain(friction: Callable, velocity: float, sign: float, slope: float) -> float | None:
+def _certain(friction: Callable, velocity: float, sign: float, slope: float) -> float:
     """Find a velocity near `velocity` at which friction certainly has the sign `sign`.
 
     For a negative sign, the search lowers the velocity and returns 0 if it fails.  For a positive
-    sign, it raises the velocity and returns None if it fails.
+    sign, it raises the velocity and returns infinity if it fails.
     """
+    farthest = 0.0 if sign < 0.0 else math.inf
     step = WIDENING * friction(velocity).error / slope
     if not math.isfinite(step):
-        return 0.0 if sign < 0.0 else None
+        return farthest
     for _ in range(MOST_WIDENINGS):
         place = velocity + sign * step
         if place <= 0.0:
-            return 0.0
+            break
         answer = friction(place)
         if sign * answer.value > answer.error:
             return place
         step *= 2.0
-    return 0.0 if sign < 0.0 else None
+    return farthest

@@ -8,9 +8,11 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
-from microslip.adaptive.checks import checked_request, refuse_bounds
 from microslip.adaptive.choice import choose_model, method_refusal
+from microslip.adaptive.result import CLOSED_FORM, Result
+from microslip.adaptive.under_force import refuse_drive
 from microslip.estimate.estimate import Estimate
+from microslip.foundation.arguments import LARGEST, SMALLEST_TOLERANCE, count, is_real, real
 from microslip.foundation.errors import InputError
 from microslip.motions.body_contacts import contacts_text
 from microslip.motions.drive import Drive
@@ -21,6 +23,7 @@ from microslip.solver.method import Method
 
 if TYPE_CHECKING:  # the module loads compiled code, which a closed form does not need
     from microslip.estimate.refine import Refined
+    from microslip.solver.discretise import Resolution
 
 TOLERANCE = 1e-3
 """Default tolerance, also used as the accuracy of runs if no tolerance is requested."""
@@ -95,6 +98,16 @@ class Request:
         )
 
     @property
+    def model_without_runs(self) -> str:
+        """Name of the model in a Result that needs no run."""
+        return CLOSED_FORM if self.chosen else self.model
+
+    def show(self, resolution: Resolution) -> None:
+        """Report the start of a run to `progress`."""
+        if self.progress is not None:
+            self.progress(resolution)
+
+    @property
     def seconds(self) -> float:
         """Wall-clock time since the request was made, in seconds."""
         return time.perf_counter() - self.started
@@ -128,8 +141,15 @@ def request_for(
         the argument.
     """
     started = time.perf_counter()
-    tolerance, cells, steps = checked_request(tolerance, cells, steps)
-    refuse_bounds(most_work=most_work, time_limit=time_limit)
+    if cells is not None:
+        cells = count("cells", cells, 4, most=LARGEST["cells"], even=True)
+    if steps is not None:
+        steps = count("steps", steps, 8, most=LARGEST["steps"], even=True)
+    if tolerance is not None:
+        tolerance = real("tolerance", tolerance, SMALLEST_TOLERANCE, 0.1)
+    for argument, value in (("most_work", most_work), ("time_limit", time_limit)):
+        if value is not None and not (is_real(value) and value > 0.0):
+            raise InputError(argument, value, "allowed is a number above 0")
     if progress is not None and not callable(progress):
         raise InputError("progress", progress, "allowed is a function of one argument")
     name, how = choose_model(problem, model), method_names.method_named(method)
@@ -142,6 +162,11 @@ def request_for(
     if refusal:
         motion = problem.motion.name
         raise InputError("method", method, f"does not apply to {motion}, model {name}: {refusal}")
+    if problem.drive is not None:
+        refuse_drive(problem, name)
+        if method != method_names.SHIPPED:
+            pulls = "stiffness" if problem.drive.force is None else "force"
+            raise InputError("method", method, f"allowed is {method_names.SHIPPED} with a {pulls}")
     if most_work is None:
         most_work = MOST_WORK.get(name, MOST_WORK_OF_OTHERS)
     return Request(
@@ -183,11 +208,23 @@ def driven_by(drive: Drive | None) -> dict:
     return {"force": drive.force} | ({"mass": drive.mass} if drive.mass > 0.0 else {})
 
 
-def verdict(request: Request, refined: Refined, largest: float | None) -> dict:
-    """The fields of a result.Result that describe convergence, resolution and effort.
+def result_of_runs(
+    request: Request, refined: Refined, largest: float | None, **more: Estimate
+) -> Result:
+    """Build the Result of a refinement.
 
-    `largest` is the largest accepted error, or None if any error is accepted.
+    Parameters
+    ----------
+    request : Request
+        The request.
+    refined : refine.Refined
+        Friction or velocity, with the other values from the same runs.
+    largest : float or None
+        Largest accepted error, or None if any error is accepted.
+    **more : Estimate
+        Fields of the Result that replace those from `refined`.
     """
+    problem, periodic = request.problem, request.problem.motion.periodic
     if request.budget.exhausted:
         refined = replace(refined, effort=request.budget.taken)
     error, by_source = refined.value.error, refined.value.by_source
@@ -196,19 +233,24 @@ def verdict(request: Request, refined: Refined, largest: float | None) -> dict:
     if refined.converged and not within:
         where = "at the imposed resolution the error" if ladder.imposed else "the estimated error"
         reason = f"{where} is {error:.1e}, above the tolerance of {largest:g}"
-        file_error = by_source.get("model", 0.0) if request.problem.readings else 0.0
+        file_error = by_source.get("model", 0.0) if problem.readings else 0.0
         if file_error > 0.5 * error:
             reason += f": the file's own resolution leaves {file_error:.1e} open"
-    return {
-        "converged": bool(refined.converged and within),
-        "periodic": refined.periodic,
-        "reason": reason,
-        "cells": refined.finest.cells,
-        "angles": refined.finest.angles,
-        "steps_per_period": 2 * refined.finest.steps if ladder.steps else 0,
-        "observed_order": refined.order if math.isfinite(refined.order) else None,
-        "periods": refined.periods,
-        "effort": refined.effort,
-        "exhausted": request.budget.exhausted,
-        "solve_time_s": request.seconds,
-    }
+    estimates = {"friction": within_friction(problem, refined.value)} | more
+    return Result(
+        **request.point | estimates,
+        model=request.model,
+        torque=None if periodic else refined.torque,
+        dissipation=refined.energy if periodic else None,
+        converged=refined.converged and within,
+        periodic=refined.periodic,
+        reason=reason,
+        cells=refined.finest.cells,
+        angles=refined.finest.angles,
+        steps_per_period=2 * refined.finest.steps if ladder.steps else 0,
+        observed_order=refined.order if math.isfinite(refined.order) else None,
+        periods=refined.periods,
+        effort=refined.effort,
+        exhausted=request.budget.exhausted,
+        solve_time_s=request.seconds,
+    )

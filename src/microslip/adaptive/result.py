@@ -5,11 +5,13 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass, fields
-from typing import Any, NamedTuple
+from typing import Any
 
 from microslip.estimate.estimate import SOURCES, Estimate
 from microslip.solver.effort import Effort
 
+CLOSED_FORM = "closed-form"
+"""Model name in results that need no run."""
 QUANTITIES = {
     "friction": "mu_macro",
     "mean_velocity": "velocity",
@@ -202,38 +204,3 @@ def _estimate(flat: Mapping[str, Any], name: str) -> Estimate | None:
 def _number(value: float | None) -> float:
     """Return the number, or NaN for None."""
     return math.nan if value is None else value
-
-
-class Exact(NamedTuple):
-    """Quantities of a Result in closed form.
-
-    Attributes
-    ----------
-    mu, error : float
-        Mean friction, and its error.
-    torque : float or None
-        Torque divided by its value at zero forward velocity; None for oscillating motions.
-    energy : Estimate or None
-        Dissipated energy per period, divided by mu F_z u_lim; None for steady motions.
-    """
-
-    mu: float
-    error: float
-    torque: float | None = None
-    energy: Estimate | None = None
-
-
-def of_closed_form(point: dict, exact: Exact, seconds: float) -> Result:
-    """Build the Result of a closed form; `point` contains the fields copied from the request."""
-    error, tolerance = exact.error, point["tolerance"]
-    within = tolerance is None or error <= tolerance
-    return Result(
-        **point,
-        friction=Estimate(exact.mu, {"model": error}),
-        torque=None if exact.torque is None else Estimate(exact.torque, {"model": error}),
-        dissipation=exact.energy,
-        converged=within,
-        periodic=True,
-        reason="" if within else f"the error is {error:.1e}, above the tolerance of {tolerance:g}",
-        solve_time_s=seconds,
-    )

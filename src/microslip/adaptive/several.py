@@ -5,9 +5,9 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import Any
 
-from microslip.adaptive.closed_forms import CLOSED_FORM, exact_result
+from microslip.adaptive.closed_forms import exact_for, of_closed_form
 from microslip.adaptive.request import Request
-from microslip.adaptive.result import Result
+from microslip.adaptive.result import CLOSED_FORM, Result
 from microslip.estimate.estimate import Estimate
 from microslip.solver.effort import Effort
 
@@ -51,9 +51,9 @@ def solve_each(request: Request) -> Result:
 
 def _solve(request: Request) -> Result:
     """Solve one contact: use a closed form if there is one, otherwise runs of a model."""
-    exact = exact_result(request)
+    exact = exact_for(request)
     if exact is not None:
-        return exact
+        return of_closed_form(request, exact)
     # imported here because it loads compiled code
     from microslip.adaptive.friction import solve_friction
 

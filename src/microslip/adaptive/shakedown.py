@@ -10,13 +10,14 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from dataclasses import asdict, dataclass, fields, replace
+from dataclasses import asdict, dataclass, replace
 from operator import attrgetter
 from typing import Any
 
 from microslip.adaptive.checks import checked_problem
-from microslip.adaptive.driven_contact import STATIC_TOLERANCE, refuse_drive
-from microslip.adaptive.request import Request, request_for, verdict
+from microslip.adaptive.driven_contact import STATIC_TOLERANCE
+from microslip.adaptive.friction import ladder_of
+from microslip.adaptive.request import Request, request_for, result_of_runs
 from microslip.adaptive.result import ERRORS
 from microslip.adaptive.several import solve_each
 from microslip.adaptive.under_force import (
@@ -25,8 +26,7 @@ from microslip.adaptive.under_force import (
     runs_away,
     without_forward_motion,
 )
-from microslip.estimate.ladder import ladder_for
-from microslip.estimate.refine import refine, run_tolerance
+from microslip.estimate.refine import Levels, refine, run_tolerance
 from microslip.foundation.arguments import real
 from microslip.foundation.errors import InputError
 from microslip.motions.drive import Force
@@ -46,6 +46,9 @@ accumulate over all periods.  Near the static limit, a run takes several hundred
 (tests/adaptive/test_shakedown.py)."""
 PLANNED_VELOCITY = 0.1
 """Velocity for which the time steps are chosen; for velocity 0, the ladder has no time steps."""
+
+SHARED = ("converged", "reason", "cells", "angles", "steps_per_period", "periods", "solve_time_s")
+"""Fields that a Shakedown has in common with a Result."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -73,9 +76,9 @@ class Shakedown:
         Whether the contact certainly comes to rest and the error is within the tolerance.
     reason : str
         Reason why the result is not converged, otherwise empty.
-    error_resolution, error_periodicity, error_solver : float
+    error_resolution, error_periodicity, error_solver, error_model : float
         Parts of the error by source.  The part `error_periodicity` bounds the displacement after
-        the last period.
+        the last period.  The part `error_model` is that of a file.
     cells, angles, steps_per_period : int
         Numbers of cells, of angles and of steps per period in the finest run.
     periods : float
@@ -104,6 +107,7 @@ class Shakedown:
     error_resolution: float = 0.0
     error_periodicity: float = 0.0
     error_solver: float = 0.0
+    error_model: float = 0.0
     cells: int = 0
     angles: int = 0
     steps_per_period: int = 0
@@ -168,7 +172,6 @@ def shakedown(
     request = request_for(
         problem, model, tolerance, most_work=most_work, time_limit=time_limit, progress=progress
     )
-    refuse_drive(problem, request.model)
     if not is_even(problem):
         allowed = "allowed is a motion that exerts no forward force by itself, such as transverse"
         raise InputError("motion", problem.motion.name, allowed)
@@ -217,32 +220,29 @@ def _threshold(request: Request) -> tuple[float, float, str]:
 def _certified(request: Request, force: float) -> dict[str, Any]:
     """Run the contact to rest and return the resulting fields of a Shakedown."""
     planned = replace(request.problem, velocity=PLANNED_VELOCITY)
-    ladder = ladder_for(planned, request.model, request.accuracy)
+    ladder = ladder_of(replace(request, problem=planned), request.accuracy)
     # the contact must come to rest in the coarsest run too
     ladder = replace(ladder, start=2 * ladder.start)
     remaining = RUN_SHARE * run_tolerance(request.accuracy)
     settings = Settings(request.how, budget=request.budget)
-    runs: dict[Resolution, ShakedownRun] = {}
 
-    def run(resolution: Resolution, guess: Run | None) -> ShakedownRun:
-        if request.progress is not None:
-            request.progress(resolution)
-        runs[resolution] = run_to_rest(
-            request.problem, force, request.model, resolution, remaining, settings
-        )
-        return runs[resolution]
+    def run(problem: Problem, resolution: Resolution, guess: Run | None) -> ShakedownRun:
+        request.show(resolution)
+        return run_to_rest(problem, force, request.model, resolution, remaining, settings)
 
-    refined = refine(run, ladder, request.accuracy, read=attrgetter("displacement"))
-    answer = verdict(request, refined, request.tolerance)
-    names = {field.name for field in fields(Shakedown)}
-    result = {name: value for name, value in answer.items() if name in names}
+    levels = Levels(run, ladder, request.problem, *request.problem.readings)
+    refined = refine(levels, request.accuracy, attrgetter("displacement"))
+    answer = result_of_runs(request, refined, request.tolerance)
+    result = {name: getattr(answer, name) for name in SHARED}
     result |= {ERRORS[source]: error for source, error in refined.value.by_source.items()}
     result |= {
         "work": refined.effort.work,
         "displacement": refined.value.value,
         "displacement_error": refined.value.error,
     }
-    if runs:
-        finest = runs[max(runs, key=lambda one: (one.cells, one.steps))]
+    solved = [level for number, level in levels.runs if number == 0]
+    if solved:
+        finest = levels.at(max(solved))
+        assert isinstance(finest, ShakedownRun)  # returned by run
         result |= {"pushed": finest.pushed, "most_after": finest.most_after}
     return result

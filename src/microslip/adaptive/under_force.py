@@ -14,6 +14,7 @@ from typing import NamedTuple
 import numpy as np
 
 from microslip.foundation.errors import InputError
+from microslip.models.registry import MODELS
 from microslip.motions.drive import Drive
 from microslip.motions.motion import LOOP
 from microslip.motions.problem import Problem
@@ -118,6 +119,24 @@ def runs_away(problem: Problem) -> str:
             "mean, which limits the friction"
         )
     return ""
+
+
+def refuse_drive(problem: Problem, model: str) -> None:
+    """Raise InputError if the model or the motion cannot be combined with the drive."""
+    motion, drive = problem.motion, drive_of(problem)
+    pulls = "stiffness" if drive.force is None else "force"
+    if drive.force is not None and drive.force < 0.0 and not problem.propels:
+        allowed = f"allowed is a number of at least 0: {motion.name} propels nothing"
+        raise InputError("force", drive.force, allowed)
+    if not MODELS[model].drivable:
+        raise InputError("model", model, f"supports no {pulls}, only a prescribed velocity")
+    if drive.force is not None:
+        if not motion.periodic:
+            refuse_steady(problem)
+        refuse_nearly_full(problem)
+    elif motion.periodic and problem.velocity == 0.0 and not is_even(problem):
+        allowed = f"allowed is a number above 0 where a spring pulls {motion.name}"
+        raise InputError("velocity", 0.0, allowed)
 
 
 def refuse_nearly_full(problem: Problem) -> None:

@@ -8,17 +8,16 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from microslip.app import modelica_text
+from microslip.app.option_parser import StoreSpelling
 from microslip.app.predict_command import GROUPS
 from microslip.app.predicted_table import problem_text
 from microslip.app.progress import elapsed_time
 from microslip.app.question import (
     Answer,
-    add_json,
+    add_answer,
     add_options,
     heading,
-    opened_map,
     refuse_output,
-    respond,
     short_csv,
     typed_options,
     write_output,
@@ -52,12 +51,12 @@ NO_FRICTION = ("force", "reduction")
 WITHOUT_CONTACT = {"nu", "pressure", *IWAN_OPTIONS}
 """Options that are also allowed without a contact in SI units."""
 COLUMNS = {
-    "mu_apparent": ("1", "coefficient of friction with vibration"),
-    "mu_apparent_error": ("1", "error estimate of mu_apparent"),
-    "friction_force": ("N", "mean friction force"),
-    "friction_force_error": ("N", "error estimate of the friction force"),
+    "mu_apparent": "coefficient of friction with vibration",
+    "mu_apparent_error": "error estimate of mu_apparent",
+    "friction_force_N": "mean friction force",
+    "friction_force_error_N": "error estimate of the friction force",
 }
-"""Unit and long name of each column in a friction table."""
+"""Long name of each column in a friction table."""
 
 
 def fill(parser: argparse.ArgumentParser) -> None:
@@ -76,28 +75,20 @@ def fill(parser: argparse.ArgumentParser) -> None:
     bodies = iwan.add_argument_group("bodies")
     add_options(bodies, GROUPS["bodies"] | LOAD)
     add_options(iwan, IWAN_OPTIONS)
-    add_json(iwan)
+    add_answer(iwan, _iwan)
     table = models.add_parser(
         "table",
         help="a table of friction over speed, amplitude, load or other quantities",
         description="Friction over the ranges of one or more quantities, such as --speed '0.1..10 "
         "mm/s, 21, log': 21 values in equal ratios.  '0..2 um' has 11 values in equal steps.",
     )
-    table.add_argument("motion", metavar="MOTION", help="motion, as for `microslip predict`")
+    text = "motion, as for `microslip predict`"
+    table.add_argument("motion", action=StoreSpelling, metavar="MOTION", help=text)
     for title in ("bodies", "load", "motion", "drive"):
         options = {name: one for name, one in GROUPS[title].items() if name not in NO_FRICTION}
         add_options(table.add_argument_group(title), options)
     add_options(table, TABLE_OPTIONS)
-    add_json(table)
-
-
-def run(options: argparse.Namespace) -> int:
-    """Print the model.  Returns the exit code: 0, 1 if a point of a table is not converged, 2 for
-    bad input."""
-    names = [name.replace("-", "_") for group in GROUPS.values() for name in group]
-    answer = {"iwan": _iwan, "table": _table}[options.export]
-    command = f"microslip export {options.export}"
-    return respond(command, options, answer, {"motion": "MOTION"}, names)
+    add_answer(table, _table)
 
 
 def _iwan(options: argparse.Namespace) -> Answer:
@@ -107,10 +98,7 @@ def _iwan(options: argparse.Namespace) -> Answer:
     from microslip.si.iwan import predict_iwan
 
     refuse_output(options.output, endings=(".csv",))
-    arguments = typed_options(options)
-    arguments.pop("output", None)
-    for name in arguments.keys() & {"elements", "tolerance"}:
-        arguments[name] = spec.read(name, arguments[name], whole=name == "elements")
+    arguments = typed_options(options, ("tolerance",), ("elements",))
     real = arguments.keys() - WITHOUT_CONTACT
     with elapsed_time("microslip export iwan"):
         if real:
@@ -142,15 +130,11 @@ def _table(options: argparse.Namespace) -> Answer:
     from microslip.si.table import predictions
 
     refuse_output(options.output, endings=(".csv", ".txt"))
-    arguments = typed_options(options)
-    arguments.pop("output", None)
     if options.speed is None:
         raise InputError("speed", None, "needed")
     if options.mass is not None and options.drive_stiffness is None:
         raise InputError("mass", options.mass, "allowed only with a drive_stiffness")
-    if options.map is not None:
-        arguments["map"] = opened_map(options.map)
-    grid = grid_of(options.motion, arguments)
+    grid = grid_of(options.motion, typed_options(options))
     lazy = predictions(options.motion, grid.table, grid.shared, need_all=True)
     points = grid.combinations
     answers = list(tqdm(lazy, "points", len(points), leave=False, disable=None))
@@ -192,13 +176,11 @@ def _interpolation_text(errors: Mapping[str, float | None]) -> str:
 
 def _friction_table(dataset: xr.Dataset) -> xr.Dataset:
     """Return the columns of a friction table.  Each axis is named after its argument."""
-    variables = {
-        name: (tuple(dataset.dims), dataset[column].values, {"units": unit, "long_name": text})
-        for name, (unit, text) in COLUMNS.items()
-        for column in [name if unit == "1" else f"{name}_{unit}"]
-    }
-    axes = {axis: dataset[axis].attrs["long_name"].replace(" ", "_") for axis in dataset.dims}
-    return dataset.drop_vars(list(dataset.data_vars)).assign(variables).rename(axes)
+    table = dataset[list(COLUMNS)]
+    for name, text in COLUMNS.items():
+        table[name].attrs["long_name"] = text
+    names = {axis: dataset[axis].attrs["long_name"].replace(" ", "_") for axis in dataset.dims}
+    return table.rename({name: name.removesuffix("_N") for name in COLUMNS} | names)
 
 
 def _answer(

@@ -5,21 +5,19 @@ from __future__ import annotations
 import argparse
 from typing import TYPE_CHECKING
 
-from microslip.app.option_parser import format_as_options
+from microslip.app.option_parser import StoreSpelling, format_as_options
 from microslip.app.question import (
     FILE_FORMAT,
     Answer,
-    add_json,
+    add_answer,
     add_options,
-    opened_map,
     refuse_figure,
     refuse_output,
-    respond,
     typed_options,
-    write_output,
+    write_files,
 )
 from microslip.app.terminal import complain
-from microslip.si.motions import UNIT_OF_AMPLITUDE
+from microslip.si.motions import SINGLE
 from microslip.si.printed_lines import force_unit, in_unit, line, prefixed
 
 if TYPE_CHECKING:
@@ -40,7 +38,6 @@ OPTIONS = {
     "figure": ("FILE", "figure of measured and fitted friction, .png or .pdf"),
     "output": ("FILE", "dataset of rows, fitted friction and residuals, .nc"),
 }
-FILES = ("map", "figure", "output")
 
 
 def fill(parser: argparse.ArgumentParser) -> None:
@@ -56,18 +53,12 @@ def fill(parser: argparse.ArgumentParser) -> None:
         "Exit codes: 0 both numbers determined; 1 only mu determined, or unreadable lines left "
         "out; 2 bad input, or neither number determined."
     )
-    motions = ", ".join(UNIT_OF_AMPLITUDE)
-    parser.add_argument("motion", metavar="MOTION", help=f"the motion: {motions}")
-    parser.add_argument("measured", metavar="CSV", help="the table")
+    motions = ", ".join(SINGLE)
+    text = f"the motion: {motions}"
+    parser.add_argument("motion", action=StoreSpelling, metavar="MOTION", help=text)
+    parser.add_argument("measured", action=StoreSpelling, metavar="CSV", help="the table")
     add_options(parser, OPTIONS)
-    add_json(parser)
-
-
-def run(options: argparse.Namespace) -> int:
-    """Run the command.  Returns the exit code: 0 if the answer is complete, 1 if not, 2 for bad
-    input."""
-    titles = {"motion": "MOTION", "measured": "CSV"}
-    return respond("microslip fit", options, _answer, titles)
+    add_answer(parser, _answer)
 
 
 def _answer(options: argparse.Namespace) -> Answer:
@@ -75,29 +66,13 @@ def _answer(options: argparse.Namespace) -> Answer:
 
     refuse_figure(options.figure)
     refuse_output(options.output, options.measured, (".nc",))
-    arguments = {name: value for name, value in typed_options(options).items() if name not in FILES}
-    if options.map is not None:
-        arguments["map"] = opened_map(options.map)
-    result = fit(options.motion, options.measured, **arguments)
-    _write(result, options)
+    result = fit(options.motion, options.measured, **typed_options(options))
+    if options.output or options.figure:
+        write_files(options, "fit", result.to_xarray())
     for text in result.left_out:
         complain(f"microslip fit: {format_as_options(text)}; left out")
     complete = len(result.told) == 2 and not result.left_out
     return Answer(result.to_dict(), _as_text(result), complete)
-
-
-def _write(result: Fit, options: argparse.Namespace) -> None:
-    if not (options.figure or options.output):
-        return
-    dataset = result.to_xarray()
-    if options.output:
-        write_output(
-            options.output, {".nc": lambda file: dataset.to_netcdf(file, engine="netcdf4")}
-        )
-    if options.figure:
-        from microslip.report.figures.drawing import draw, save
-
-        save(draw("fit", {"fit": dataset}), options.figure)
 
 
 def _as_text(result: Fit) -> str:

@@ -7,17 +7,16 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from microslip.app.option_parser import StoreSpelling
 from microslip.app.question import (
     FILE_FORMAT,
     Answer,
-    add_json,
+    add_answer,
     add_options,
     refuse_output,
-    respond,
     typed_options,
     write_output,
 )
-from microslip.foundation import spec
 from microslip.foundation.errors import InputError
 from microslip.foundation.number_text import number_text
 
@@ -50,14 +49,9 @@ def fill(parser: argparse.ArgumentParser) -> None:
         "are time and one or more of forward, lateral, angle, and load or indentation, each with "
         "its unit, as in time [s],lateral [um]."
     )
-    parser.add_argument("record", metavar="CSV", help="the record")
+    parser.add_argument("record", action=StoreSpelling, metavar="CSV", help="the record")
     add_options(parser, OPTIONS, required=("output",))
-    add_json(parser)
-
-
-def run(options: argparse.Namespace) -> int:
-    """Print the answer.  Returns the exit code: 0, or 2 for bad input."""
-    return respond("microslip fold", options, _answer, {"record": "CSV"}, OPTIONS)
+    add_answer(parser, _answer)
 
 
 def _answer(options: argparse.Namespace) -> Answer:
@@ -65,11 +59,9 @@ def _answer(options: argparse.Namespace) -> Answer:
     from microslip.si.record import ROWS, fold
     from microslip.si.strokes import read_record
 
-    arguments = typed_options(options)
+    arguments = typed_options(options, wholes=("rows",))
     refuse_output(options.output, options.record, (".csv",))
-    rows, frequency = ROWS, None
-    if "rows" in arguments:
-        rows = int(spec.read("rows", arguments["rows"], whole=True))
+    rows, frequency = arguments.get("rows", ROWS), None
     if "frequency" in arguments:
         frequency = read("frequency", arguments["frequency"], "Hz").si
     form = {name: arguments[name] for name in FILE_FORMAT if name in arguments}

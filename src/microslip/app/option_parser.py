@@ -3,20 +3,15 @@
 from __future__ import annotations
 
 import argparse
-import difflib
 import re
 import sys
 from collections.abc import Iterable, Sequence
 from typing import Any, NoReturn
 
 from microslip.app.terminal import complain
+from microslip.foundation.spec import near_miss
 
-SYNONYMS = {
-    "--nu": "--poisson",
-    "--poisson": "--nu",
-    "--speed": "--velocity",
-    "--velocity": "--speed",
-}
+SYNONYMS = {"--speed": "--velocity", "--velocity": "--speed"}
 """Options that have another name in another command."""
 
 NEGATIVE = re.compile(r"-\s*([0-9.,]|inf|nan)", re.IGNORECASE)
@@ -90,12 +85,11 @@ class OneLineParser(argparse.ArgumentParser):
         self.error(f"unknown option {name}; {hint}allowed: {allowed}")
 
 
-def _hint(name: str, candidates: Iterable[str]) -> str:
-    """Return 'did you mean NAME? ' with the most similar candidate, or '' if no candidate is
-    similar."""
-    synonym = [other for other in [SYNONYMS.get(name)] if other is not None and other in candidates]
-    near = synonym or difflib.get_close_matches(name, candidates, n=1)
-    return f"did you mean {near[0]}? " if near else ""
+def _hint(name: str, candidates: Sequence[str]) -> str:
+    """Return 'did you mean NAME? ' with the option of the same meaning or with the most similar
+    candidate, or ''."""
+    synonym = SYNONYMS.get(name)
+    return f"did you mean {synonym}? " if synonym in candidates else near_miss(name, candidates)
 
 
 def option(argument: str) -> str:
@@ -117,7 +111,10 @@ def format_as_options(text: str, arguments: Iterable[str] = ()) -> str:
 
 
 class StoreSpelling(argparse.Action):
-    """Action that stores a value and the option as spelled on the command line."""
+    """Action that stores a value, and the option as spelled on the command line.
+
+    The spelling of a positional argument is its metavar.
+    """
 
     def __call__(
         self,
@@ -127,7 +124,8 @@ class StoreSpelling(argparse.Action):
         option_string: str | None = None,
     ) -> None:
         setattr(namespace, self.dest, value)
-        namespace.spellings = getattr(namespace, "spellings", {}) | {self.dest: option_string}
+        spelling = option_string or self.metavar
+        namespace.spellings = getattr(namespace, "spellings", {}) | {self.dest: spelling}
 
 
 def joined(arguments: list[str]) -> list[str]:

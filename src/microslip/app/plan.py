@@ -31,7 +31,7 @@ from microslip.sweeps.batches import Batch, SourcesEdited
 
 DATASET_CODE = ("datasets/sweep_dataset.py", "report/dataset_page.py")
 """Modules that make a sweep's dataset and page.  Modules that they import are not listed."""
-STUDY_CODE = ("datasets/sweep_dataset.py", "report/study_page.py", "report/claims.html", "studies")
+STUDY_CODE = ("datasets/sweep_dataset.py", "report/claims_page.py", "report/claims.html", "studies")
 CERTIFIED_CODE = ("datasets/certified_map.py", "report/dataset_page.py")
 PAGE_CODE = ("report/explorer", "sweeps/period_codec.py")
 REFINEMENT_CODE = ("sweeps/map_refinement.py",)

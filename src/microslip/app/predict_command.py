@@ -3,15 +3,15 @@
 from __future__ import annotations
 
 import argparse
+from typing import Any
 
-from microslip.app import predicted_propulsion, predicted_table
+from microslip.app import predicted_table
+from microslip.app.option_parser import StoreSpelling
 from microslip.app.question import (
     FILE_FORMAT,
     Answer,
-    add_json,
+    add_answer,
     add_options,
-    opened_map,
-    respond,
     typed_options,
 )
 from microslip.app.terminal import complain
@@ -100,6 +100,18 @@ GROUPS: dict[str, dict[str, tuple[str, str]]] = {
 """Options by heading in the help text.  Each option has a metavar and a help text."""
 WITH = {"output": "--table or a range", "figure": "a range"} | dict.fromkeys(FILE_FORMAT, "--table")
 """Options that require another option."""
+REFUSED = dict.fromkeys(
+    ("speed", "force", "reduction", "drive_stiffness", "mass", "damping"),
+    "the motion propels the body by itself",
+)
+REFUSED["rotation"] = "a self-propelled motion has no steady spin"
+REFUSED |= dict.fromkeys(("radius_across", "contact_radius", "pressure"), "the body is a sphere")
+REFUSED["map"] = "a map contains the friction at a speed"
+REFUSED |= dict.fromkeys(
+    ("forward_amplitude", "rotation_amplitude", "load_amplitude", "phase"),
+    "numbers after the name of the motion set the components and their phases",
+)
+"""Options of predict that --propulsion does not accept, and the reasons."""
 ABOUT_GROUPS = {
     "drive": "For an oscillating normal load there are two reference loads.  Stiffness, mass and "
     "damping are made dimensionless by mu times the load without oscillation, force and mu_macro "
@@ -119,9 +131,10 @@ def fill(parser: argparse.ArgumentParser) -> None:
         "outcome.  A quantity can be a range: '0..2 um' has 11 values, '0..2 um, 21' has 21, and "
         "'0.1..10 mm/s, 21, log' has equal ratios.  The answer is then a table."
     )
-    motions = "; ".join(f"{name}: it {what}" for name, what in MOTIONS.items())
+    motions = "; ".join(f"{name}: it {kind.description}" for name, kind in MOTIONS.items())
     parser.add_argument(
         "motion",
+        action=StoreSpelling,
         metavar="MOTION",
         help=f"motion of the sphere. {motions}; file:FILE: it follows one period of samples with "
         "units; or another motion of `microslip point`",
@@ -150,14 +163,7 @@ def fill(parser: argparse.ArgumentParser) -> None:
     group.add_argument(
         "--figure", metavar="FILE", help="with one or two ranges: draw friction, .png or .pdf"
     )
-    add_json(group)
-
-
-def run(options: argparse.Namespace) -> int:
-    """Print the answer.  Returns the exit code: 0 if converged, 1 if not converged, 2 for bad
-    input."""
-    names = [name.replace("-", "_") for group in GROUPS.values() for name in group]
-    return respond("microslip predict", options, _answer, {"motion": "MOTION"}, names)
+    add_answer(parser, _answer, group)
 
 
 def _answer(options: argparse.Namespace) -> Answer:
@@ -166,9 +172,7 @@ def _answer(options: argparse.Namespace) -> Answer:
 
     if speaks_of_file(options.motion) and (hint := read_stroke(options.motion).hint):
         complain(f"microslip predict: MOTION = {options.motion!r}: {hint}")
-    arguments = typed_options(options)
-    if options.map is not None:
-        arguments["map"] = opened_map(options.map)
+    arguments = typed_options(options, wholes=("points",))
     ranges = {name: value for name, value in arguments.items() if is_range(name, value)}
     many = ranges if options.table is None else {"table": options.table}
     for name, value in many.items():
@@ -184,9 +188,20 @@ def _answer(options: argparse.Namespace) -> Answer:
         return predicted_table.answer(options, arguments)
     with elapsed_time("microslip predict"):
         if options.propulsion:
-            line = predicted_propulsion.line_of(options.motion, arguments)
-            return Answer(line.to_dict(), str(line), line.converged)
+            return _propulsion(options.motion, arguments)
         if "points" in arguments:
             raise InputError("points", arguments["points"], "allowed only with --propulsion")
         prediction = predict(options.motion, **{"mu": None} | arguments)
     return Answer(prediction.to_dict(), str(prediction), prediction.converged)
+
+
+def _propulsion(motion: str, arguments: dict[str, Any]) -> Answer:
+    """Compute the force-speed line of a self-propelled motion."""
+    from microslip.si.propulsion import predict_propulsion
+
+    for name, reason in REFUSED.items():
+        if name in arguments:
+            raise InputError(name, arguments[name], f"not allowed with --propulsion: {reason}")
+    missing: dict[str, Any] = dict.fromkeys(("radius", "load", "amplitude", "frequency"))
+    line = predict_propulsion(motion, **missing | arguments)
+    return Answer(line.to_dict(), str(line), line.converged)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 from collections.abc import Callable, Collection, Mapping, Sequence
+from functools import partial
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
@@ -12,15 +13,14 @@ from microslip.app.option_parser import format_as_options, option
 from microslip.app.question import (
     FILE_FORMAT,
     Answer,
-    dataset_writers,
     refuse_figure,
     refuse_output,
-    write_output,
+    write_files,
 )
 from microslip.app.terminal import complain
 from microslip.foundation.errors import InputError, shown
 from microslip.foundation.number_text import SEPARATOR, error_text, number_text
-from microslip.si.motions import unit_of_amplitude
+from microslip.si.motions import kind_of
 from microslip.si.prediction import EMPTY, NoPrediction, Prediction
 from microslip.si.printed_lines import not_converged, probability_text, runs_away
 from microslip.si.tables import Table
@@ -58,7 +58,7 @@ class _Cases(NamedTuple):
         Name of each contact in messages.
     cells : dict of list of str
         First columns of the printed table, by heading.
-    values : dict of list
+    starts : list of dict
         First values of each contact in JSON, by name.
     """
 
@@ -67,7 +67,7 @@ class _Cases(NamedTuple):
     dataset: Callable[[Sequence[Prediction | NoPrediction]], xr.Dataset]
     names: list[str]
     cells: dict[str, list[str]]
-    values: dict[str, list[Any]]
+    starts: list[dict[str, Any]]
 
 
 def answer(options: argparse.Namespace, arguments: Mapping[str, Any]) -> Answer:
@@ -104,12 +104,18 @@ def answer(options: argparse.Namespace, arguments: Mapping[str, Any]) -> Answer:
         problem = problem_text(error, cases.table.columns)
         raise InputError("table", options.table, problem) from None
     answers = list(tqdm(lazy, "contacts", len(cases.names), leave=False, disable=None))
-    rows = _rows(cases, answers, cases.table.columns if options.table else (), options.map)
+    headings = cases.table.columns if options.table else ()  # not shown as options
+    rows = [
+        start | {"error": problem_text(one.error, headings, options.map)}
+        if isinstance(one, NoPrediction)
+        else start | {"error": None} | one.to_dict()
+        for start, one in zip(cases.starts, answers, strict=True)
+    ]
     if options.output is not None or options.figure is not None:
         dataset = cases.dataset(answers)
         errors = np.reshape([row["error"] or "" for row in rows], dataset["error"].shape)
         dataset["error"] = dataset["error"].copy(data=errors)
-        _write(options, dataset)
+        write_files(options, "curve", dataset)
     missing = [
         f"{name}: {row['error']}" if isinstance(one.error, InputError) else row["error"]
         for name, row, one in zip(cases.names, rows, answers, strict=True)
@@ -136,9 +142,10 @@ def _lines_of_file(options: argparse.Namespace, arguments: Mapping[str, Any]) ->
 
     labels = {name: [text or "" for text in texts] for name, texts in table.labels.items()}
     cells = {"line": list(map(str, table.lines))} | labels
-    values = {"line": table.lines} | table.labels
+    columns = {"line": table.lines} | table.labels
+    starts = [dict(zip(columns, row, strict=True)) for row in zip(*columns.values(), strict=True)]
     names = [f"line {line}" for line in table.lines]
-    return _Cases(table, shared, dataset, names, cells, values)
+    return _Cases(table, shared, dataset, names, cells, starts)
 
 
 def _points(options: argparse.Namespace, arguments: Mapping[str, Any]) -> _Cases:
@@ -150,40 +157,19 @@ def _points(options: argparse.Namespace, arguments: Mapping[str, Any]) -> _Cases
     if options.figure is not None and (len(sizes) > 2 or sizes[:-1] > [MOST_LINES]):
         allowed = f"allowed with one range, or with a second one of at most {MOST_LINES} values"
         raise InputError("figure", options.figure, allowed)
-    columns = map(list, zip(*grid.combinations, strict=True))
-    values = dict(zip(grid.axes, columns, strict=True))
+    starts = [dict(zip(grid.axes, case, strict=True)) for case in grid.combinations]
     texts = {name: list(map(_short, one)) for name, one in grid.table.columns.items()}
     names = [
         ", ".join(f"{name} {text}" for name, text in zip(texts, case, strict=True))
         for case in zip(*texts.values(), strict=True)
     ]
-    return _Cases(grid.table, grid.shared, grid.dataset, names, texts, values)
+    return _Cases(grid.table, grid.shared, grid.dataset, names, texts, starts)
 
 
 def _short(text: str) -> str:
     """Format a quantity with at most four digits."""
     number, _, unit = text.partition(" ")
     return f"{float(number):.4g} {unit}".strip()
-
-
-def _rows(
-    cases: _Cases,
-    answers: Sequence[Prediction | NoPrediction],
-    headings: Collection[str],
-    map_: str | None,
-) -> list[dict[str, Any]]:
-    """Return a dict for each contact: its first values, its error message or None, and its columns.
-
-    headings: arguments that messages show by name, not as options; map_: value of --map.
-    """
-    rows = []
-    for values, one in zip(zip(*cases.values.values(), strict=True), answers, strict=True):
-        row = dict(zip(cases.values, values, strict=True))
-        if isinstance(one, NoPrediction):
-            rows.append(row | {"error": problem_text(one.error, headings, map_)})
-        else:
-            rows.append(row | {"error": None} | one.to_dict())
-    return rows
 
 
 def problem_text(
@@ -205,40 +191,15 @@ def problem_text(
     return " ".join(f"{name}{value}: {allowed}".split())
 
 
-def _write(options: argparse.Namespace, dataset: xr.Dataset) -> None:
-    """Write the --output and --figure files.  Raises InputError."""
-    if options.output is not None:
-        write_output(options.output, dataset_writers(dataset, dataset.to_dataframe()))
-    if options.figure is not None:
-        from microslip.report.figures.drawing import draw, save
-
-        save(draw("curve", {"curve": dataset}), options.figure)
-
-
-class _Quantity(NamedTuple):
-    """A quantity of the printed table.
-
-    Attributes
-    ----------
-    columns : tuple of str
-        Columns with the value, the error estimate and the standard uncertainty.
-    headings : tuple of str
-        Headings of these columns.  An empty heading means that the column is not printed.
-    sought : str or None
-        Name of the quantity, if it is the result of a search.
-    """
-
-    columns: tuple[str, str, str]
-    headings: tuple[str, str, str]
-    sought: str | None = None
+Column = tuple[str, Callable[[Mapping[str, Any]], str]]
+"""Heading of a printed column, and the function that formats its cell in a row."""
 
 
 def _as_text(cases: _Cases, answers: Sequence[Prediction | NoPrediction]) -> str:
     """Return the printed table, with a row for each case and remarks below."""
-    some = [one for one in answers if isinstance(one, Prediction)]
-    quantities, verdict = _quantities(some), _verdict_headings(some)
-    headings = [text for one in quantities for text in one.headings if text] + verdict
-    lines = ["".join(f"{title:>{WIDTH}}" for title in (*cases.cells, *headings))]
+    columns = _columns([one for one in answers if isinstance(one, Prediction)])
+    headings = (*cases.cells, *(heading for heading, _ in columns))
+    lines = ["".join(f"{heading:>{WIDTH}}" for heading in headings)]
     remarks: dict[str, list[str]] = {}
     starts = zip(*cases.cells.values(), strict=True)
     for name, texts, one in zip(cases.names, starts, answers, strict=True):
@@ -247,9 +208,7 @@ def _as_text(cases: _Cases, answers: Sequence[Prediction | NoPrediction]) -> str
             lines.append(f"{start}  no prediction")
             continue
         row = EMPTY | {"sought_value": getattr(one, "sought_value", None)} | one.to_dict()
-        cells = [cell for quantity in quantities for cell in _cells(row, quantity)]
-        cells += _verdict_cells(row)[: len(verdict)]
-        lines.append(start + "".join(f"{cell:>{WIDTH}}" for cell in cells))
+        lines.append(start + "".join(f"{cell(row):>{WIDTH}}" for _, cell in columns))
         own = [runs_away(one)] if row["outcome"] == "runs away" else []
         own += [*not_converged(one), *(f"warning: {text}" for text in one.warnings)]
         for text in own:
@@ -260,65 +219,74 @@ def _as_text(cases: _Cases, answers: Sequence[Prediction | NoPrediction]) -> str
     return "\n".join(lines)
 
 
-def _quantities(answers: Sequence[Prediction]) -> list[_Quantity]:
-    """Return the quantities that the printed table shows for these predictions."""
+def _columns(answers: Sequence[Prediction]) -> list[Column]:
+    """Return the columns of the printed table for these predictions."""
     forced = any(one.force_N is not None for one in answers)
-    spread = "spread" if any("mu_apparent_spread" in one.uncertainty for one in answers) else ""
+    uncertain = {name for one in answers for name in one.uncertainty}
     friction = ("mu_apparent", "mu_apparent_error", "mu_apparent_spread")
-    shown = [
-        _Quantity(friction, ("mu_apparent", "+-", spread)),
-        _Quantity(("friction_force_N", "friction_force_error_N", ""), ("force N", "+- N", "")),
-        _Quantity(
-            ("speed_m_s", "speed_error_m_s", ""), ("speed m/s", "+- m/s" if forced else "", "")
-        ),
-    ]
+    spread = ["spread"] * ("mu_apparent_spread" in uncertain)
+    columns = _numbers(friction, ["mu_apparent", "+-", *spread])
+    columns += _numbers(("friction_force_N", "friction_force_error_N", ""), ["force N", "+- N"])
+    speed = ["speed m/s", *["+- m/s"] * forced]
+    columns += _numbers(("speed_m_s", "speed_error_m_s", ""), speed)
     if forced:
         threshold = ("force_threshold_N", "force_threshold_error_N", "")
-        shown.append(_Quantity(threshold, ("threshold N", "+- N", "")))
+        columns += _numbers(threshold, ["threshold N", "+- N"])
     for sought in dict.fromkeys(one.sought for one in answers):
         if sought is not None:  # each line can search for a different quantity
             results = [one for one in answers if one.sought == sought]
-            amplitude = unit_of_amplitude(results[0].motion)
+            amplitude = kind_of(results[0].motion).unit
             unit = {"amplitude": amplitude, "speed": "m/s", "load": "N"}[sought]
-            spread = (
-                f"spread {unit}" if any(one.sought_spread is not None for one in results) else ""
-            )
-            headings = (f"{sought} {unit}", f"+- {unit}", spread)
-            columns = ("sought_value", "sought_error", "sought_spread")
-            shown.append(_Quantity(columns, headings, sought))
-    return shown
+            has_spread = any(one.sought_spread is not None for one in results)
+            headings = [f"{sought} {unit}", f"+- {unit}", *[f"spread {unit}"] * has_spread]
+            columns += _numbers(("sought_value", "sought_error", "sought_spread"), headings, sought)
+    if forced:
+        columns.append(("outcome", lambda row: row["outcome"] or ""))
+    if forced and "probability_error" in uncertain:
+        columns += [(title, partial(_percent, name=name)) for title, name in PROBABILITIES.items()]
+        columns.append(("+- %", _percent_error))
+    return columns
 
 
-def _cells(row: Mapping[str, Any], quantity: _Quantity) -> list[str]:
-    """Format the columns of one quantity with the digits that its error estimate allows."""
-    value, error, spread = (row.get(name) for name in quantity.columns)
-    accelerates = row["outcome"] == "runs away" and quantity.columns[0] in STEADY
-    texts = ["", "", ""]
-    if not (value is None or accelerates or quantity.sought not in (None, row["sought"])):
-        number, _, error = number_text(value, error or 0.0).partition(SEPARATOR)
-        if number.startswith("("):  # a common power of 10, as in "(2.820 +- 0.016)e-05"
-            error, _, power = error.partition(")")
-            number, error = f"{number[1:]}{power}", f"{float(error + power):g}"
-        texts = [number, error or "0", "" if spread is None else number_text(spread, digits=2)]
-    return [text for text, heading in zip(texts, quantity.headings, strict=True) if heading]
+def _numbers(
+    names: tuple[str, str, str], headings: Sequence[str], sought: str | None = None
+) -> list[Column]:
+    """Return columns with a value, its error estimate and its standard uncertainty.
+
+    names: these fields of a prediction; headings: headings of the first ones, which are printed;
+    sought: name of the quantity, if it is the result of a search.
+    """
+    return [
+        (heading, partial(_number, names=names, place=place, sought=sought))
+        for place, heading in enumerate(headings)
+    ]
 
 
-def _verdict_headings(answers: Sequence[Prediction]) -> list[str]:
-    """Return headings for the outcome under a force and for the probability of each outcome."""
-    if all(one.force_N is None for one in answers):
-        return []
-    uncertain = any("probability_error" in one.uncertainty for one in answers)
-    return ["outcome", *PROBABILITIES, "+- %"] if uncertain else ["outcome"]
+def _number(
+    row: Mapping[str, Any], names: tuple[str, str, str], place: int, sought: str | None
+) -> str:
+    """Format a number with the digits that its error estimate allows.  place: index in `names`."""
+    value, error, spread = (row.get(name) for name in names)
+    accelerates = row["outcome"] == "runs away" and names[0] in STEADY
+    if value is None or accelerates or sought not in (None, row["sought"]):
+        return ""
+    number, _, error = number_text(value, error or 0.0).partition(SEPARATOR)
+    if number.startswith("("):  # a common power of 10, as in "(2.820 +- 0.016)e-05"
+        error, _, power = error.partition(")")
+        number, error = f"{number[1:]}{power}", f"{float(error + power):g}"
+    return [number, error or "0", "" if spread is None else number_text(spread, digits=2)][place]
 
 
-def _verdict_cells(row: Mapping[str, Any]) -> list[str]:
-    """Format the outcome, the probability of each outcome, and the error of the probabilities."""
-    error = row["probability_error"]
-    chances = [row[column] for column in PROBABILITIES.values()]
-    texts = ["" if chance is None else _percent(chance, error or 0.0) for chance in chances]
-    return [row["outcome"] or "", *texts, "" if error is None else error_text(100.0 * error)]
-
-
-def _percent(chance: float, error: float) -> str:
-    text = probability_text(chance, error).removesuffix(" %").partition(SEPARATOR)[0]
+def _percent(row: Mapping[str, Any], name: str) -> str:
+    """Format the probability of an outcome."""
+    if row[name] is None:
+        return ""
+    text = probability_text(row[name], row["probability_error"] or 0.0)
+    text = text.removesuffix(" %").partition(SEPARATOR)[0]
     return text.replace("below", "<").replace("above", ">")
+
+
+def _percent_error(row: Mapping[str, Any]) -> str:
+    """Format the error of the probabilities."""
+    error = row["probability_error"]
+    return "" if error is None else error_text(100.0 * error)

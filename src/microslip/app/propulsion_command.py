@@ -5,8 +5,8 @@ from __future__ import annotations
 import argparse
 from typing import TYPE_CHECKING
 
-from microslip.app.question import Answer, add_json, add_options, respond, typed_options
-from microslip.foundation import spec
+from microslip.app.option_parser import StoreSpelling
+from microslip.app.question import Answer, add_answer, add_options, typed_options
 from microslip.foundation.number_text import aligned, number_text
 
 if TYPE_CHECKING:
@@ -42,25 +42,18 @@ def fill(parser: argparse.ArgumentParser) -> None:
     )
     parser.add_argument(
         "motion",
+        action=StoreSpelling,
         metavar="MOTION",
         help="elliptic or normal, with numbers after a colon, such as elliptic:forward_cycles=2",
     )
     add_options(parser, OPTIONS, required=("amplitude",))
-    add_json(parser)
-
-
-def run(options: argparse.Namespace) -> int:
-    """Print the answer.  Returns the exit code: 0 if converged, 1 if not converged, 2 for bad
-    input."""
-    return respond("microslip propulsion", options, _answer, {"motion": "MOTION"})
+    add_answer(parser, _answer)
 
 
 def _answer(options: argparse.Namespace) -> Answer:
     from microslip import propulsion
 
-    arguments = typed_options(options)
-    for name in arguments.keys() & {*REALS, "points"}:
-        arguments[name] = spec.read(name, arguments[name], whole=name == "points")
+    arguments = typed_options(options, REALS, ("points",))
     line = propulsion(options.motion, arguments.pop("amplitude"), **arguments)
     return Answer(line.to_dict(), _as_text(line), line.converged)
 

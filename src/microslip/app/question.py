@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 from microslip.app.option_parser import StoreSpelling, format_as_options, option
 from microslip.app.terminal import complain
-from microslip.foundation import extras
+from microslip.foundation import extras, spec
 from microslip.foundation.errors import CacheError, InputError, shown
 
 if TYPE_CHECKING:
@@ -23,7 +23,8 @@ ENDINGS = (".csv", ".nc")
 """File extensions of output files."""
 FIGURES = (".png", ".pdf")
 """File extensions of figures."""
-WRITABLE = "a file in a folder that can be written to"
+OUTPUTS = ("output", "figure")
+"""Options for output files."""
 FILE_FORMAT = {
     "decimal": ("MARK", "decimal mark of the file, a point or a comma (.)"),
     "encoding": ("NAME", "encoding of the file, such as cp1252 (utf-8)"),
@@ -31,6 +32,8 @@ FILE_FORMAT = {
 """Options that describe the format of a CSV file."""
 OTHER_NAMES = {"nu": ("--poisson",), "poisson": ("--nu",)}
 """Alternative names of options."""
+SPIN = "Bore means spin: rotation about the contact normal."
+"""Remark in help texts."""
 
 
 class Answer(NamedTuple):
@@ -69,62 +72,64 @@ def add_options(
         )
 
 
-def add_json(parser: Any) -> None:
-    """Add the option `--json`."""
-    parser.add_argument(
-        "--json", action="store_true", help="print one JSON object and nothing else"
-    )
-
-
-def typed_options(options: argparse.Namespace) -> dict[str, Any]:
-    """Return the values of the options on the command line, by argument name."""
-    return {name: getattr(options, name) for name in getattr(options, "spellings", {})}
-
-
-def respond(
-    command: str,
-    options: argparse.Namespace,
+def add_answer(
+    parser: argparse.ArgumentParser,
     answer: Callable[[argparse.Namespace], Answer],
-    titles: Mapping[str, str],
-    arguments: Iterable[str] = (),
-) -> int:
-    """Print the answer to a command line, or an error message.
+    group: Any = None,
+) -> None:
+    """Add the option `--json` to a parser or its group, and store what `respond` needs.
 
-    Parameters
-    ----------
-    command : str
-        Name of the command, for messages.
-    options : argparse.Namespace
-        The command line.
-    answer : callable
-        answer(options) -> Answer.
-    titles : mapping of str
-        Names of positional arguments in messages.
-    arguments : iterable of str
-        Python arguments that messages show as options.
-
-    Returns
-    -------
-    int
-        Exit code: 0 if the answer is complete, 1 if not, 2 for bad input.
+    answer: function that computes the answer from the parsed command line.
     """
-    from microslip.sweeps.evaluate import plain
+    text = "print one JSON object and nothing else"
+    (group or parser).add_argument("--json", action="store_true", help=text)
+    parser.set_defaults(answer=answer, command=parser.prog, spellings={})
 
+
+def typed_options(
+    options: argparse.Namespace, reals: Iterable[str] = (), wholes: Iterable[str] = ()
+) -> dict[str, Any]:
+    """Return the values of the options on the command line, by argument name.
+
+    The options in `reals` and `wholes` are converted to numbers, and the dataset of --map is
+    opened.  Options for output files are left out.  Raises InputError for a text that is not a
+    number, and InputError and CacheError for a map that cannot be opened.
+    """
+    words = {name: word for name, word in options.spellings.items() if name not in OUTPUTS}
+    typed = {name: getattr(options, name) for name, word in words.items() if word.startswith("--")}
+    for name, text in typed.items():
+        if name in reals or name in wholes:
+            typed[name] = spec.read(name, text, whole=name in wholes)
+        elif name == "map":
+            typed[name] = _opened_map(text)
+    return typed
+
+
+def respond(options: argparse.Namespace) -> int:
+    """Print the answer to a parsed command line, or an error message.
+
+    Returns the exit code: 0 if the answer is complete, 1 if not, 2 for bad input.
+    """
     try:
-        result = answer(options)
+        result = options.answer(options)
     except InputError as error:
-        spellings, value = getattr(options, "spellings", {}), error.value
-        if error.argument in spellings or error.argument in titles:
-            value = getattr(options, error.argument)
-        name = titles.get(error.argument) or spellings.get(error.argument) or option(error.argument)
-        text = "" if error.value is None or error.value is True else f" = {shown(value)}"
-        allowed = format_as_options(error.allowed, [] if error.argument == "table" else arguments)
-        complain(" ".join(f"{command}: {name}{text}: {allowed}".split()))
+        name, value = option(error.argument), error.value
+        if error.argument in options.spellings:
+            name, value = options.spellings[error.argument], getattr(options, error.argument)
+        text = "" if value is None or value is True else f" = {shown(value)}"
+        allowed = format_as_options(
+            error.allowed, () if error.argument == "table" else vars(options)
+        )
+        complain(f"{options.command}: {name}{text}: {allowed}")
         return 2
     except CacheError as error:
-        complain(f"{command}: {error}")
+        complain(f"{options.command}: {error}")
         return 2
-    text = json.dumps(plain(result.plain)) if options.json else result.text
+    text = result.text
+    if options.json:
+        from microslip.sweeps.evaluate import plain
+
+        text = json.dumps(plain(result.plain))
     encoding = getattr(sys.stdout, "encoding", None) or "utf-8"
     # The encoding may lack characters that units use.
     if text:
@@ -133,7 +138,10 @@ def respond(
 
 
 def refuse_output(
-    path: str | None, table: str | None = None, endings: tuple[str, ...] = ENDINGS
+    path: str | None,
+    table: str | None = None,
+    endings: tuple[str, ...] = ENDINGS,
+    argument: str = "output",
 ) -> None:
     """Raise InputError if the output file cannot be written, or if it is the input table."""
     if path is None:
@@ -141,32 +149,22 @@ def refuse_output(
     file, allowed = Path(path), ""
     if file.suffix.lower() not in endings:
         allowed = f"a name that ends in {' or '.join(endings)}"
-    elif not _is_writable(file):
-        allowed = WRITABLE
+    elif file.is_dir() or not (file.parent.is_dir() and os.access(file.parent, os.W_OK)):
+        allowed = "a file in a folder that can be written to"
     elif table is not None and file.resolve() == Path(table).resolve():
         allowed = "another file than the table that is read"
     if allowed:
-        raise InputError("output", path, f"allowed is {allowed}")
-
-
-def _is_writable(file: Path) -> bool:
-    """True for a file in an existing folder that can be written to."""
-    return not file.is_dir() and file.parent.is_dir() and os.access(file.parent, os.W_OK)
+        raise InputError(argument, path, f"allowed is {allowed}")
 
 
 def refuse_figure(path: str | None) -> None:
     """Raise InputError if the figure cannot be written, or if matplotlib is missing."""
-    if path is None:
-        return
-    if Path(path).suffix.lower() not in FIGURES:
-        raise InputError("figure", path, f"allowed is a name that ends in {' or '.join(FIGURES)}")
-    if not _is_writable(Path(path)):
-        raise InputError("figure", path, f"allowed is {WRITABLE}")
-    if hint := extras.missing("matplotlib"):
+    refuse_output(path, endings=FIGURES, argument="figure")
+    if path is not None and (hint := extras.missing("matplotlib")):
         raise InputError("figure", path, hint)
 
 
-def opened_map(path: str) -> xr.Dataset:
+def _opened_map(path: str) -> xr.Dataset:
     """Open the dataset of the option --map, which is a .nc file or the name of a sweep.
 
     Raises InputError and CacheError.
@@ -205,9 +203,25 @@ def short_csv(frame: pd.DataFrame) -> str:
     return frame.to_csv(index=False, float_format="%.6g", lineterminator="\n").rstrip("\n")
 
 
-def dataset_writers(dataset: xr.Dataset, frame: pd.DataFrame, **to_csv: Any) -> dict[str, Any]:
-    """Return writers for a dataset: a .csv writer for its table, and a .nc writer."""
+def dataset_writers(
+    dataset: xr.Dataset, frame: Callable[[], pd.DataFrame], **to_csv: Any
+) -> dict[str, Callable[[Path], object]]:
+    """Return writers for a dataset: a .csv writer for the table that `frame` returns, and a .nc
+    writer."""
     return {
-        ".csv": lambda file: frame.to_csv(file, **to_csv),
+        ".csv": lambda file: frame().to_csv(file, **to_csv),
         ".nc": lambda file: dataset.to_netcdf(file, engine="netcdf4"),
     }
+
+
+def write_files(options: argparse.Namespace, figure: str, dataset: xr.Dataset) -> None:
+    """Write the --output and --figure files of a dataset.
+
+    figure: name of the figure in report.figures.drawing.  Raises InputError.
+    """
+    if options.output is not None:
+        write_output(options.output, dataset_writers(dataset, dataset.to_dataframe))
+    if options.figure is not None:
+        from microslip.report.figures.drawing import draw, save
+
+        save(draw(figure, {figure: dataset}), options.figure)

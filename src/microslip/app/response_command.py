@@ -7,17 +7,17 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from microslip.app.option_parser import StoreSpelling
 from microslip.app.predict_command import GROUPS
 from microslip.app.progress import elapsed_time
 from microslip.app.question import (
     FILE_FORMAT,
     Answer,
-    add_json,
+    add_answer,
     add_options,
     dataset_writers,
     heading,
     refuse_output,
-    respond,
     short_csv,
     typed_options,
     write_output,
@@ -66,35 +66,25 @@ def fill(parser: argparse.ArgumentParser) -> None:
         "dimensionless: displacements are divided by u_lim, angles by u_lim / a, loads and "
         "indentations by those of the reference state."
     )
-    parser.add_argument("path", metavar="CSV", help="the path")
+    parser.add_argument("path", action=StoreSpelling, metavar="CSV", help="the path")
     bodies = parser.add_argument_group("bodies")
     add_options(bodies, GROUPS["bodies"])
     add_options(bodies, LOAD)
     output = parser.add_argument_group("output")
     add_options(output, OUTPUT)
-    add_json(output)
-
-
-def run(options: argparse.Namespace) -> int:
-    """Print the answer.  Returns the exit code: 0 if converged, 1 if not converged, 2 for bad
-    input."""
-    names = [name.replace("-", "_") for name in (*GROUPS["bodies"], "load", *OUTPUT)]
-    return respond("microslip response", options, _answer, {"path": "CSV"}, names)
+    add_answer(parser, _answer, output)
 
 
 def _answer(options: argparse.Namespace) -> Answer:
-    arguments = typed_options(options)
-    output = arguments.pop("output", None)
-    refuse_output(output, options.path)
-    if "tolerance" in arguments:
-        arguments["tolerance"] = spec.read("tolerance", arguments["tolerance"])
+    arguments = typed_options(options, reals=("tolerance",))
+    refuse_output(options.output, options.path)
     real = arguments.keys() - WITHOUT_CONTACT
     with elapsed_time("microslip response"):
         answer = (_real if real else _dimensionless)(options.path, arguments)
     dataset = answer.to_xarray()
     texts = [] if answer.converged else [f"# NOT CONVERGED: {answer.reason}"]
-    if output is not None:
-        write_output(output, dataset_writers(dataset, _frame(dataset), index=False))
+    if options.output is not None:
+        write_output(options.output, dataset_writers(dataset, lambda: _frame(dataset), index=False))
     else:
         texts.append(short_csv(_frame(_without_rounding(dataset))))
     plain = {name: values.tolist() for name, (_, values) in answer.columns.items()}

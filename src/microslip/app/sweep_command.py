@@ -20,9 +20,10 @@ from pathlib import Path
 
 from microslip.app.figure_targets import TARGETS
 from microslip.app.terminal import complain
-from microslip.config import load, schema
+from microslip.config import load
 from microslip.foundation import extras, files
 from microslip.foundation.errors import CacheError, InputError
+from microslip.foundation.spec import near_miss
 from microslip.report.figures import drawing
 
 PACKAGE = Path(__file__).parents[1]
@@ -141,7 +142,7 @@ def _check(arguments: list[str]) -> None:
     for target in options.targets:
         is_file = bool({".", "/"} & set(target))
         if not (is_file or target in known or target.startswith(of_configuration)):
-            hint = schema.near_miss(target, known)
+            hint = near_miss(target, known)
             allowed = f"allowed is one of {', '.join(TARGETS)}, a figure such as fig2, or a file"
             raise InputError("TARGET", target, hint + allowed)
     for entry in options.config or ():

@@ -8,12 +8,13 @@ from __future__ import annotations
 import io
 import os
 import signal
-import socket
 import sys
 import threading
-import time
 from collections.abc import Callable
+from concurrent.futures import ThreadPoolExecutor, wait
 from typing import Any, NoReturn
+
+from microslip.foundation import files
 
 CANNOT_WRITE = 74
 """Exit code if the output cannot be written: EX_IOERR of sysexits.h."""
@@ -24,8 +25,12 @@ OF_SIGNAL = 128
 """Offset of the exit code: a program that is ended by signal n returns this number plus n."""
 
 STOPPED_BY = {"SIGINT": "interrupted", "SIGTERM": "terminated", "SIGHUP": "terminal closed"}
-GRACE = 0.4
-"""Time limit in seconds for Python to stop by itself and to remove partial files."""
+STACK = 2**24
+"""Size of a thread's stack in bytes, 16 MB.  Some systems give a thread less than the compiler of
+the kernels needs."""
+WAIT = 0.1
+"""Longest wait in seconds before pending signals are handled.  Windows handles none during a
+wait."""
 
 
 def run(command: Callable[[], int], *, stoppable: bool = True) -> int:
@@ -45,17 +50,15 @@ def run(command: Callable[[], int], *, stoppable: bool = True) -> int:
         The exit code.  This function does not return if a signal ends the command.
     """
     _open_closed_streams()
-    stop = _Stop() if stoppable else None
-    try:
-        code = _code_of(command)
-        if stop and stop.signal:  # the command has caught KeyboardInterrupt
-            stop.end()
-    except BaseException:
-        if stop and stop.signal:  # KeyboardInterrupt, or the error of a library after it
-            stop.end()
-        raise
-    if stop:
-        stop.ignore()
+    if not stoppable:
+        return _written(_code_of(command))
+    numbers = [getattr(signal, name) for name in STOPPED_BY if hasattr(signal, name)]
+    numbers = [n for n in numbers if signal.getsignal(n) != signal.SIG_IGN]  # set by nohup
+    for number in numbers:
+        signal.signal(number, _end)
+    code = _code_in_thread(command)
+    for number in numbers:  # the output is complete
+        signal.signal(number, signal.SIG_IGN)
     return _written(code)
 
 
@@ -126,69 +129,25 @@ def _written(code: int) -> int:
 # Signals
 
 
-class _Stop:
-    """End this process within about half a second of a signal.
+def _code_in_thread(command: Callable[[], int]) -> int:
+    """Run a command in another thread.
 
-    Python handles a signal between two bytecode instructions, and a compiled kernel is one
-    instruction, which may take a minute.  Kernels do not block other threads.  So another thread
-    also receives the signal, and ends the process after GRACE seconds.  Before that, a
-    KeyboardInterrupt in the main thread can remove partial files.
-
-    Attributes
-    ----------
-    signal : signal.Signals or None
-        The first signal; None before the first signal.
+    Python handles signals in the main thread, between two bytecode instructions.  A compiled kernel
+    is one instruction, which may take a minute, but does not block other threads.
     """
+    threading.stack_size(STACK)
+    code = ThreadPoolExecutor(1).submit(_code_of, command)
+    while not code.done():
+        wait([code], WAIT)
+    return code.result()
 
-    def __init__(self) -> None:
-        self.signal: signal.Signals | None = None
-        self._ending = threading.Lock()
-        reader, writer = socket.socketpair()  # Windows does not allow a pipe here
-        writer.setblocking(False)
-        signal.set_wakeup_fd(writer.fileno(), warn_on_full_buffer=False)
-        self._sockets = reader, writer
-        self._numbers = [
-            getattr(signal, name)
-            for name in STOPPED_BY
-            if hasattr(signal, name)
-            and signal.getsignal(getattr(signal, name)) != signal.SIG_IGN  # set by nohup
-        ]
-        threading.Thread(target=self._listen, args=(reader,), daemon=True).start()
-        sys.unraisablehook = self._unraisable
-        for number in self._numbers:
-            signal.signal(number, self._interrupt)
 
-    def _interrupt(self, number: int, frame: object) -> None:
-        """Signal handler in the main thread."""
-        if self.signal is None:  # a second exception would interrupt the removal of files
-            self.signal = signal.Signals(number)
-            raise KeyboardInterrupt
-
-    def _listen(self, reader: socket.socket) -> None:
-        number = 0
-        while number not in self._numbers:
-            (number,) = reader.recv(1)
-        time.sleep(GRACE)
-        self.signal = self.signal or signal.Signals(number)
-        self.end()
-
-    def _unraisable(self, problem: sys.UnraisableHookArgs) -> None:
-        if self.signal is None:
-            sys.__unraisablehook__(problem)
-
-    def end(self) -> NoReturn:
-        """Print one line and end this process with the exit code of the signal."""
-        ended = self.signal
-        assert ended is not None
-        self._ending.acquire()  # never released, so that only one of the two threads continues
-        try:
-            own_line = "\n" if sys.stderr.isatty() else ""  # after ^C, or a line of progress
-            os.write(2, f"{own_line}microslip: {STOPPED_BY[ended.name]}\n".encode())
-        finally:
-            os._exit(OF_SIGNAL + ended)
-
-    def ignore(self) -> None:
-        """Ignore signals from now on, since the output is complete."""
-        for number in self._numbers:
-            signal.signal(number, signal.SIG_IGN)
-        signal.set_wakeup_fd(-1)
+def _end(number: int, frame: object) -> NoReturn:
+    """Signal handler that removes partial files, prints one line and ends this process."""
+    signal.signal(number, signal.SIG_IGN)
+    try:
+        files.remove_partial()
+        own_line = "\n" if sys.stderr.isatty() else ""  # after ^C, or a line of progress
+        os.write(2, f"{own_line}microslip: {STOPPED_BY[signal.Signals(number).name]}\n".encode())
+    finally:
+        os._exit(OF_SIGNAL + number)

@@ -31,7 +31,7 @@ def solver_names(sweep: Sweep) -> tuple[str, str]:
 def refuse_unsolvable(sweep: Sweep) -> None:
     """Raise InputError or Refusal, with the key, for a sweep that the solver refuses."""
     from microslip.adaptive.choice import choose_model
-    from microslip.adaptive.driven_contact import refuse_drive
+    from microslip.adaptive.under_force import refuse_drive
     from microslip.motions.by_name import motion_named
     from microslip.pressures.by_name import pressure_named
 

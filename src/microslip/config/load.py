@@ -31,6 +31,7 @@ from microslip.config.strict_yaml import StrictLoader
 from microslip.foundation import named_files
 from microslip.foundation.canonical import number
 from microslip.foundation.errors import InputError
+from microslip.foundation.named_files import NamedFile
 
 MOST_BYTES = 1_000_000
 """Largest size of a configuration in bytes.  PyYAML reads about 100 kB per second."""
@@ -62,7 +63,7 @@ def read_yaml(path: str | os.PathLike) -> dict:
     try:
         content = named_files.content_of(path, MOST_BYTES)
     except OSError as error:
-        raise ConfigError(_one_line(f"{path}: cannot be read: {error.strerror}")) from None
+        raise ConfigError(f"{path}: cannot be read: {error.strerror}") from None
     except ValueError as error:
         raise ConfigError(f"{path}: {error}") from None
     try:
@@ -77,7 +78,7 @@ def read_yaml(path: str | os.PathLike) -> dict:
         ) from None
     except yaml.YAMLError as error:
         hint = "; allowed: spaces, no tabs" if "'\\t'" in str(error) else ""
-        raise ConfigError(f"{path}: not valid YAML: {_one_line(error)}{hint}") from None
+        raise ConfigError(f"{path}: not valid YAML: {error}{hint}") from None
     if mapping is None:
         raise ConfigError(f"{path}: is empty; allowed: keys and values, sweeps at least")
     if not isinstance(mapping, dict):
@@ -106,7 +107,7 @@ def _as_text(content: bytes, path: str | os.PathLike) -> io.StringIO:
 
 
 def with_defaults_and_paths(
-    mapping: dict, source: str = "configuration", folders: Iterable = (), strict: bool = True
+    mapping: dict, source: str = "configuration", folders: Iterable = ()
 ) -> dict:
     """Fill in the defaults and the file paths of a parsed configuration.
 
@@ -116,8 +117,6 @@ def with_defaults_and_paths(
     ----------
     mapping, source, folders
         As for `from_mapping`.
-    strict : bool
-        True to refuse a missing file.
 
     Raises
     ------
@@ -128,7 +127,8 @@ def with_defaults_and_paths(
         for name, entry in entries.items():
             with _errors_at(f"{source}: {key}.{name}"):
                 for role in filter(entry.__contains__, ROLES):
-                    entry[role] = _with_path(entry[role], role, folders, strict)
+                    if file := _file_in(entry[role], role, folders, strict=True):
+                        entry[role] = file.placed
     return filled
 
 
@@ -161,44 +161,44 @@ def _settings(mapping: dict, source: str) -> Root:
         return Root.model_validate(mapping)
     except ValidationError as error:
         line = schema.error_line(error.errors(include_url=False))
-        raise ConfigError(f"{source}: {_one_line(line)}") from None
+        raise ConfigError(f"{source}: {line}") from None
 
 
-def _with_path(name: str, role: str, folders: Iterable, strict: bool) -> str:
-    """Add the path and the digest of the file to the name of a motion or a pressure.
+def _file_in(name: str, role: str, folders: Iterable, strict: bool) -> NamedFile | None:
+    """Return the file in the name of a motion or a pressure, with its path and digest.
 
-    A name without a file is returned unchanged.  For a missing file, raises InputError if `strict`
-    is True, and otherwise returns the name unchanged.
+    Returns None for a name without a file.  For a missing file, raises InputError if `strict` is
+    True, and otherwise returns None.
     """
     if not named_files.speaks_of_file(name):
-        return name
+        return None
     try:
         file = named_files.parse(name, role)
         if not (file.digest and file.path):
-            return named_files.read(name, role, folders)[0].placed
+            return named_files.read(name, role, folders)[0]
         named_files.remember([name])  # an earlier call found the file
+        return file
     except InputError:
         if strict:
             raise
-    return name
+        return None
 
 
 @contextmanager
 def _errors_at(where: str) -> Iterator[None]:
-    """Context manager that converts errors to ConfigError.  The message is one line and begins with
-    `where`."""
+    """Context manager that converts errors to ConfigError.  The message begins with `where`."""
     try:
         yield
     except ConfigError:
         raise
     except Refusal as error:
         key = f".{error.key}" if error.key else ""
-        raise ConfigError(_one_line(f"{where}{key}: {error}")) from None
+        raise ConfigError(f"{where}{key}: {error}") from None
     except InputError as error:  # solver arguments and keys have the same names
         line = f"{where}.{error.argument}: {error.value!r}: {error.allowed}"
-        raise ConfigError(_one_line(line)) from None
+        raise ConfigError(line) from None
     except ValueError as error:  # from readers of files
-        raise ConfigError(_one_line(f"{where}: {error}")) from None
+        raise ConfigError(f"{where}: {error}") from None
 
 
 def from_mapping(
@@ -324,11 +324,8 @@ def _refuse_taken(name: str, others: Iterable[str]) -> None:
 def _by_content(name: str, role: str, folders: Iterable, strict: bool) -> str:
     """Name of a motion or a pressure.  The path of a file in the name is replaced by the file's
     digest."""
-    placed = _with_path(name, role, folders, strict)
-    if not named_files.speaks_of_file(placed):
-        return placed
-    file = named_files.parse(placed, role)
-    return file.name if file.digest else placed
+    file = _file_in(name, role, folders, strict)
+    return name if file is None else file.name
 
 
 def _refuse_mixtures(sweeps: list[Sweep]) -> None:
@@ -351,7 +348,3 @@ def _refuse_mixtures(sweeps: list[Sweep]) -> None:
                 f"{group} has {drawn} sweeps{ratios}; allowed: up to {most}, or another group",
                 f"{last.name}.group",
             )
-
-
-def _one_line(text: object) -> str:
-    return " ".join(str(text).split())

@@ -41,6 +41,9 @@ class ConfigError(ValueError):
     """Error for an invalid configuration.  The message is one line with the file, the key, the
     value and the allowed values."""
 
+    def __init__(self, message: object):
+        super().__init__(" ".join(str(message).split()))
+
 
 class Refusal(ValueError):
     """Error for a value that is not allowed.  The message is one line.

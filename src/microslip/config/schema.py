@@ -1,6 +1,5 @@
 """The JSON schema of a configuration, and one-line messages for invalid configurations."""
 
-import difflib
 import json
 import math
 import re
@@ -9,6 +8,7 @@ from functools import cache
 from typing import TYPE_CHECKING, Any
 
 from microslip.config.records import Refusal
+from microslip.foundation.spec import near_miss
 
 if TYPE_CHECKING:
     from pydantic_core import ErrorDetails
@@ -55,12 +55,6 @@ def error_line(errors: Iterable["ErrorDetails"]) -> str:
     Unknown keys come first: a mistyped key is reported as unknown and not as missing.
     """
     return _line(min(errors, key=lambda e: (e["type"] not in UNKNOWN, _dotted(_keys(e["loc"])))))
-
-
-def near_miss(name: object, names: Iterable[str]) -> str:
-    """'did you mean NAME? ' for the most similar name, or '' if there is none."""
-    near = difflib.get_close_matches(str(name), names, n=1)
-    return f"did you mean {near[0]}? " if near else ""
 
 
 def short_json(value: object) -> str:

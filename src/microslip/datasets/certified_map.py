@@ -12,7 +12,6 @@ bytes.
 
 from __future__ import annotations
 
-import os
 from collections.abc import Iterable, Iterator, Sequence
 
 import numpy as np
@@ -21,10 +20,9 @@ import xarray as xr
 from microslip.config.extended import solver_names
 from microslip.config.quantities import MU_MACRO
 from microslip.config.records import CertifiedMap
-from microslip.datasets import netcdf, sweep_dataset
+from microslip.datasets import sweep_dataset
 from microslip.datasets.variables import variable
 from microslip.foundation.canonical import canonical_json
-from microslip.foundation.files import writing_beside
 from microslip.sweeps import map_refinement
 from microslip.sweeps.batches import lookup
 from microslip.sweeps.drift_coordinates import DriftCoordinates, velocity_of
@@ -64,6 +62,10 @@ def build(map_: CertifiedMap, records: Iterable[dict]) -> xr.Dataset:
     index = {node: i for i, node in enumerate(nodes)}
     degrees, places = coordinates.degrees, [coordinates.place(node) for node in nodes]
     values, errors = np.array([answers[node] for node in nodes]).T
+    drifts, name, text = map_.force is not None, "mu_macro", MU_MACRO.description
+    if drifts:
+        name, text = "velocity", "mean forward velocity"
+        values, errors = velocity_of(values, errors)
     cell_nodes = [[index[node] for node in cell.nodes(degrees)] for cell in cells.cells]
     axes: dict[str, tuple] = {
         name: ("point", np.array(axis))
@@ -71,13 +73,15 @@ def build(map_: CertifiedMap, records: Iterable[dict]) -> xr.Dataset:
     }
     # Poisson's ratio and velocity are scalars, unless they are directions of the map.
     axes = {"poisson": ((), map_.sweep.poisson[0])} | axes
-    if map_.force is None:
+    if not drifts:
         axes = {"velocity": ((), 0.0)} | axes
+    scaled = " of asinh(velocity)" if drifts else ""
     dataset = xr.Dataset(
         {
-            **_point_variables(map_, values, errors),
+            name: variable("point", values, text),
+            f"{name}_error": variable("point", errors, f"estimated error of {name}"),
             **_borders(coordinates, cells.cells),
-            "cell_error": variable("cell", cells.errors, _bound_of(map_)),
+            "cell_error": variable("cell", cells.errors, f"bound of the error{scaled} in the cell"),
             "cell_node": (
                 ("cell", "node"),
                 np.array(cell_nodes, np.int32),
@@ -89,7 +93,7 @@ def build(map_: CertifiedMap, records: Iterable[dict]) -> xr.Dataset:
     sweep_dataset.describe_axes(dataset, map_.sweep)
     motion, pressure = solver_names(map_.sweep)
     versions = {canonical_json(record["versions"]) for record in records}
-    quantity = "friction" if map_.force is None else "drift"
+    quantity = "drift" if drifts else "friction"
     about = sweep_dataset.provenance(
         f"Certified {quantity} of a vibrated contact, motion {motion}",
         map_.settings,
@@ -102,16 +106,9 @@ def build(map_: CertifiedMap, records: Iterable[dict]) -> xr.Dataset:
         directions=" ".join(coordinates.directions),
         degrees=np.array(degrees, np.int32),
     )
-    if map_.force is not None:
+    if drifts:
         about["drive"] = "force"
     return dataset.assign_attrs(about | {COORDINATES: coordinates.to_json()})
-
-
-def write(path: str | os.PathLike, dataset: xr.Dataset) -> None:
-    """Write the dataset to a netCDF-4 file atomically.  Raises CacheError if the file cannot be
-    written."""
-    with writing_beside(path) as beside:
-        netcdf.write(beside, dataset, {})
 
 
 def report(dataset: xr.Dataset, name: str) -> Iterator[str]:
@@ -139,24 +136,6 @@ def coordinates_in(dataset: xr.Dataset) -> MapCoordinates | DriftCoordinates:
     coordinates of this kind."""
     kind = DriftCoordinates if is_of_drift(dataset) else MapCoordinates
     return kind.from_json(dataset.attrs[COORDINATES])
-
-
-def _point_variables(map_: CertifiedMap, values: np.ndarray, errors: np.ndarray) -> dict:
-    """Return the variables for the solved quantity and its error."""
-    name, text = "mu_macro", MU_MACRO.description
-    if map_.force is not None:
-        name, text = "velocity", "mean forward velocity"
-        values, errors = velocity_of(values, errors)
-    return {
-        name: variable("point", values, text),
-        f"{name}_error": variable("point", errors, f"estimated error of {name}"),
-    }
-
-
-def _bound_of(map_: CertifiedMap) -> str:
-    if map_.force is None:
-        return "bound of the error in the cell"
-    return "bound of the error of asinh(velocity) in the cell"
 
 
 def _borders(coordinates: MapCoordinates | DriftCoordinates, cells: Sequence[Cell]) -> dict:

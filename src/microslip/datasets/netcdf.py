@@ -20,6 +20,7 @@ import xarray as xr
 
 from microslip.datasets.variables import link_errors
 from microslip.foundation.errors import CacheError
+from microslip.foundation.files import writing_beside
 
 Groups = Mapping[str, tuple[str, tuple[str, ...]]]
 
@@ -58,14 +59,18 @@ def divide(dataset: xr.Dataset, groups: Groups) -> tuple[xr.Dataset, dict[str, x
     return root, parts
 
 
-def write(path: str | os.PathLike[str], root: xr.Dataset, parts: Mapping[str, xr.Dataset]) -> None:
-    """Write a root and its groups to a new netCDF-4 file.  Equal datasets give equal bytes.
+def write(
+    path: str | os.PathLike[str], root: xr.Dataset, parts: Mapping[str, xr.Dataset] | None = None
+) -> None:
+    """Write a root and its groups to a netCDF-4 file, atomically.  Equal datasets give equal bytes.
 
-    The file is not written atomically.  Use files.writing_beside for that.
+    parts: datasets of the groups, by name.  Raises CacheError with a one-line message if the file
+    cannot be written.
     """
-    _append(root, path, mode="w")
-    for group, part in parts.items():
-        _append(part, path, mode="a", group=group)
+    with writing_beside(path) as beside:
+        _append(root, beside, mode="w")
+        for group, part in (parts or {}).items():
+            _append(part, beside, mode="a", group=group)
 
 
 def _append(dataset: xr.Dataset, path: str | os.PathLike[str], **how: Any) -> None:
@@ -79,17 +84,10 @@ def _encoding(name: Hashable, kind: str) -> dict:
         return {"_FillValue": None}
     if kind in "OUT":
         # Texts are arrays of characters.  HDF5 loses the type of variable-length strings if a file
-        # is opened again while it is open, and Python then crashes.
-        return {"dtype": "S1", "char_dim_name": characters_of(name)}
+        # is opened again while it is open, and Python then crashes.  Each text has its
+        # own dimension of characters, so that a selection can be saved.
+        return {"dtype": "S1", "char_dim_name": f"characters_of_{name}"}
     return {}
-
-
-def characters_of(name: Hashable) -> str:
-    """Return the name of the character dimension of a text variable.
-
-    Each variable has its own character dimension, so that a selection of a dataset can be saved.
-    """
-    return f"characters_of_{name}"
 
 
 def refuse_oversized(path: str | os.PathLike[str]) -> None:

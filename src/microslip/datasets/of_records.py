@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from typing import Any
 
 import numpy as np
 import xarray as xr
@@ -28,7 +29,7 @@ OF_POINTS = ("forward_position", "lateral_position", "area", "bound", "dissipate
 """Arrays in a Period whose only axis is `point`."""
 
 
-def to_xarray(record: object) -> xr.Dataset:
+def to_xarray(record: Any) -> xr.Dataset:
     """Convert a result to a dataset.  Numbers and arrays become variables, and texts become
     attributes.
 
@@ -64,7 +65,7 @@ def to_xarray(record: object) -> xr.Dataset:
     axes = AXES[kind]
     variables: dict[str, tuple] = {}
     about = {"record": kind.__name__}
-    plain = record.to_dict() if hasattr(record, "to_dict") else vars(record)
+    plain = vars(record) if axes else record.to_dict()  # the lists of a dict have lost their axes
     for name, value in plain.items():
         if isinstance(value, np.ndarray):
             variables[name] = _axes_of(name, value, axes), value

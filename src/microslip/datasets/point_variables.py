@@ -1,20 +1,15 @@
-"""Write the variables of all points to the dataset of a sweep, block by block.
+"""Build the variables of all points for the dataset of a sweep."""
 
-At most BLOCK points are in memory at a time.
-"""
-
-from collections.abc import Iterable, Iterator
-from itertools import islice
+import math
+from collections.abc import Iterable
 from typing import Any
 
-import netCDF4
 import numpy as np
 
 from microslip.config.quantities import MU_MACRO
 from microslip.config.quantities import TORQUE as TORQUE_OF
 from microslip.config.records import Sweep
-from microslip.datasets.netcdf import characters_of
-from microslip.datasets.variables import attributes, error_of
+from microslip.datasets.variables import variable
 from microslip.foundation.canonical import canonical_json
 
 POINT_VARIABLES = {
@@ -82,32 +77,29 @@ DESCRIPTIONS = {
 }
 """Attribute `description` of variables whose long_name is not sufficient."""
 MISSING: dict[type, Any] = {float: np.nan, bool: False, np.int32: 0, np.int64: 0, str: ""}
-
-WIDTHS = {"model": 32, "reason": 256}
-"""Maximum number of bytes in a text variable.  Longer texts are truncated (see `_text`)."""
-BLOCK = 4096
-"""Number of points written at once, and number of points per chunk in a large dataset."""
-Box = tuple[slice, ...]
-"""A block of a grid: a slice for each axis."""
+LONGEST_TEXT = 256
+"""Maximum number of characters in a text.  A longer text is truncated and ends with dots."""
 
 
-def append(file: netCDF4.Dataset, sweep: Sweep, axes: dict, points: Iterable) -> set[str]:
-    """Write the variables of all points in a sweep to an open file.
+def variables(
+    sweep: Sweep, axes: dict[str, tuple[float, ...]], points: Iterable[dict]
+) -> tuple[dict, set[str]]:
+    """Build the variables of all points in a sweep.
 
     Parameters
     ----------
-    file : netCDF4.Dataset
-        File with the dimensions and coordinates of the sweep.
     sweep : records.Sweep
         The sweep.
     axes : dict
         Coordinates by dimension, in the order of the dimensions of the variables.
     points : iterable of dict
-        Records of the points, in the order of the grid.
+        Records of the points, in the order of the grid.  One record is in memory at a time.
 
     Returns
     -------
-    set of str
+    variables : dict
+        Variables as arguments of xarray.Dataset.
+    versions : set of str
         Versions of the libraries that computed the records, as JSON.
 
     Raises
@@ -119,107 +111,35 @@ def append(file: netCDF4.Dataset, sweep: Sweep, axes: dict, points: Iterable) ->
     if not sweep.velocity:
         table = VELOCITY_VARIABLES | table
     shape = tuple(len(values) for values in axes.values())
-    boxes = list(_boxes(shape))
-    for name, (kind, long_name) in table.items():
-        _create(file, name, kind, long_name, tuple(axes), boxes[0] if len(boxes) > 1 else None)
-        file[name].setncatts(error_of(name, table))
-    records, count = iter(points), 0
-    versions: set[str] = set()
-    for box in boxes:
-        extent = tuple(part.stop - part.start for part in box)
-        block = list(islice(records, int(np.prod(extent))))
-        count += len(block)
-        if len(block) < np.prod(extent):
+    columns = {
+        name: np.full(shape, MISSING[kind], object if kind is str else kind)
+        for name, (kind, _) in table.items()
+    }
+    versions, count, size = set(), 0, math.prod(shape)
+    for count, record in enumerate(points, 1):
+        if count > size:
             break
-        versions.update(canonical_json(record["versions"]) for record in block)
-        for name, (kind, _) in table.items():
-            column = _column(block, name, kind)
-            file[name][box] = column.reshape(*extent, *column.shape[1:])
-    if len(axes.get("poisson", ())) > 1:
-        _add_changes(file, tuple(axes), boxes[0] if len(boxes) > 1 else None)
-    count += sum(1 for _ in islice(records, 1))
-    size = int(np.prod(shape))
+        versions.add(canonical_json(record["versions"]))
+        for name, column in columns.items():
+            if (value := record["result"].get(name)) is not None:
+                column.flat[count - 1] = _shortened(value) if isinstance(value, str) else value
     if count != size:
-        raise ValueError(f"{sweep.name}: {min(count, size + 1)} results for {size} points")
-    return versions
+        raise ValueError(f"{sweep.name}: {count} results for {size} points")
+    if len(axes.get("poisson", ())) > 1:
+        for name, (source, sign, long_name) in CHANGES.items():
+            table[name] = float, long_name
+            columns[name] = columns[source] + sign * columns[source][0]
+    return {
+        name: variable(tuple(axes), columns[name], long_name, kind, **_more(name))
+        for name, (kind, long_name) in table.items()
+    }, versions
 
 
-def _add_changes(file: netCDF4.Dataset, dims: tuple[str, ...], box: Box | None) -> None:
-    """Write CHANGES: the change of mu_macro relative to the smallest Poisson's ratio, and its
-    error.
-
-    box: see `_create`.
-    """
-    file.set_auto_mask(False)
-    for name, (source, sign, long_name) in CHANGES.items():
-        _create(file, name, float, long_name, dims, box)
-        file[name].setncatts(error_of(name, CHANGES))
-        first = file[source][0]
-        for i in range(file[source].shape[0]):
-            file[name][i] = file[source][i] + sign * first
+def _shortened(text: str) -> str:
+    return text if len(text) <= LONGEST_TEXT else f"{text[: LONGEST_TEXT - 3]}..."
 
 
-def _boxes(shape: tuple[int, ...]) -> Iterator[Box]:
-    """Yield blocks of at most BLOCK points that fill a grid in C order."""
-    whole = len(shape)
-    while whole and np.prod(shape[whole - 1 :]) <= BLOCK:
-        whole -= 1  # the axes from `whole` on are not cut
-    if whole == 0:
-        yield tuple(slice(0, n) for n in shape)
-        return
-    trailing = shape[whole:]
-    step = max(1, BLOCK // int(np.prod(trailing)))
-    for leading in np.ndindex(shape[: whole - 1]):
-        for start in range(0, shape[whole - 1], step):
-            cut = slice(start, min(start + step, shape[whole - 1]))
-            before = (slice(index, index + 1) for index in leading)
-            yield (*before, cut, *(slice(0, n) for n in trailing))
-
-
-def _create(
-    file: netCDF4.Dataset,
-    name: str,
-    kind: type,
-    long_name: str,
-    dims: tuple[str, ...],
-    box: Box | None,
-) -> None:
-    """Create an empty variable.  box: a block of the chunk size, or None for no chunks."""
-    stored: Any = {bool: np.int8, str: "S1"}.get(kind, kind)
-    chunks = None if box is None else tuple(part.stop - part.start for part in box)
-    more: dict[str, Any] = {}
-    if kind is str:
-        width = WIDTHS[name]
-        file.createDimension(characters_of(name), width)
-        dims = (*dims, characters_of(name))
-        if chunks is not None:  # large datasets are compressed
-            chunks, more = (*chunks, width), {"compression": "zlib", "complevel": 1}
-    variable = file.createVariable(name, stored, dims, chunksizes=chunks, fill_value=False, **more)
-    flags = "not_converged converged" if name == "converged" else "no yes"
-    variable.setncatts(attributes(kind, long_name, flags=flags))
-    if name in DESCRIPTIONS:
-        variable.setncattr("description", DESCRIPTIONS[name])
-    if kind is bool:
-        variable.setncattr("dtype", "bool")  # as xarray does
-    if kind is str:
-        variable.setncattr("_Encoding", "utf-8")  # readers join the characters to texts
-        variable.set_auto_chartostring(False)
-
-
-def _column(block: list[dict], name: str, kind: type) -> np.ndarray:
-    """Return a variable's values from some records.  Texts become bytes along an additional
-    axis."""
-    values = [record["result"].get(name) for record in block]
-    filled = [MISSING[kind] if value is None else value for value in values]
-    if kind is str:
-        texts = np.array([_text(value, WIDTHS[name]) for value in filled], f"S{WIDTHS[name]}")
-        return texts.view("S1").reshape(len(filled), WIDTHS[name])
-    return np.array(filled, np.int8 if kind is bool else kind)
-
-
-def _text(value: str, width: int) -> bytes:
-    """Encode a text in at most `width` bytes.  A longer text is truncated and ends with dots."""
-    coded = value.encode()
-    if len(coded) <= width:
-        return coded
-    return coded[: width - 3].decode(errors="ignore").encode() + b"..."
+def _more(name: str) -> dict[str, str]:
+    """Attributes of a variable beside its long_name and units."""
+    flags = {"flag_meanings": "not_converged converged"} if name == "converged" else {}
+    return flags | ({"description": DESCRIPTIONS[name]} if name in DESCRIPTIONS else {})

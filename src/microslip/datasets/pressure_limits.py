@@ -44,7 +44,7 @@ def formulas_under(motion: str, name: str) -> dict:
         exact = replace(exact, function=_each(exact.function))
     else:
         return forms
-    whole = replace(ZONE, motion=motion, function=_each(zone))
+    whole = replace(ZONE, function=_each(zone))
     return forms | {whole.name: whole, STATIC: exact}
 
 

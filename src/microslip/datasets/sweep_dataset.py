@@ -9,7 +9,6 @@ depend on the time, the computer or the number of jobs.
 import os
 from collections.abc import Iterable, Iterator, Sequence
 
-import netCDF4
 import numpy as np
 import xarray as xr
 
@@ -22,7 +21,6 @@ from microslip.datasets.catalogue import FORMS
 from microslip.datasets.variables import variable
 from microslip.foundation import named_files, source_digest
 from microslip.foundation.canonical import canonical_json
-from microslip.foundation.files import writing_beside
 from microslip.motions.by_name import motion_named
 
 CONVENTIONS = "CF-1.11"
@@ -46,7 +44,7 @@ def write_sweep(
     sweep : records.Sweep
         The sweep.
     points : iterable of dict
-        Records of the points in the order of batches.points_of.  They are read in blocks.
+        Records of the points in the order of batches.points_of.
     histories : list of dict
         Records of single runs in the order of batches.history_requests.
     settings : dict
@@ -59,7 +57,6 @@ def write_sweep(
     CacheError
         If the file cannot be written.
     """
-    axes = _axes(sweep)
     motion, pressure = solver_names(sweep)
     title = sweep.title or f"Friction of a vibrated Hertz contact, motion {motion}"
     tolerance = np.nan if sweep.tolerance is None else sweep.tolerance
@@ -77,12 +74,10 @@ def write_sweep(
         about["drive"] = ", ".join(name for name, _, _ in sweep.drives)
     if sweep.contacts is not None:
         about["contacts"] = sweep.contacts
-    versions = {canonical_json(record["versions"]) for record in histories}
-    with writing_beside(path) as beside:
-        netcdf.write(beside, _root(sweep), _parts(sweep, histories))
-        with netCDF4.Dataset(beside, "a") as file:
-            versions |= point_variables.append(file, sweep, axes, points)
-            file.setncatts(provenance(title, settings, versions, **about))
+    of_points, versions = point_variables.variables(sweep, _axes(sweep), points)
+    versions |= {canonical_json(record["versions"]) for record in histories}
+    root = _root(sweep, of_points).assign_attrs(provenance(title, settings, versions, **about))
+    netcdf.write(path, root, _parts(sweep, histories))
 
 
 GROUPS = {
@@ -95,15 +90,15 @@ GROUPS = {
 """Titles of the groups in a sweep's file.  Each motion has only some of the groups."""
 
 
-def _root(sweep: Sweep) -> xr.Dataset:
-    """Return a dataset with the axes and the limits from theory, without the points."""
+def _root(sweep: Sweep, of_points: dict) -> xr.Dataset:
+    """Return a dataset with the axes, the limits from theory and the variables of the points."""
     coords: dict[str, tuple] = {
         name: (name, np.array(values)) for name, values in _axes(sweep).items()
     }
     if not sweep.poisson_is_axis:
         coords["poisson"] = ((), sweep.poisson[0])
     coords |= {name: ((), values[0]) for name, values, _ in sweep.drives if name not in coords}
-    dataset = xr.Dataset(theory_limits.variables(sweep), coords)
+    dataset = xr.Dataset(theory_limits.variables(sweep) | of_points, coords)
     describe_axes(dataset, sweep)
     return dataset
 
@@ -146,16 +141,6 @@ def provenance(title: str, settings: dict, versions: set, **more: object) -> dic
     } | more
 
 
-def write(dataset: xr.Dataset, path: str | os.PathLike, groups: dict | None = None) -> None:
-    """Write a dataset to a netCDF-4 file, atomically.
-
-    groups: groups of the file, see `netcdf.divide`.  Equal datasets give equal bytes.  Raises
-    CacheError with a one-line message if the file cannot be written.
-    """
-    with writing_beside(path) as beside:
-        netcdf.write(beside, *netcdf.divide(dataset, groups or {}))
-
-
 def report(dataset: xr.Dataset, name: str | None = None) -> Iterator[str]:
     """Yield lines of text: the number of points, and one line for each point that did not converge.
 
@@ -185,15 +170,15 @@ def _axes(sweep: Sweep) -> dict[str, tuple[float, ...]]:
 def describe_axes(dataset: xr.Dataset, sweep: Sweep) -> None:
     """Set the attributes of the axes.  The attribute `formula` defines the coordinate."""
     motion = motion_named(sweep.motion)
-    axes = [(VELOCITY, motion.velocity_label)] if sweep.velocity else []
+    axes = [("velocity", VELOCITY, motion.velocity_label)] if sweep.velocity else []
     if sweep.amplitude is not None:
-        axes.append((AMPLITUDE, motion.amplitude_label))
-    for of_paper, formula in axes:
-        quantity = of_paper["transverse"]  # names and texts are the same for all motions
-        about = {"long_name": f"{quantity.text}, {formula}", "units": "1", "formula": formula}
+        axes.append(("amplitude", AMPLITUDE, motion.amplitude_label))
+    for name, of_paper, formula in axes:
+        text = of_paper["transverse"].text  # the same for all motions
+        about = {"long_name": f"{text}, {formula}", "units": "1", "formula": formula}
         if motion.name in of_paper:
             about["description"] = of_paper[motion.name].description
-        dataset[quantity.name].attrs = about
+        dataset[name].attrs = about
     for name, _, _ in sweep.drives:
         quantity = DRIVES[name]
         about = {"long_name": f"{quantity.text}, {quantity.unit}", "units": "1"}

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Hashable, Iterable, Sequence
+from collections.abc import Hashable, Sequence
 
 import numpy as np
 import xarray as xr
@@ -13,14 +13,14 @@ ANCILLARY = "ancillary_variables"
 first."""
 
 
-def attributes(kind: type, long_name: str, units: str = "1", flags: str = "no yes") -> dict:
-    """Return the attributes of a variable of type `kind`.  flags: meanings of False and True."""
+def attributes(kind: type, long_name: str, units: str = "1") -> dict:
+    """Return the attributes of a variable of type `kind`."""
     if kind is str:
         return {"long_name": long_name}
     if kind is bool:
         # Booleans are stored as bytes, which xarray reads as bool.
         values = np.array([0, 1], np.int8)
-        return {"long_name": long_name, "flag_values": values, "flag_meanings": flags}
+        return {"long_name": long_name, "flag_values": values, "flag_meanings": "no yes"}
     return {"long_name": long_name, "units": units}
 
 
@@ -55,16 +55,10 @@ def flag_attributes(long_name: str, meanings: Sequence[str]) -> dict:
     return {"long_name": long_name, "flag_values": numbers, "flag_meanings": words}
 
 
-def error_of(name: Hashable, names: Iterable[Hashable]) -> dict[str, str]:
-    """Return the attribute that links a variable to its error, or {} if `names` does not contain
-    the error."""
-    error = f"{name}_error"
-    return {ANCILLARY: error} if error in names else {}
-
-
 def link_errors(dataset: xr.Dataset) -> xr.Dataset:
     """Return a copy of a dataset in which every variable is linked to its error."""
     linked = dataset.copy()
     for name in linked.variables:
-        linked[name].attrs |= error_of(name, linked.variables)
+        if f"{name}_error" in linked.variables:
+            linked[name].attrs[ANCILLARY] = f"{name}_error"
     return linked

@@ -20,6 +20,7 @@ import numpy as np
 from microslip.estimate.estimate import Estimate
 from microslip.estimate.ladder import LOOSEST, Ladder
 from microslip.estimate.richardson import WEIGHTS, Extrapolation, extrapolate
+from microslip.motions.problem import Problem
 from microslip.solver.budget import Spent
 from microslip.solver.discretise import Resolution
 from microslip.solver.effort import Effort
@@ -98,11 +99,45 @@ def run_tolerance(tolerance: float) -> float:
     return RUN_SHARE * tolerance
 
 
+class Levels:
+    """Runs of a problem at the levels of its ladder.  No run is repeated.
+
+    Parameters
+    ----------
+    run : callable
+        `run(problem, resolution, guess)` returns a run.Run; `guess` is a run that is close, or
+        None.
+    ladder : Ladder
+        Resolutions of the problem.
+    *problems : problem.Problem
+        The problem, and problems that interpolate the same data differently (Problem.readings).
+    """
+
+    def __init__(
+        self,
+        run: Callable[[Problem, Resolution, Run | None], Run],
+        ladder: Ladder,
+        *problems: Problem,
+    ):
+        self.run, self.ladder, self.problems = run, ladder, problems
+        self.runs: dict[tuple[int, int], Run] = {}
+
+    def at(self, level: int, number: int = 0) -> Run:
+        """The run of the problem with this number at a level.
+
+        Its initial guess is the run at half the level or, for another interpolation, the run of the
+        first problem.
+        """
+        if (number, level) not in self.runs:
+            guess = self.runs.get((0, level if number else level // 2))
+            resolution = self.ladder.resolution(level)
+            self.runs[number, level] = self.run(self.problems[number], resolution, guess)
+        return self.runs[number, level]
+
+
 def refine(
-    run: Callable[[Resolution, Run | None], Run],
-    ladder: Ladder,
+    levels: Levels,
     tolerance: float,
-    readings: Sequence[Callable] = (),
     read: Callable[[Run], float] = attrgetter("mu"),
     *,
     energy_unit: float = np.nan,
@@ -112,14 +147,10 @@ def refine(
 
     Parameters
     ----------
-    run : callable
-        `run(resolution, guess)` returns a run.Run; `guess` is the run at half the level, or None.
-    ladder : Ladder
-        Resolutions of the problem.
+    levels : Levels
+        Runs of the problem.
     tolerance : float
         Absolute tolerance of the quantity.
-    readings : sequence of callable
-        Functions like `run`, for other interpolations of the same data.
     read : callable
         `read(run)` returns the quantity.
     energy_unit : float
@@ -136,13 +167,13 @@ def refine(
         enough, or if a run raised budget.Spent.  In the last case, the value is the estimate before
         that run, or NaN if there is no such estimate.
     """
-    levels = _Levels(run, ladder, readings, read, energy_unit, drive_work)
+    ladder = levels.ladder
     goal, refined = tolerance, None
     try:
         for level in ladder.levels(tolerance):
             if level < ladder.levels(goal)[0]:
                 continue
-            refined = levels.estimate(level, goal)
+            refined = _estimate(levels, level, goal, read, energy_unit, drive_work)
             error = refined.value.error
             rest = error - refined.value.by_source["resolution"]
             if error <= tolerance or rest > LARGEST_REST * tolerance:
@@ -160,94 +191,71 @@ def refine(
     return replace(refined, converged=False, reason=reason)
 
 
-class _Levels:
-    """The runs at each level.  No run is repeated."""
+def _estimate(
+    levels: Levels,
+    level: int,
+    goal: float,
+    read: Callable[[Run], float],
+    energy_unit: float,
+    drive_work: float,
+) -> Refined:
+    """Estimate with `level` as the finest level; goal: largest accepted resolution error."""
+    three = [levels.at(level // 4), levels.at(level // 2), levels.at(level)]
+    others = [levels.at(level, number) for number in range(1, len(levels.problems))]
+    imposed = levels.ladder.imposed
+    floor = SMALLEST_SHARE * min(goal, LOOSEST)
+    value, errors, order = _extrapolated(read, imposed, floor, three, others)
+    torque, torque_errors, _ = _extrapolated(attrgetter("torque"), imposed, floor, three, others)
+    # a fraction of the energy, which can be far below the unit of energy; for a velocity above
+    # 1, the tolerance is already proportional to the velocity
+    floor *= max(abs(three[-1].energy) / max(1.0, abs(value)), drive_work)
+    energy, energy_errors, _ = _extrapolated(attrgetter("energy"), imposed, floor, three, others)
+    base = (0.0, 0.0, 1.0) if imposed else np.abs(WEIGHTS)
+    # a run that did not converge has a weight of at least 1, since levels can agree by chance
+    weights = [w if one.converged else max(w, 1.0) for w, one in zip(base, three, strict=True)]
+    common = {
+        "periodicity": _weighted(weights, [one.distance for one in three]),
+        "solver": _weighted(weights, [one.solver_residual for one in three]),
+    }
+    runs = levels.runs.values()
+    reason = next((one.reason for one in runs if not one.converged), "")
+    return Refined(
+        value=Estimate(value, errors | common),
+        torque=Estimate(torque, torque_errors | common),
+        energy=Estimate(energy, energy_errors) + energy_unit * Estimate(0.0, common),
+        order=order,
+        finest=levels.ladder.resolution(level),
+        periods=max(one.periods for one in runs),
+        effort=sum((one.effort for one in runs), Effort()),
+        converged=not reason,
+        reason=reason,
+        periodic=not reason,
+        ladder=levels.ladder,
+    )
 
-    def __init__(
-        self,
-        run: Callable[[Resolution, Run | None], Run],
-        ladder: Ladder,
-        readings: Sequence[Callable],
-        read: Callable[[Run], float],
-        energy_unit: float,
-        drive_work: float,
-    ):
-        self.run, self.ladder, self.readings, self.read = run, ladder, readings, read
-        self.energy_unit, self.drive_work = energy_unit, drive_work
-        self.runs: dict[int, Run] = {}
-        self.other_runs: dict[tuple[int, int], Run] = {}
 
-    def at(self, level: int) -> Run:
-        """The run at a level.  Its initial guess is the run at half the level."""
-        if level not in self.runs:
-            guess = self.runs.get(level // 2)
-            self.runs[level] = self.run(self.ladder.resolution(level), guess)
-        return self.runs[level]
+def _extrapolated(
+    read: Callable[[Run], float],
+    imposed: bool,
+    floor: float,
+    three: Sequence[Run],
+    others: Sequence[Run],
+) -> tuple[float, dict[str, float], float]:
+    """Value of a quantity, resolution and model errors, and observed order of convergence.
 
-    def under_other_readings(self, level: int) -> list[Run]:
-        """The runs at a level for the other readings."""
-        for number, run in enumerate(self.readings):
-            if (number, level) not in self.other_runs:
-                finest = self.ladder.resolution(level)
-                self.other_runs[number, level] = run(finest, self.runs[level])
-        return [self.other_runs[number, level] for number in range(len(self.readings))]
-
-    def estimate(self, level: int, goal: float) -> Refined:
-        """Estimate with `level` as the finest level; goal: largest accepted resolution error."""
-        three = [self.at(level // 4), self.at(level // 2), self.at(level)]
-        others = self.under_other_readings(level)
-        floor = SMALLEST_SHARE * min(goal, LOOSEST)
-        value, errors, order = self._of(self.read, floor, three, others)
-        torque, torque_errors, _ = self._of(attrgetter("torque"), floor, three, others)
-        # a fraction of the energy, which can be far below the unit of energy; for a velocity above
-        # 1, the tolerance is already proportional to the velocity
-        floor *= max(abs(three[-1].energy) / max(1.0, abs(value)), self.drive_work)
-        energy, energy_errors, _ = self._of(attrgetter("energy"), floor, three, others)
-        base = (0.0, 0.0, 1.0) if self.ladder.imposed else np.abs(WEIGHTS)
-        # a run that did not converge has a weight of at least 1, since levels can agree by chance
-        weights = [w if one.converged else max(w, 1.0) for w, one in zip(base, three, strict=True)]
-        common = {
-            "periodicity": _weighted(weights, [one.distance for one in three]),
-            "solver": _weighted(weights, [one.solver_residual for one in three]),
-        }
-        runs = [*self.runs.values(), *self.other_runs.values()]
-        reason = next((one.reason for one in runs if not one.converged), "")
-        return Refined(
-            value=Estimate(value, errors | common),
-            torque=Estimate(torque, torque_errors | common),
-            energy=Estimate(energy, energy_errors) + self.energy_unit * Estimate(0.0, common),
-            order=order,
-            finest=self.ladder.resolution(level),
-            periods=max(one.periods for one in runs),
-            effort=sum((one.effort for one in runs), Effort()),
-            converged=not reason,
-            reason=reason,
-            periodic=not reason,
-            ladder=self.ladder,
-        )
-
-    def _of(
-        self,
-        read: Callable[[Run], float],
-        floor: float,
-        three: Sequence[Run],
-        others: Sequence[Run],
-    ) -> tuple[float, dict[str, float], float]:
-        """Value of a quantity, resolution and model errors, and observed order of convergence.
-
-        floor: smallest resolution error.
-        """
-        values = [float(read(one)) for one in three]
-        limit = Extrapolation(*map(float, extrapolate(values)))
-        if self.ladder.imposed:
-            value, error = values[-1], limit.difference
-        else:
-            value, error = limit.value, float(max(limit.error, floor))
-        errors = {"resolution": error}
-        if others:
-            apart = sum(abs(read(one) - values[-1]) for one in others)
-            errors["model"] = READING_SAFETY * apart
-        return value, errors, limit.order
+    imposed: whether the resolution is imposed; floor: smallest resolution error.
+    """
+    values = [float(read(one)) for one in three]
+    limit = Extrapolation(*map(float, extrapolate(values)))
+    if imposed:
+        value, error = values[-1], limit.difference
+    else:
+        value, error = limit.value, float(max(limit.error, floor))
+    errors = {"resolution": error}
+    if others:
+        apart = sum(abs(read(one) - values[-1]) for one in others)
+        errors["model"] = READING_SAFETY * apart
+    return value, errors, limit.order
 
 
 def _weighted(weights: Iterable[float], errors: Iterable[float]) -> float:

@@ -14,6 +14,8 @@ LEAST_ROOM = 65536
 """Free disk space in bytes that a calculation needs to start."""
 ABANDONED = 3600.0
 """Age in seconds above which a partial file is considered abandoned by a killed process."""
+_PARTIAL: set[Path] = set()
+"""Temporary files that this process is writing."""
 
 
 def refuse_no_folder(folder: object) -> None:
@@ -64,6 +66,7 @@ def writing_beside(path: str | os.PathLike[str]) -> Iterator[Path]:
     """
     path = Path(path)
     beside = _unique_beside(path)
+    _PARTIAL.add(beside)
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
         yield beside
@@ -81,6 +84,14 @@ def writing_beside(path: str | os.PathLike[str]) -> Iterator[Path]:
         # The temporary file exists only after an error or an interrupt.
         with suppress(OSError):
             beside.unlink()
+        _PARTIAL.discard(beside)
+
+
+def remove_partial() -> None:
+    """Remove the temporary files of this process before a signal ends it."""
+    for path in list(_PARTIAL):
+        with suppress(OSError):
+            path.unlink()
 
 
 def _unique_beside(path: Path) -> Path:

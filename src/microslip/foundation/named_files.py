@@ -47,7 +47,7 @@ PACKED = {
 LARGEST_CACHE = 8
 """Number of objects that a FileReader keeps."""
 
-_PLACES: dict[str, Path] = {}
+PLACES: dict[str, Path] = {}
 """Paths of files by digest."""
 
 
@@ -189,7 +189,7 @@ def read(
     digest = hashlib.sha256(content).hexdigest()[:DIGITS]
     if file.digest not in ("", digest):
         raise InputError(argument, name, f"{place} has changed: its sha256 begins with {digest}")
-    _PLACES[digest] = place
+    PLACES[digest] = place
     return replace(file, path=str(place), digest=digest), content
 
 
@@ -198,15 +198,7 @@ def remember(names: Iterable[str]) -> None:
     ignored."""
     for file in map(parse, filter(speaks_of_file, names)):
         if file.digest and file.path:
-            _PLACES[file.digest] = Path(file.path)
-
-
-def with_path(name: str) -> str:
-    """Add the stored path to the name of a file, for `remember` in another process.  A name without
-    a file, or without a stored path, is returned unchanged."""
-    if not speaks_of_file(name) or (file := parse(name)).digest not in _PLACES:
-        return name
-    return replace(file, path=str(_PLACES[file.digest])).placed
+            PLACES[file.digest] = Path(file.path)
 
 
 def base_name(name: str) -> str:
@@ -214,13 +206,13 @@ def base_name(name: str) -> str:
     if not speaks_of_file(name):
         return ""
     file = parse(name)
-    return Path(file.path or _PLACES.get(file.digest, "")).name
+    return Path(file.path or PLACES.get(file.digest, "")).name
 
 
 def _place(name: str, argument: str, file: NamedFile, folders: Iterable[str | os.PathLike]) -> Path:
     if not file.path:
-        if file.digest in _PLACES:
-            return _PLACES[file.digest]
+        if file.digest in PLACES:
+            return PLACES[file.digest]
         raise InputError(
             argument,
             name,

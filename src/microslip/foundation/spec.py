@@ -60,6 +60,12 @@ def _float(argument: str, text: str, plain: str) -> float:
     return number
 
 
+def near_miss(name: object, names: Iterable[str]) -> str:
+    """'did you mean NAME? ' for the most similar name, or '' if there is none."""
+    near = difflib.get_close_matches(str(name), names, n=1)
+    return f"did you mean {near[0]}? " if near else ""
+
+
 def split(text: str, what: str, names: Iterable[str]) -> tuple[str, dict[str, float]]:
     """Split a text such as "elliptic:phase=90" into the name and a dict of numbers.
 
@@ -68,8 +74,7 @@ def split(text: str, what: str, names: Iterable[str]) -> tuple[str, dict[str, fl
     """
     name, colon, rest = text.partition(":")
     if name not in names:
-        near = difflib.get_close_matches(name, names, n=1)
-        hint = f"did you mean {near[0]}? " if near else ""
+        hint = near_miss(name, names)
         raise InputError(what, text, f"{hint}allowed is one of {', '.join(names)}")
     numbers = numbers_in(rest, text, what, f"{name}:key=0.5") if colon else {}
     return name, numbers

@@ -4,18 +4,13 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from functools import cached_property
 
 from microslip.motions.by_name import motion_named
 from microslip.motions.motion import Motion
 from microslip.pressures.by_name import pressure_named
 from microslip.si.bodies import TwoBodies
-from microslip.si.motions import (
-    MOTIONS,
-    PARTS,
-    has_several_amplitudes,
-    is_steady,
-    unit_of_amplitude,
-)
+from microslip.si.motions import MOTIONS, PARTS
 from microslip.si.strokes import Stroke
 from microslip.theory import hertz
 
@@ -26,8 +21,8 @@ class RealMotion:
 
     Attributes
     ----------
-    name : str
-        Name of the motion.
+    name, unit : str, str or None
+        Name of the motion, and the SI unit of its amplitude; see motions.RealMotionKind.
     speed : float or None
         Forward speed, m/s; None if a force is prescribed.
     amplitude : float or None
@@ -45,6 +40,7 @@ class RealMotion:
     """
 
     name: str
+    unit: str | None
     speed: float | None
     amplitude: float | None = None
     frequency: float | None = None
@@ -58,17 +54,17 @@ class RealMotion:
     @property
     def several(self) -> bool:
         """True for a motion with several amplitudes; see `parts`."""
-        return has_several_amplitudes(self.name)
+        return not (self.unit or self.steady)
 
     @property
     def steady(self) -> bool:
         """True if nothing oscillates."""
-        return is_steady(self.name)
+        return self.frequency is None
 
     @property
     def spins(self) -> bool:
         """True if the amplitude is an angle."""
-        return unit_of_amplitude(self.name) == "rad"
+        return self.unit == "rad"
 
     @property
     def swing(self) -> tuple[float, float]:
@@ -110,109 +106,125 @@ class RealMotion:
         return self.speed
 
 
-def parts(motion: RealMotion, contact: TwoBodies) -> dict[str, float]:
-    """Dimensionless amplitudes of a motion with several oscillations, keyed by the solver's names.
-    For a motion from a file, they are the largest deviations in each column."""
-    if motion.stroke is not None:
-        factor, columns = motion.amplitude or 0.0, motion.stroke.deviations(contact)
-        return {name: factor * float(abs(one).max()) for name, one in columns.items()}
-    unit = {"lateral": contact.u_lim, "forward": contact.u_lim, "load": contact.load}
-    amplitudes = {}
-    for name, (share, _) in PARTS.items():
-        size = getattr(motion, name)
-        if size is not None and share == "angle":
-            angle = size * contact.contact_radius / contact.u_lim
-            amplitudes[share] = float(hertz.bore_amplitude(angle, contact.poisson))
-        elif size is not None:
-            amplitudes[share] = size / unit[share]
-    return amplitudes
+@dataclass(frozen=True, eq=False)
+class MovingContact:
+    """A contact and its motion, in SI units, and their dimensionless groups.
 
-
-def solver_motion(motion: RealMotion, contact: TwoBodies) -> str | Motion:
-    """The motion for microslip.solve, as text or as an object.  If there are several amplitudes,
-    each is divided by the largest."""
-    if not motion.several:
-        return motion.name
-    amplitudes = parts(motion, contact)
-    if motion.stroke is not None:
-        factor = motion.amplitude or 1.0
-        return motion.stroke.sampled(contact, max(amplitudes.values()) / factor or 1.0)
-    largest = max(amplitudes.values()) or 1.0
-    shares = {name: size / largest for name, size in amplitudes.items()}
-    shares["phase"] = math.degrees(motion.phase or 0.0)
-    return f"{motion.name}:{','.join(f'{name}={value!r}' for name, value in shares.items())}"
-
-
-def groups(motion: RealMotion, contact: TwoBodies) -> tuple[float | None, float | None]:
-    """Velocity and amplitude for microslip.solve (Eqs 2, 4, 13, 27, 28).
-
-    The velocity is None if a force is prescribed.  The amplitude is None for a steady motion.
+    Attributes
+    ----------
+    contact, motion : TwoBodies, RealMotion
+        The contact and its motion.
     """
-    unit = speed_unit(motion, contact)
-    velocity = None if motion.speed is None else _over(motion.speed, unit)
-    if motion.spins and unit == 0.0:
-        velocity = None if velocity is None else 0.0
-    return velocity, _size(motion, contact)
 
+    contact: TwoBodies
+    motion: RealMotion
 
-def _size(motion: RealMotion, contact: TwoBodies) -> float | None:
-    """Amplitude for microslip.solve; None for a steady motion."""
-    if motion.steady:
-        return None
-    if motion.several:
-        return max(parts(motion, contact).values())
-    assert motion.amplitude is not None  # the motion has one oscillation
-    if not motion.spins:
-        return motion.amplitude / contact.u_lim
-    angle = motion.amplitude * contact.contact_radius / contact.u_lim
-    return float(hertz.bore_amplitude(angle, contact.poisson)) if angle else 0.0
+    @cached_property
+    def parts(self) -> dict[str, float]:
+        """Dimensionless amplitudes of a motion with several oscillations, keyed by the solver's
+        names.  For a motion from a file, they are the largest deviations in each column."""
+        motion, contact = self.motion, self.contact
+        if motion.stroke is not None:
+            factor, columns = motion.amplitude or 0.0, motion.stroke.deviations(contact)
+            return {name: factor * float(abs(one).max()) for name, one in columns.items()}
+        unit = {"lateral": contact.u_lim, "forward": contact.u_lim, "load": contact.load}
+        sizes = {share: getattr(motion, name) for name, share in PARTS.items()}
+        return {
+            share: self._bore_amplitude(size) if share == "angle" else size / unit[share]
+            for share, size in sizes.items()
+            if size is not None
+        }
 
+    def _bore_amplitude(self, angle: float) -> float:
+        """Dimensionless amplitude for a rotation, rad."""
+        angle = angle * self.contact.contact_radius / self.contact.u_lim
+        return float(hertz.bore_amplitude(angle, self.contact.poisson))
 
-def _known_size(motion: RealMotion, contact: TwoBodies) -> float:
-    size = _size(motion, contact)
-    assert size is not None  # the motion oscillates
-    return size
+    @property
+    def solver_motion(self) -> str | Motion:
+        """The motion for microslip.solve, as text or as an object.  If there are several
+        amplitudes, each is divided by the largest."""
+        motion = self.motion
+        if not motion.several:
+            return motion.name
+        largest = max(self.parts.values())
+        if motion.stroke is not None:
+            return motion.stroke.sampled(self.contact, largest / (motion.amplitude or 1.0) or 1.0)
+        shares = {name: size / (largest or 1.0) for name, size in self.parts.items()}
+        shares["phase"] = math.degrees(motion.phase or 0.0)
+        return f"{motion.name}:{','.join(f'{name}={value!r}' for name, value in shares.items())}"
 
+    @cached_property
+    def groups(self) -> tuple[float | None, float | None]:
+        """Velocity and amplitude for microslip.solve (Eqs 2, 4, 13, 27, 28).
 
-def speed_unit(motion: RealMotion, contact: TwoBodies) -> float:
-    """Forward speed, m/s, at which the dimensionless velocity is 1.  It can underflow to 0."""
-    if motion.steady:
-        return motion.turn * contact.contact_radius
-    omega = motion.turn
-    if motion.name == "bore":
-        return omega * motion.swing[1] * contact.contact_radius
-    if motion.name in MOTIONS or motion.stroke is not None:
-        return omega * contact.u_lim
-    record, size = motion_named(motion.name), _known_size(motion, contact)
-    return omega * contact.u_lim * record.drift(1.0, size, contact.poisson)
+        The velocity is None if a force is prescribed.  The amplitude is None for a steady motion.
+        """
+        speed, unit = self.motion.speed, self.speed_unit
+        size = None if self.motion.steady else self._size
+        if speed is None:
+            return None, size
+        if speed == 0.0 or self.motion.spins and unit == 0.0:
+            return 0.0, size
+        return speed / unit if unit > 0.0 else math.inf, size
 
+    @cached_property
+    def _size(self) -> float:
+        """Amplitude of a motion that oscillates, for microslip.solve."""
+        if self.motion.several:
+            return max(self.parts.values())
+        size = self.motion.amplitude
+        assert size is not None  # the motion has one oscillation
+        if self.motion.spins and size:
+            return self._bore_amplitude(size)
+        return size / self.contact.u_lim
 
-def _over(speed: float, unit: float) -> float:
-    """A speed divided by the unit of speed.  The unit can be 0."""
-    if speed == 0.0:
-        return 0.0
-    return speed / unit if unit > 0.0 else math.inf
+    @property
+    def speed_unit(self) -> float:
+        """Forward speed, m/s, at which the dimensionless velocity is 1.  It can underflow to 0."""
+        motion, contact, omega = self.motion, self.contact, self.motion.turn
+        if motion.steady:
+            return omega * contact.contact_radius
+        if motion.name == "bore":
+            return omega * motion.swing[1] * contact.contact_radius
+        if motion.name in MOTIONS or motion.stroke is not None:
+            return omega * contact.u_lim
+        drift = motion_named(motion.name).drift(1.0, self._size, contact.poisson)
+        return omega * contact.u_lim * drift
 
+    @property
+    def mean_load(self) -> float:
+        """Mean normal load, N.  It is larger than `contact.load` if the bodies separate in each
+        period.  For some motions from files, it also differs from `contact.load`."""
+        motion, load = self.motion, self.contact.load
+        if motion.stroke is None and (motion.load_amplitude or 0.0) <= load:
+            return load
+        record = self.solver_motion
+        record = record if isinstance(record, Motion) else motion_named(record)
+        return load * float(record.mean_load(self._size, pressure_named(self.contact.pressure)))
 
-def mean_load(motion: RealMotion, contact: TwoBodies) -> float:
-    """Mean normal load, N.  It is larger than `contact.load` if the bodies separate in each period.
-    For some motions from files, it also differs from `contact.load`."""
-    if motion.stroke is None and (motion.load_amplitude or 0.0) <= contact.load:
-        return contact.load
-    record = solver_motion(motion, contact)
-    record = record if isinstance(record, Motion) else motion_named(record)
-    pressure = pressure_named(contact.pressure)
-    return contact.load * float(record.mean_load(_known_size(motion, contact), pressure))
+    @property
+    def full_friction(self) -> float:
+        """Unit of forces: mu times the mean normal load, N."""
+        return self.contact.mu * self.mean_load
 
+    @property
+    def largest_slip_speed(self) -> float:
+        """Upper bound on the slip speed, m/s: the slip speed of rigid bodies at the edge of the
+        contact.
 
-def full_friction(motion: RealMotion, contact: TwoBodies) -> float:
-    """Unit of forces: mu times the mean normal load, N."""
-    return contact.mu * mean_load(motion, contact)
+        It is NaN for a contact that runs away.
+        """
+        motion, edge = self.motion, self.contact.contact_radius
+        if motion.steady:
+            return math.hypot(motion.known_speed, motion.turn * edge)
+        along, turned = motion.pace
+        return motion.known_speed + motion.turn * (along + edge * turned)
 
 
 @dataclass(frozen=True)
 class RealDrive:
-    """The drive of a contact, in SI units.
+    """The drive of a body, in SI units.
 
     Attributes
     ----------
@@ -229,34 +241,20 @@ class RealDrive:
     mass: float | None = None
     damping: float | None = None
 
+    def groups(self, moving: MovingContact, contacts: int = 1) -> dict[str, float]:
+        """Force, stiffness, mass and damping for microslip.solve, without None values.
 
-def drive_groups(drive: RealDrive, motion: RealMotion, contact: TwoBodies) -> dict[str, float]:
-    """Force, stiffness, mass and damping for microslip.solve, without None values.
-
-    The force is divided by mu times the mean load, the stiffness by mu F_z / u_lim, the mass by mu
-    F_z / (u_lim omega^2), and the damping by mu F_z / (u_lim omega).  F_z is the load without
-    oscillation.
-    """
-    still = contact.mu * contact.load
-    stiffness = still / contact.u_lim
-    omega = motion.turn
-    pairs = {
-        "force": (drive.force, 1.0 / full_friction(motion, contact)),
-        "stiffness": (drive.stiffness, 1.0 / stiffness),
-        "mass": (drive.mass, omega * omega / stiffness),
-        "damping": (drive.damping, omega / stiffness),
-    }
-    return {name: value * unit for name, (value, unit) in pairs.items() if value is not None}
-
-
-def largest_slip_speed(motion: RealMotion, contact: TwoBodies) -> float:
-    """Upper bound on the slip speed, m/s: the slip speed of rigid bodies at the edge of the
-    contact.
-
-    It is NaN for a contact that runs away.
-    """
-    edge, speed = contact.contact_radius, motion.known_speed
-    if motion.steady:
-        return math.hypot(speed, motion.turn * edge)
-    along, turned = motion.pace
-    return speed + motion.turn * (along + edge * turned)
+        The drive is divided by the number of contacts of the body.  The force is divided by mu
+        times the mean load, the stiffness by mu F_z / u_lim, the mass by mu F_z / (u_lim omega^2),
+        and the damping by mu F_z / (u_lim omega).  F_z is the load without oscillation.
+        """
+        contact, omega = moving.contact, moving.motion.turn
+        stiffness = contact.mu * contact.load / contact.u_lim
+        units = {
+            "force": 1.0 / moving.full_friction,
+            "stiffness": 1.0 / stiffness,
+            "mass": omega * omega / stiffness,
+            "damping": omega / stiffness,
+        }
+        values = ((name, getattr(self, name), unit) for name, unit in units.items())
+        return {name: value / contacts * unit for name, value, unit in values if value is not None}

@@ -8,7 +8,7 @@ from typing import Any
 from microslip.adaptive.point import Result
 from microslip.estimate.estimate import Estimate
 from microslip.pressures.by_name import pressure_named
-from microslip.si.prediction import Power, Wear
+from microslip.si.prediction import columns_of
 from microslip.si.request import Request
 
 
@@ -18,16 +18,16 @@ def energy_fields(request: Request, answer: Result) -> dict[str, Any]:
     They are the drag power, the torque of a steady spin, and the power of the spin or oscillation.
     If a wear coefficient is given, they include the wear.
     """
-    motion, still = request.motion, request.still
+    contact, motion, still = request.contact, request.motion, request.still
     speed, friction = motion.known_speed, answer.friction
     speed_error = answer.mean_velocity.error * request.speed_unit if answer.force else 0.0
     drag = still * friction.value * speed
     drag_error = still * (friction.error * speed + friction.value * speed_error)
     fields: dict[str, Any] = {"drag_power_W": drag, "drag_power_error_W": drag_error}
     if answer.torque is not None:
-        unit = still * request.contact.contact_radius
-        torque = unit * pressure_named(request.contact.pressure).torque * answer.torque
-        fields |= {"torque_N_m": torque.value, "torque_error_N_m": torque.error}
+        unit = still * contact.contact_radius
+        torque = unit * pressure_named(contact.pressure).torque * answer.torque
+        fields |= columns_of("torque", torque, suffix="_N_m")
         power = motion.turn * torque
         total, total_error = drag + power.value, drag_error + power.error
     elif answer.dissipation is None:
@@ -37,17 +37,16 @@ def energy_fields(request: Request, answer: Result) -> dict[str, Any]:
         total, total_error = drag + power.value, max(total_error, drag_error)
     energy = 1.0 / motion.rate * Estimate(total, {"model": total_error})
     # a dashpot dissipates an unknown part of the power
-    known = not request.drive.damping
-    fields["power"] = Power(
-        vibration_power_W=power.value if known else None,
-        vibration_power_error_W=power.error if known else None,
-        dissipated_power_W=total,
-        dissipated_power_error_W=total_error,
-        energy_per_cycle_J=energy.value,
-        energy_per_cycle_error_J=energy.error,
-    )
-    if request.wear_coefficient is not None:
-        fields["wear"] = _wear(request, request.wear_coefficient / request.contact.mu * energy)
+    fields |= columns_of("vibration_power", None if request.drive.damping else power, suffix="_W")
+    fields |= {"dissipated_power_W": total, "dissipated_power_error_W": total_error}
+    fields |= columns_of("energy_per_cycle", energy, suffix="_J")
+    wear = request.inputs.si("wear_coefficient")
+    if wear is not None:
+        area = pressure_named(contact.pressure).area * contact.contact_radius**2
+        volume = wear / contact.mu * energy
+        fields |= columns_of("wear_volume_per_cycle", volume, suffix="_m3")
+        depth = 1.0 / (area * request.carriers.count) * volume
+        fields |= columns_of("wear_depth_per_cycle", depth, suffix="_m")
     return fields
 
 
@@ -64,11 +63,3 @@ def _power_of_oscillation(request: Request, answer: Result) -> tuple[Estimate, f
     drag = advance * answer.friction
     power = 1.0 / (2.0 * math.pi) * dissipation + -drag
     return unit * power, unit * dissipation.error / (2.0 * math.pi)
-
-
-def _wear(request: Request, volume: Estimate) -> Wear:
-    """Wear in a cycle.  `volume` is the worn volume of a body, m^3."""
-    contact = request.contact
-    area = pressure_named(contact.pressure).area * contact.contact_radius**2
-    depth = 1.0 / (area * request.carriers.count) * volume
-    return Wear(volume.value, volume.error, depth.value, depth.error)

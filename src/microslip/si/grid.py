@@ -17,13 +17,11 @@ import numpy as np
 
 from microslip.foundation import spec
 from microslip.foundation.errors import InputError
-from microslip.si.inputs import QUANTITIES
-from microslip.si.motions import unit_of_amplitude
+from microslip.si.inputs import QUANTITIES, unit_of
 from microslip.si.prediction import NoPrediction, Prediction
 from microslip.si.quantities import read
 from microslip.si.table import MOST_CASES, as_dataset, predictions
 from microslip.si.tables import Table
-from microslip.si.uncertain import refuse_uncertainty
 from microslip.si.units import UnitError, split_number
 
 if TYPE_CHECKING:
@@ -31,10 +29,11 @@ if TYPE_CHECKING:
 
 VALUES = 11
 """Default number of values of a range."""
-DOTS, THREE_DOTS, LOG = "..", "...", "log"
+DOTS, LOG = "..", "log"
 ALLOWED = (
-    "allowed is a range such as '0..2 um' (11 values), '0..2 um, 21' (21 values) or "
-    "'0.1..10 mm/s, 21, log' (21 values in equal ratios)"
+    "allowed is a range from a smaller to a larger number, such as '0..0.5 um' (11 values), "
+    f"'0..2 um, 21' (21 values; from 2 to {MOST_CASES} are allowed) or '0.1..10 mm/s, 21, log' (21 "
+    "values in equal ratios, from a number above 0); a number begins with a digit"
 )
 
 
@@ -46,43 +45,20 @@ def is_range(name: str, value: object) -> bool:
 def values_of(name: str, text: str) -> list[str]:
     """Return the values of a range as texts with the unit of the range.  Raises InputError."""
     ends, *options = (part.strip() for part in text.split(","))
-    if THREE_DOTS in ends:
-        problem = "three dots in a row; a number after two dots begins with a digit, as in '0..0.5'"
-        raise InputError(name, text, f"{problem}; {ALLOWED}")
     first, _, last = ends.partition(DOTS)
+    log, counts = LOG in options, [one for one in options if one != LOG]
     try:
         digits, unit = split_number(last)
         low, high = spec.read(name, first), float(digits)
-    except (UnitError, InputError):
+        (count,) = [spec.read(name, one, whole=True) for one in counts] or [VALUES]
+    except (UnitError, ValueError):
         raise InputError(name, text, ALLOWED) from None
-    count, log = _options(name, text, options)
-    fits = -math.inf < low < high < math.inf and DOTS not in last
-    if not fits or log and low <= 0.0:
-        above = ", from a number above 0 with log" if log else ""
-        raise InputError(name, text, f"{ALLOWED}; the second number is the larger one{above}")
-    values = (np.geomspace if log else np.linspace)(low, high, count)
+    fits = -math.inf < low < high < math.inf and 2 <= count <= MOST_CASES
+    words = not last.startswith(".") and DOTS not in last and len(options) == len(counts) + log
+    if not (fits and words) or log and low <= 0.0:
+        raise InputError(name, text, ALLOWED)
+    values = (np.geomspace if log else np.linspace)(low, high, int(count))
     return [f"{value:.12g} {unit}".strip() for value in values]
-
-
-def _options(name: str, text: str, options: Sequence[str]) -> tuple[int, bool]:
-    """Return the number of values of a range, and whether they have equal ratios.  Raises
-    InputError.
-
-    options: words after the range.
-    """
-    words, count = [option for option in options if option != LOG], VALUES
-    if len(words) > 1 or options.count(LOG) > 1:
-        problem = "at most one number of values and one word log can follow the range"
-        raise InputError(name, text, f"{problem}; {ALLOWED}")
-    if words:
-        try:
-            count = int(spec.read(name, words[0], whole=True))
-        except InputError:
-            count = 0
-    if not 2 <= count <= MOST_CASES:
-        values = f"a whole number of values from 2 to {MOST_CASES}"
-        raise InputError(name, text, f"{words[0]!r} is neither log nor {values}; {ALLOWED}")
-    return count, LOG in options
 
 
 class Axis(NamedTuple):
@@ -176,10 +152,7 @@ def grid_of(motion: str, arguments: Mapping[str, Any]) -> Grid:
             values = values_of(name, values)
         if isinstance(values, str) or np.ndim(values) != 1:
             continue
-        own = unit_of_amplitude(motion) if name == "amplitude" else None
-        unit = QUANTITIES[name].unit if own is None else own
-        for value in values:
-            refuse_uncertainty({name: value}, "a range")
+        unit = unit_of(name, motion)
         si = [read(name, value, unit, low=-math.inf).si for value in values]
         axes[_coordinate(name, unit)] = Axis(name, list(values), si, unit)
         del shared[name]

@@ -27,8 +27,8 @@ ALLOWED = (
     "allowed are Vickers and Rockwell C, as in '200 HV' and '60 HRC', and pressures, as '7 GPa'"
 )
 
-_SCALE = re.compile(r"(.*?)\s*(HV|HRC)", re.S)
-_OTHER_SCALE = re.compile(r"(.*?)\s*(HBW?|HBS|HR[ABD-Z]|HK|HS|Shore.*|Mohs)", re.S)
+_SCALE = re.compile(r"(.*?)\s*(HV|HRC|HBW?|HBS|HR[ABD-Z]|HK|HS|Shore.*|Mohs)", re.S)
+"""Pattern of a hardness on a scale, also on one that is not supported."""
 
 
 def read_hardness(name: str, value: Any) -> Quantity:
@@ -36,30 +36,24 @@ def read_hardness(name: str, value: Any) -> Quantity:
 
     name: name of the argument; value: a pressure, or a text such as "200 HV" or "60 HRC".
     """
-    scale = _SCALE.fullmatch(value.strip()) if isinstance(value, str) else None
-    if scale is None:
-        _check_scale(name, value)
+    match = _SCALE.fullmatch(value.strip()) if isinstance(value, str) else None
+    if match is None:
         return read(name, value, "Pa")
+    text, scale = match.groups()
+    brinell = scale.startswith("HB")
+    if not brinell and scale not in ("HV", "HRC"):
+        raise InputError(name, value, f"the scale {scale} is not supported; {ALLOWED}")
     try:
-        number = read(name, scale[1], "").si
+        number = read(name, text, "").si
     except InputError as error:
         raise InputError(name, value, error.allowed) from None
-    if scale[2] == "HRC":
+    if brinell:
+        hint = f"this Brinell hardness is about {VICKERS_OVER_BRINELL * number:.0f} HV for steels"
+        raise InputError(name, value, f"{hint}; {ALLOWED}")
+    if scale == "HRC":
         if not ROCKWELL[0] <= number <= ROCKWELL[-1]:
             ends = f"{ROCKWELL[0]:g} to {ROCKWELL[-1]:g} HRC"
             raise InputError(name, value, f"allowed is {ends}, or a Vickers hardness")
         number = float(np.interp(number, ROCKWELL, VICKERS))
     pressure = number * KILOGRAM_FORCE_PER_SQUARE_MM / PROJECTED
     return Quantity(pressure, f"{' '.join(value.split())} = {pressure / 1e9:.3g} GPa")
-
-
-def _check_scale(name: str, value: object) -> None:
-    """Raise InputError for a hardness on an unsupported scale."""
-    scale = _OTHER_SCALE.fullmatch(value.strip()) if isinstance(value, str) else None
-    if scale is None:
-        return
-    hint = f"the scale {scale[2]} is not supported; "
-    if scale[2].startswith("HB"):
-        number = VICKERS_OVER_BRINELL * read(name, scale[1], "").si
-        hint = f"this Brinell hardness is about {number:.0f} HV for steels; "
-    raise InputError(name, value, f"{hint}{ALLOWED}")

@@ -3,21 +3,22 @@
 from __future__ import annotations
 
 import math
+import re
 from collections.abc import Mapping
-from dataclasses import replace
+from dataclasses import dataclass, replace
+from functools import partial
 from typing import Any, NamedTuple
 
 from microslip.foundation.errors import InputError
 from microslip.foundation.named_files import speaks_of_file
-from microslip.si import motions
 from microslip.si.bodies import TwoBodies
 from microslip.si.dimensionless import RealDrive, RealMotion
 from microslip.si.hardness import read_hardness
 from microslip.si.materials import RIGID, Material, material_named
-from microslip.si.motions import COMBINED, PARTS, TAKES
+from microslip.si.motions import PARTS, kind_of
 from microslip.si.quantities import Quantity, read
 from microslip.si.shapes import elliptic, of_size
-from microslip.si.strokes import Stroke, read_stroke
+from microslip.si.strokes import read_stroke
 from microslip.si.validity import SENSELESS
 
 LARGEST_MU = 10.0
@@ -63,24 +64,73 @@ QUANTITIES = {
     "reduction": Range("", high=1.0),
     "wear_coefficient": Range("m^2/N", low_open=False),
 }
-"""Units and ranges of the quantities among `predict`'s arguments.  The amplitude of a rotation is
-an angle, in rad."""
+"""Units and ranges of the quantities among `predict`'s arguments; see also `unit_of`."""
+
+
+def unit_of(name: str, motion: object) -> str:
+    """SI unit of an argument listed in QUANTITIES.  The unit of the amplitude depends on the
+    motion."""
+    unit = kind_of(motion).unit if name == "amplitude" else None
+    return QUANTITIES[name].unit if unit is None else unit
 
 
 def read_argument(
-    name: str, value: object, unit: str | None = None, title: str | None = None
+    name: str, value: object, motion: str | None = None, title: str | None = None
 ) -> Quantity:
     """Read an argument listed in QUANTITIES and check its range.  Raises InputError.
 
-    unit: SI unit that replaces the default; title: name of the argument in messages.
+    motion: motion of the request, for its amplitude; title: name of the argument in messages.
     """
-    usual, *limits = QUANTITIES[name]
-    ranges: dict[str, Any] = dict(zip(Range._fields[1:], limits, strict=True))
-    return read(title or name, value, usual if unit is None else unit, **ranges)
+    allowed = QUANTITIES[name]
+    if motion is not None:
+        allowed = allowed._replace(unit=unit_of(name, motion))
+    return read(title or name, value, **allowed._asdict())
 
 
-Arguments = Mapping[str, Any]
-"""Mapping of `predict`'s arguments, by name.  A missing argument is None."""
+MOTION_ARGUMENTS = ("rotation", *PARTS, "phase", "frequency")
+"""Arguments of `predict` that describe the motion, except the speed."""
+DRIVE_FIELDS = {
+    "force": "force",
+    "drive_stiffness": "stiffness",
+    "mass": "mass",
+    "damping": "damping",
+}
+"""Fields of RealDrive, keyed by the corresponding argument of `predict`.  The speed is not
+included."""
+OF_CONTACT = (
+    *("mu", "load", "radius", "counter_radius", "radius_across", "contact_radius", "pressure"),
+    *("young", "nu", "material", "counterbody", "hardness", "density"),
+    *("counter_hardness", "counter_density"),
+)
+"""Arguments of `predict` that describe a contact."""
+SPREAD = re.compile(r"(.*?)\s*(?:\+-|\+/-|±)\s*(.*)", re.S)
+"""Pattern of a quantity with its standard uncertainty."""
+EXACT = ("phase", "density", "counter_density", "reduction")
+"""Quantities that are always exact."""
+HARDNESSES = ("hardness", "counter_hardness")
+OF_BODIES = ("young", "nu", "density", "counter_density", *HARDNESSES, "wear_coefficient")
+"""Quantities that are not listed in Inputs.texts, because the texts of the bodies contain them."""
+
+
+def read_uncertain(name: str, value: object, motion: str) -> Quantity:
+    """Read an argument such as "10 N", or one with a standard uncertainty such as "10 N +- 5 %".
+    Raises InputError."""
+    match = SPREAD.fullmatch(value) if isinstance(value, str) and name not in EXACT else None
+    if match is None:
+        return read_argument(name, value, motion)
+    text, spread = match.groups()
+    try:
+        centre = read_argument(name, text, motion).si
+        if spread.endswith("%") and not text.endswith("%"):
+            deviation = abs(centre) * read(name, spread, "", low_open=False).si
+        else:
+            deviation = read(name, spread, unit_of(name, motion), low_open=False).si
+    except InputError as error:
+        allowed = f"in it {error.value!r}: {error.allowed}, as in '10 N +- 5 %'"
+        raise InputError(name, value, allowed) from None
+    if not deviation < abs(centre):
+        raise InputError(name, value, "allowed is an uncertainty below the value")
+    return Quantity(centre, " ".join(match[0].split()), deviation)
 
 
 class Body(NamedTuple):
@@ -90,41 +140,88 @@ class Body(NamedTuple):
     text: str
 
 
-def read_bodies(arguments: Arguments) -> tuple[Body, Body]:
-    """The body and the counterbody; raises InputError."""
-    body = _body(*(arguments[name] for name in ("young", "nu", "material")))
-    return _completed(body, "", arguments), _completed(
-        _counterbody(arguments["counterbody"]), "counter_", arguments
-    )
+@dataclass(frozen=True)
+class Inputs:
+    """Arguments of `predict`, and the quantities and bodies read from them.
+
+    Attributes
+    ----------
+    arguments : mapping
+        The arguments as the user wrote them.  A missing argument is None.
+    quantities : dict of Quantity
+        The quantities that are not missing.
+    bodies : tuple of Body
+        The body and the counterbody.
+    """
+
+    arguments: Mapping[str, Any]
+    quantities: dict[str, Quantity]
+    bodies: tuple[Body, Body]
+
+    def si(self, name: str) -> float | None:
+        """A quantity in its SI unit; None if it is missing."""
+        return self.quantities[name].si if name in self.quantities else None
+
+    def error(self, name: str, allowed: str) -> InputError:
+        """The InputError for an argument."""
+        return InputError(name, self.arguments[name], allowed)
+
+    @property
+    def texts(self) -> dict[str, str]:
+        """The bodies, the pressure and the quantities as text, by the name of the argument."""
+        texts = {"body": self.bodies[0].text, "counterbody": self.bodies[1].text}
+        texts |= {name: q.text for name, q in self.quantities.items() if name not in OF_BODIES}
+        if self.arguments["contact_radius"] is not None:
+            texts["pressure"] = self.arguments["pressure"] or "hertz"
+        elif "counter_radius" not in texts:
+            texts["counter_radius"] = "flat (default)"
+        elif self.quantities["counter_radius"].si < 0.0:
+            texts["counter_radius"] += ", hollow"
+        return texts
 
 
-def _completed(body: Body, side: str, arguments: Arguments) -> Body:
+def read_inputs(arguments: Mapping[str, Any], motion: str | None = None) -> Inputs:
+    """Read the quantities and the bodies.  Raises InputError.
+
+    motion: motion of a request, whose quantities can be uncertain; None for a contact without a
+    motion, whose quantities are exact.
+    """
+    arguments = {**dict.fromkeys(OF_CONTACT), **arguments}
+    values = {name: value for name, value in arguments.items() if value is not None}
+    reader = read_argument if motion is None else partial(read_uncertain, motion=motion)
+    quantities = {n: reader(n, values[n]) for n in QUANTITIES if n in values}
+    quantities |= {n: read_hardness(n, values[n]) for n in HARDNESSES if n in values}
+    body, other = _body(arguments, quantities), _counterbody(arguments["counterbody"])
+    bodies = _with_properties(body, "", quantities), _with_properties(other, "counter_", quantities)
+    return Inputs(arguments, quantities, bodies)
+
+
+def _with_properties(body: Body, side: str, quantities: Mapping[str, Quantity]) -> Body:
     """The body with its hardness and density.  side: "counter_" for the counterbody, else
     empty."""
     for name in ("hardness", "density"):
-        argument, value = f"{side}{name}", arguments[f"{side}{name}"]
-        if value is None:
+        argument = f"{side}{name}"
+        if argument not in quantities:
             continue
+        number, text = quantities[argument].si, quantities[argument].text
         if body.material.rigid:
-            raise InputError(argument, value, "allowed for an elastic body, not a rigid one")
-        one = (read_hardness if name == "hardness" else read_argument)(argument, value)
-        number: dict[str, Any] = {name: one.si}
-        body = Body(replace(body.material, **number), f"{body.text}, {name} {one.text}")
+            raise InputError(argument, text, "allowed for an elastic body, not a rigid one")
+        changes: dict[str, Any] = {name: number}
+        body = Body(replace(body.material, **changes), f"{body.text}, {name} {text}")
     return body
 
 
-def _body(young: object, nu: object, material: Any) -> Body:
+def _body(arguments: Mapping[str, Any], quantities: Mapping[str, Quantity]) -> Body:
+    material, names = arguments["material"], ("young", "nu")
     if material is None:
-        for name, value in (("young", young), ("nu", nu)):
-            if value is None:
+        for name in names:
+            if name not in quantities:
                 raise InputError(name, None, "needed, or a material")
-        return _elastic(read_argument("young", young), read_argument("nu", nu))
-    if young is not None or nu is not None:
+        return _elastic(quantities["young"], quantities["nu"])
+    if any(name in quantities for name in names):
         raise InputError("material", material, "allowed only without young and nu")
-    if isinstance(material, Material):
-        return Body(material, _numbers(material))
     try:
-        return _named(material.strip() if isinstance(material, str) else material)
+        return _of_material(material.strip() if isinstance(material, str) else material)
     except InputError as error:
         other = "" if isinstance(material, str) else ", or a Material"
         raise InputError("material", material, f"{error.allowed}{other}") from None
@@ -135,16 +232,16 @@ def _counterbody(body: Any) -> Body:
     body."""
     if body is None:
         return Body(RIGID, "rigid (default)")
-    if isinstance(body, Material):
-        return Body(body, _numbers(body))
     pair = isinstance(body, tuple | list)
-    if not (pair or isinstance(body, str)):
+    if not (pair or isinstance(body, str | Material)):
         allowed = f"allowed is a text, {EXAMPLE}, a pair of both, or a Material"
         raise InputError("counterbody", body, allowed)
-    parts = list(body) if pair else [part.strip() for part in body.split(",")]
+    parts = list(body) if pair else [body]
+    if isinstance(body, str):
+        parts = [part.strip() for part in body.split(",")]
     try:
         if len(parts) == 1 and not pair:
-            return _named(parts[0])
+            return _of_material(parts[0])
         if len(parts) == 2:
             young = read_argument("young", parts[0], title="Young's modulus")
             return _elastic(young, read_argument("nu", parts[1], title="Poisson's ratio"))
@@ -161,7 +258,10 @@ def _elastic(young: Quantity, nu: Quantity) -> Body:
     return Body(Material(young.si, nu.si), f"E = {young.text}, nu = {nu.text}")
 
 
-def _named(name: Any) -> Body:
+def _of_material(name: Any) -> Body:
+    """The body for a Material or its name."""
+    if isinstance(name, Material):
+        return Body(name, _numbers(name))
     body = material_named(name)
     return Body(body, name if body.rigid else f"{name} ({_numbers(body)})")
 
@@ -178,19 +278,15 @@ def _numbers(body: Material) -> str:
     return ", ".join(parts)
 
 
-def read_contact(
-    bodies: tuple[Body, Body], arguments: Arguments, *, load: object, contacts: int = 1
-) -> tuple[TwoBodies, dict[str, str]]:
-    """The contact, and a dict with the text of each argument.
+def contact_of(inputs: Inputs, load: float | None = None, contacts: int = 1) -> TwoBodies:
+    """The contact of the bodies.
 
     Parameters
     ----------
-    bodies : tuple of Body
-        The body and the counterbody.
-    arguments : mapping
-        Arguments of `predict`.  This function reads the shape and mu.
-    load : quantity
-        Total load of all contacts.
+    inputs : Inputs
+        The bodies, the shape of the contact, mu and the load.
+    load : float or None
+        Total load of all contacts, N, if it is not that of the inputs.
     contacts : int
         Number of contacts.  The returned contact has the mean load.
 
@@ -200,46 +296,41 @@ def read_contact(
         If an argument is missing or not allowed, or if Hertz's theory does not apply to the
         contact.
     """
+    arguments, (body, counterbody) = inputs.arguments, (one.material for one in inputs.bodies)
     sized = arguments["pressure"] is not None or arguments["contact_radius"] is not None
     if sized:
         _check_without_radii(arguments)
     elif arguments["radius"] is None:
         raise InputError("radius", None, "needed, or a contact_radius")
-    name = "contact_radius" if sized else "radius"
-    size = read_argument(name, arguments[name])
-    force, mu = read_argument("load", load), read_argument("mu", arguments["mu"])
-    materials = bodies[0].material, bodies[1].material
-    radii, texts = ((), {}) if sized else _radii(size.si, arguments)
-    if materials[0].rigid and materials[1].rigid:
+    for name in ("mu", "load"):
+        if name not in inputs.quantities and (name == "mu" or load is None):
+            raise InputError(name, None, "needed")
+    if body.rigid and counterbody.rigid:
         allowed = "allowed is an elastic body where the counterbody is rigid"
         raise InputError("material", "rigid", allowed)
+    radii = () if sized else _radii(inputs)
     radius = 1.0 / sum(1.0 / one for one in radii) if radii else 1.0
-    plain = TwoBodies(*materials, radius, force.si / contacts, mu.si, radii)
-    texts = {"body": bodies[0].text, "counterbody": bodies[1].text} | texts
-    texts[name] = size.text
-    pressure = "hertz" if arguments["pressure"] is None else arguments["pressure"]
+    load = inputs.quantities["load"].si if load is None else load
+    mu = inputs.quantities["mu"].si
+    plain = TwoBodies(body, counterbody, radius, load / contacts, mu, radii)
     if sized:
-        texts["pressure"] = pressure
-    texts |= {"load": force.text, "mu": mu.text}
-    if sized:
-        return _of_size(plain, size.si, pressure, arguments[name]), texts
-    _check_hertzian(plain, arguments["counter_radius"], arguments, load)
-    across = arguments["radius_across"]
+        return _of_size(inputs, plain)
+    _check_hertzian(plain, "counter_radius", inputs)
+    across = inputs.si("radius_across")
     if across is None:
-        return plain, texts
-    if arguments["counter_radius"] is not None:
+        return plain
+    if "counter_radius" in inputs.quantities:
         allowed = "allowed only without a counter_radius: give the radii of relative curvature"
-        raise InputError("radius_across", across, allowed)
-    second = read_argument("radius_across", across)
+        raise inputs.error("radius_across", allowed)
     try:
-        contact = elliptic(plain, second.si)
+        contact = elliptic(plain, across)
     except InputError as error:
-        raise error.renamed("radius_across", across) from None
-    _check_hertzian(contact, across, arguments, load)
-    return contact, texts | {"radius_across": second.text}
+        raise error.renamed("radius_across", arguments["radius_across"]) from None
+    _check_hertzian(contact, "radius_across", inputs)
+    return contact
 
 
-def _check_without_radii(arguments: Arguments) -> None:
+def _check_without_radii(arguments: Mapping[str, Any]) -> None:
     """Raise InputError unless the arguments contain a size and no radii."""
     for name in ("radius", "counter_radius", "radius_across"):
         if arguments[name] is not None:
@@ -252,22 +343,14 @@ def _check_without_radii(arguments: Arguments) -> None:
         raise InputError("contact_radius", None, allowed)
 
 
-def _of_size(plain: TwoBodies, size: float, pressure: str, argument: object) -> TwoBodies:
+def _of_size(inputs: Inputs, plain: TwoBodies) -> TwoBodies:
     """A contact with a prescribed size and pressure; raises InputError.
 
-    Parameters
-    ----------
-    plain : TwoBodies
-        The bodies and the load.  The radius is ignored.
-    size : float
-        Half the longer side of the contact, m.
-    pressure : str
-        Name of the pressure.
-    argument : object
-        The size as the user wrote it, for messages.
+    plain: the bodies and the load, with any radius.
     """
+    size = inputs.quantities["contact_radius"].si
     try:
-        contact = of_size(plain, size, pressure)
+        contact = of_size(plain, size, inputs.texts["pressure"])
         sizes = (contact.u_lim, contact.load / size**2)
         good = all(0.0 < one < math.inf for one in sizes) and contact.largest_pressure > 0.0
     except (ArithmeticError, ValueError) as error:
@@ -275,46 +358,39 @@ def _of_size(plain: TwoBodies, size: float, pressure: str, argument: object) -> 
             raise
         good = False
     if not good:
-        raise InputError("contact_radius", argument, OUT_OF_RANGE)
+        raise inputs.error("contact_radius", OUT_OF_RANGE)
     return contact
 
 
-def _radii(radius: float, arguments: Arguments) -> tuple[tuple[float, float], dict[str, str]]:
-    """Radii of the sphere and of the counterbody, m, and their texts.  The radius of a flat
-    counterbody is infinite."""
-    text, counter, argument = "flat (default)", math.inf, arguments["counter_radius"]
-    if argument is not None:
-        second = read_argument("counter_radius", argument)
-        if second.si == 0.0:
-            raise InputError("counter_radius", argument, "allowed is a radius other than 0")
-        text = f"{second.text}, hollow" if second.si < 0.0 else second.text
-        counter = second.si
+def _radii(inputs: Inputs) -> tuple[float, float]:
+    """Radii of the sphere and of the counterbody, m.  The radius of a flat counterbody is
+    infinite."""
+    radius, counter = inputs.quantities["radius"].si, inputs.si("counter_radius")
+    if counter == 0.0:
+        raise inputs.error("counter_radius", "allowed is a radius other than 0")
+    counter = math.inf if counter is None else counter
     for name, one in (("radius", radius), ("counter_radius", counter)):
         if math.isinf(1.0 / one):
-            raise InputError(name, arguments[name], OUT_OF_RANGE)
+            raise inputs.error(name, OUT_OF_RANGE)
     curvature = 1.0 / radius + 1.0 / counter
     if math.isinf(curvature):
-        raise InputError("counter_radius", argument, OUT_OF_RANGE)
+        raise inputs.error("counter_radius", OUT_OF_RANGE)
     if not curvature > 0.0:
         allowed = "allowed is a hollow with a larger radius than the sphere"
-        raise InputError("counter_radius", argument, allowed)
-    return (radius, counter), {"counter_radius": text}
+        raise inputs.error("counter_radius", allowed)
+    return radius, counter
 
 
-def _check_hertzian(contact: TwoBodies, second: object, arguments: Arguments, load: object) -> None:
+def _check_hertzian(contact: TwoBodies, second: str, inputs: Inputs) -> None:
     """Raise InputError if Hertz's theory does not apply to a contact.
 
-    second: counter_radius or radius_across as the user wrote it.
+    second: argument with the second radius.
     """
     try:
         a, smallest = contact.contact_radius, contact.smallest_radius
         if a >= SENSELESS * smallest:
-            name, value = "counter_radius", second
-            if smallest == abs(contact.radii[0]):
-                name, value = "radius", arguments["radius"]
-            raise InputError(
-                name,
-                value,
+            raise inputs.error(
+                "radius" if smallest == abs(contact.radii[0]) else second,
                 f"by Hertz's theory, which is for contacts much smaller than either body, the "
                 f"contact radius would be {a:.3g} m, {a / smallest:.2g} of this radius; allowed is "
                 f"less than {SENSELESS:g}",
@@ -324,12 +400,13 @@ def _check_hertzian(contact: TwoBodies, second: object, arguments: Arguments, lo
     except ArithmeticError:
         good = False
     if not good:
-        raise InputError("load", load, f"with these bodies and radii, {OUT_OF_RANGE}")
+        raise inputs.error("load", f"with these bodies and radii, {OUT_OF_RANGE}")
 
 
-def with_stroke(stroke: Stroke, arguments: Arguments) -> Arguments:
-    """Fill in a missing amplitude, frequency or load for a stroke from a file.  Raises InputError
+def with_stroke(motion: str, arguments: Mapping[str, Any]) -> dict[str, Any]:
+    """Fill in a missing amplitude, frequency or load for a motion from a file.  Raises InputError
     if a frequency is specified although the file has a column `time`."""
+    stroke = read_stroke(motion)
     if stroke.frequency is not None and arguments["frequency"] is not None:
         allowed = "allowed only without a column time, which contains the frequency"
         raise InputError("frequency", arguments["frequency"], allowed)
@@ -337,86 +414,55 @@ def with_stroke(stroke: Stroke, arguments: Arguments) -> Arguments:
     return {name: own.get(name) if value is None else value for name, value in arguments.items()}
 
 
-def read_motion(
-    motion: str, arguments: Arguments, sought: str | None
-) -> tuple[RealMotion, dict[str, str]]:
-    """The motion, and a dict with the text of each argument.  Raises InputError.
-
-    sought: name of the quantity that a search determines, or None.  This quantity and the speed may
-    be missing.
-    """
-    motions.check_motion(motion)
-    steady = motions.is_steady(motion)
-    needed = ("rotation",) if steady else (*COMBINED.get(motion, ("amplitude",)), "frequency")
-    for name in MOTION_ARGUMENTS:
-        if name not in (*needed, *TAKES.get(motion, ())) and arguments[name] is not None:
-            raise InputError(name, arguments[name], f"{motion} has none")
-    for name in needed:
-        if arguments[name] is None and name != sought:
-            raise InputError(name, None, f"{motion} needs it")
-    stroke = read_stroke(motion) if speaks_of_file(motion) else None
-    unit = motions.unit_of_amplitude(motion)
-    quantities = {
-        name: read_argument(name, arguments[name], unit if name == "amplitude" else None)
-        for name in ("speed", *MOTION_ARGUMENTS)
-        if arguments[name] is not None
-    }
-    values: dict[str, Any] = {"speed": None} | {name: one.si for name, one in quantities.items()}
-    if motion in COMBINED and not any(values.get(name) for name in PARTS):
-        allowed = "allowed is above 0 where no other amplitude is"
-        raise InputError(needed[0], arguments[needed[0]], allowed)
-    texts = {"motion": f"{motion}: the sphere {motions.description(motion)}"}
-    texts |= {name: one.text for name, one in quantities.items()}
-    if stroke is not None:
-        texts["amplitude"] += " times the samples"
-        return RealMotion(stroke.name, **values, stroke=stroke), texts
-    return RealMotion(motion, **values), texts
-
-
-MOTION_ARGUMENTS = ("rotation", *PARTS, "phase", "frequency")
-"""Arguments of `predict` that describe the motion, except the speed."""
-DRIVE_FIELDS = {
-    "force": "force",
-    "drive_stiffness": "stiffness",
-    "mass": "mass",
-    "damping": "damping",
-}
-"""Fields of RealDrive, keyed by the corresponding argument of `predict`.  The speed is not
-included."""
-
-
-def read_drive(
-    motion: RealMotion, arguments: Arguments, sought: str | None
-) -> tuple[RealDrive, dict[str, str]]:
-    """The drive, and a dict with the text of each argument.  Raises InputError.
+def check_motion_and_drive(motion: str, arguments: Mapping[str, Any], sought: str | None) -> None:
+    """Raise InputError if an argument of the motion or the drive is missing or not allowed.
 
     sought: name of the quantity that a search determines, or None.  This quantity may be missing.
     """
-    speed, force, spring = (arguments[name] for name in ("speed", "force", "drive_stiffness"))
-    if speed is None and force is None and sought != "speed":
-        raise InputError("speed", None, "needed, or a force")
-    if speed is not None and force is not None:
-        raise InputError("force", force, "allowed is a force or a speed, not both")
-    refused: dict[str, str] = {}
-    if motion.steady:
-        which = f"allowed only for a motion that oscillates; {motion.name} is steady"
-        refused = dict.fromkeys(("drive_stiffness", "mass", "damping"), which)
-    elif force is not None:
+    kind = kind_of(motion)
+    refused = {
+        name: f"{motion} has none"
+        for name in MOTION_ARGUMENTS
+        if name not in (*kind.needed, *kind.optional)
+    }
+    missing = dict.fromkeys(kind.needed, f"{motion} needs it")
+    if arguments["force"] is None:
+        missing["speed"] = "needed, or a force"
+    elif arguments["speed"] is not None:
+        raise InputError("force", arguments["force"], "allowed is a force or a speed, not both")
+    if kind.steady:
+        which = f"allowed only for a motion that oscillates; {motion} is steady"
+        refused |= dict.fromkeys(("drive_stiffness", "mass", "damping"), which)
+    elif arguments["force"] is not None:
         which = "allowed only without a force"
-        refused = dict.fromkeys(("drive_stiffness", "damping"), which)
-    elif spring is None:
-        refused = {"mass": "allowed only with a force or a drive_stiffness"}
+        refused |= dict.fromkeys(("drive_stiffness", "damping"), which)
+    elif arguments["drive_stiffness"] is None:
+        refused["mass"] = "allowed only with a force or a drive_stiffness"
         refused["damping"] = "allowed only with a drive_stiffness"
     for name, allowed in refused.items():
         if arguments[name] is not None:
             raise InputError(name, arguments[name], allowed)
-    if spring is not None and motion.name == "longitudinal" and motion.speed == 0.0:
+    for name, allowed in missing.items():
+        if arguments[name] is None and name != sought:
+            raise InputError(name, None, allowed)
+
+
+def motion_of(motion: str, inputs: Inputs) -> RealMotion:
+    """The motion; raises InputError."""
+    kind = kind_of(motion)
+    stroke = read_stroke(motion) if speaks_of_file(motion) else None
+    if kind.several and stroke is None and not any(map(inputs.si, PARTS)):
+        allowed = "allowed is above 0 where no other amplitude is"
+        raise inputs.error(kind.needed[0], allowed)
+    values: dict[str, Any] = {name: inputs.si(name) for name in ("speed", *MOTION_ARGUMENTS)}
+    name = motion if stroke is None else stroke.name
+    return RealMotion(name, kind.unit, **values, stroke=stroke)
+
+
+def drive_of(motion: str, inputs: Inputs) -> RealDrive:
+    """The drive; raises InputError."""
+    drive = RealDrive(**{field: inputs.si(name) for name, field in DRIVE_FIELDS.items()})
+    if drive.stiffness is not None and motion == "longitudinal" and inputs.si("speed") == 0.0:
         allowed = "allowed is a speed above 0 for a longitudinal motion with a spring"
-        raise InputError("speed", speed, allowed)
-    quantities = {
-        name: read_argument(name, arguments[name])
-        for name in DRIVE_FIELDS
-        if arguments[name] is not None
-    }
-    values = {DRIVE_FIELDS[name]: one.si for name, one in quantities.items()}
-    return RealDrive(**values), {name: one.text for name, one in quantities.items()}
+        raise inputs.error("speed", allowed)
+    return drive

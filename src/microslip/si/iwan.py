@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from microslip.adaptive.iwan import iwan
 from microslip.foundation.errors import InputError
-from microslip.si.response import contact_of
+from microslip.si.response import only_contact
 from microslip.theory.iwan import Iwan
 
 
@@ -34,7 +34,7 @@ def predict_iwan(
     InputError
         If an argument is invalid.  The message names it.
     """
-    real = contact_of(contact)
+    real = only_contact(contact)
     try:
         model = iwan(real.pressure, poisson=real.poisson, elements=elements, tolerance=tolerance)
     except InputError as error:

@@ -1,4 +1,4 @@
-"""Motions in SI units: amplitudes, units and descriptions.
+"""Motions in SI units: their arguments, amplitudes and descriptions.
 
 A motion from a user's file, or a motion with parameters such as "elliptic:forward=0.5", is
 described by a Motion record.  The amplitude is a length for a pure translation, and an angle for a
@@ -7,137 +7,133 @@ pure rotation.
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
 from microslip.foundation.errors import InputError
 from microslip.foundation.named_files import speaks_of_file
 
-if TYPE_CHECKING:  # the command line needs only the tables
-    from microslip.motions.motion import Motion
-    from microslip.si.strokes import Stroke
-
-UNIT_OF_AMPLITUDE = {"transverse": "m", "longitudinal": "m", "zigzag": "m", "bore": "rad"}
-"""SI unit of the amplitude for each motion with one oscillation."""
-COMBINED = {
-    "elliptic": ("amplitude", "forward_amplitude"),
-    "transverse-bore": ("amplitude", "rotation_amplitude"),
-    "normal": ("load_amplitude",),
-}
-"""Required amplitudes of the motions with several oscillations."""
 PARTS = {
-    "amplitude": ("lateral", "m"),
-    "forward_amplitude": ("forward", "m"),
-    "rotation_amplitude": ("angle", "rad"),
-    "load_amplitude": ("load", "N"),
+    "amplitude": "lateral",
+    "forward_amplitude": "forward",
+    "rotation_amplitude": "angle",
+    "load_amplitude": "load",
 }
-"""For each of these amplitudes, its name in the solver's motion text, and its SI unit."""
-TAKES = {motion: (*needed, "phase") for motion, needed in COMBINED.items()}
-TAKES["normal"] = (*PARTS, "phase")
-"""Allowed arguments of the motions with several oscillations."""
-MOTIONS = {
-    "transverse": "slides forward and oscillates sideways",
-    "longitudinal": "slides forward and oscillates along the same direction",
-    "zigzag": "slides forward and moves sideways at constant speed, with abrupt turns",
-    "bore": "slides forward and oscillates in spin, which is rotation about the contact normal",
-    "elliptic": "slides forward and oscillates along the same direction and sideways",
-    "transverse-bore": "slides forward and oscillates sideways and in spin",
-    "normal": "slides forward while its normal load oscillates, alone or with a motion",
-    "continuous-bore": "slides forward and spins steadily about the contact normal",
-}
-"""Descriptions of the sphere's motions."""
-ALONG_THE_DRIVE = ("longitudinal", "elliptic", "normal")
-"""Motions that vibrate along the drive, or have an oscillating load."""
+"""Arguments with amplitudes, and their names in the solver's motion text."""
 SAME = 1e-3
 """Largest relative difference between two angles that count as equal.  The angles can differ
 because one of them is sampled at 721 phases."""
 
 
-def check_motion(motion: object) -> None:
-    """Raise InputError unless the amplitudes of a motion can be stated in SI units."""
-    if speaks_of_file(motion):
-        _stroke(motion)
-    elif not isinstance(motion, str) or motion not in MOTIONS:
-        record = _record(motion)
-        if record.loads:
-            allowed = "allowed is normal with a load_amplitude for an oscillating load"
-            raise InputError("motion", motion, allowed)
-        if record.periodic and not _unit(record):
-            allowed = "allowed is a translation or a rotation; for both use transverse-bore"
-            raise InputError("motion", motion, allowed)
+@dataclass(frozen=True)
+class RealMotionKind:
+    """Arguments of `predict` for a motion, and its description.
 
-
-def is_steady(motion: str) -> bool:
-    """True if nothing oscillates."""
-    if motion in MOTIONS or speaks_of_file(motion):
-        return motion == "continuous-bore"
-    return not _record(motion).periodic
-
-
-def has_several_amplitudes(motion: str) -> bool:
-    """True for a motion with several oscillations, and for a motion from a file."""
-    return motion in COMBINED or speaks_of_file(motion)
-
-
-def unit_of_amplitude(motion: str) -> str | None:
-    """SI unit of the amplitude; None for a steady motion or one with several oscillations.
-
-    The amplitude of a motion from a file is a factor, so its unit is empty.
+    Attributes
+    ----------
+    description : str
+        What the sphere does.
+    unit : str or None
+        SI unit of the amplitude, if it is the only one.  It is empty for a motion from a file,
+        whose amplitude is a factor.
+    needed, optional : tuple of str
+        Required and optional arguments.
+    along_the_drive : bool
+        True if the vibration may have a component along the drive, or if the load oscillates.
     """
-    if speaks_of_file(motion):
-        return ""
-    if motion in MOTIONS:
-        return UNIT_OF_AMPLITUDE.get(motion)
-    record = _record(motion)
-    return _unit(record) if record.periodic else None
+
+    description: str
+    unit: str | None = None
+    needed: tuple[str, ...] = ("amplitude", "frequency")
+    optional: tuple[str, ...] = ()
+    along_the_drive: bool = False
+
+    @property
+    def steady(self) -> bool:
+        """True if nothing oscillates."""
+        return "frequency" not in self.needed
+
+    @property
+    def several(self) -> bool:
+        """True for a motion with several oscillations, and for a motion from a file."""
+        return not (self.unit or self.steady)
 
 
-def is_along_the_drive(motion: str) -> bool:
-    """True if the vibration may have a component along the drive."""
-    if motion in MOTIONS:
-        return motion in ALONG_THE_DRIVE
-    if speaks_of_file(motion):
-        return not {"forward", "load", "indentation"}.isdisjoint(_stroke(motion).columns)
-    ahead, _, _ = _oscillation(_record(motion))
-    return bool(np.ptp(ahead) > 0.0)
+MOTIONS = {
+    "transverse": RealMotionKind("slides forward and oscillates sideways", "m"),
+    "longitudinal": RealMotionKind(
+        "slides forward and oscillates along the same direction", "m", along_the_drive=True
+    ),
+    "zigzag": RealMotionKind(
+        "slides forward and moves sideways at constant speed, with abrupt turns", "m"
+    ),
+    "bore": RealMotionKind(
+        "slides forward and oscillates in spin, which is rotation about the contact normal", "rad"
+    ),
+    "elliptic": RealMotionKind(
+        "slides forward and oscillates along the same direction and sideways",
+        needed=("amplitude", "forward_amplitude", "frequency"),
+        optional=("phase",),
+        along_the_drive=True,
+    ),
+    "transverse-bore": RealMotionKind(
+        "slides forward and oscillates sideways and in spin",
+        needed=("amplitude", "rotation_amplitude", "frequency"),
+        optional=("phase",),
+    ),
+    "normal": RealMotionKind(
+        "slides forward while its normal load oscillates, alone or with a motion",
+        needed=("load_amplitude", "frequency"),
+        optional=(*PARTS, "phase"),
+        along_the_drive=True,
+    ),
+    "continuous-bore": RealMotionKind(
+        "slides forward and spins steadily about the contact normal", needed=("rotation",)
+    ),
+}
+SINGLE = tuple(name for name, kind in MOTIONS.items() if kind.unit)
+"""Motions with one oscillation."""
 
 
-def description(motion: str) -> str:
-    """Describe the sphere's motion in words."""
-    if speaks_of_file(motion):
-        columns = _stroke(motion).columns
-        rows = len(next(iter(columns.values())))
-        return f"slides forward and follows {rows} samples of its {' and '.join(columns)}"
-    return MOTIONS.get(motion) or f"is {_record(motion).summary}"
-
-
-def _record(motion: Any) -> Motion:
+def kind_of(motion: Any) -> RealMotionKind:
+    """The kind of a motion.  Raises InputError unless its amplitudes can be stated in SI units."""
     from microslip.motions.by_name import motion_named
-
-    return motion_named(motion)
-
-
-def _stroke(motion: str) -> Stroke:
+    from microslip.motions.motion import LOOP
     from microslip.si.strokes import read_stroke
 
-    return read_stroke(motion)
+    if speaks_of_file(motion):
+        columns = read_stroke(motion).columns
+        rows = len(next(iter(columns.values())))
+        text = f"slides forward and follows {rows} samples of its {' and '.join(columns)}"
+        along = not {"forward", "load", "indentation"}.isdisjoint(columns)
+        return RealMotionKind(text, "", along_the_drive=along)
+    if isinstance(motion, str) and motion in MOTIONS:
+        return MOTIONS[motion]
+    record = motion_named(motion)
+    text = f"is {record.summary}"
+    if record.loads:
+        allowed = "allowed is normal with a load_amplitude for an oscillating load"
+        raise InputError("motion", motion, allowed)
+    if not record.periodic:
+        return RealMotionKind(text, needed=("rotation",))
+    ahead, aside, angle = record.displacement(LOOP, 0.0, 1.0, 0.0)
+    unit = _unit(float(np.hypot(ahead, aside).max()), float(np.abs(angle).max()))
+    if unit is None:
+        allowed = "allowed is a translation or a rotation; for both use transverse-bore"
+        raise InputError("motion", motion, allowed)
+    return RealMotionKind(text, unit, along_the_drive=bool(np.ptp(ahead) > 0.0))
 
 
-def _oscillation(motion: Motion) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Forward displacement, lateral displacement and angle over one period, at amplitude 1."""
-    from microslip.motions.motion import LOOP
+def _unit(stroke: float, angle: float) -> str | None:
+    """SI unit of the amplitude; None for a motion with both a stroke and a rotation.
 
-    return motion.displacement(LOOP, 0.0, 1.0, 0.0)
-
-
-def _unit(motion: Motion) -> str | None:
+    stroke, angle: largest displacement and rotation at amplitude 1.
+    """
     from microslip.theory import hertz
 
-    ahead, aside, angle = _oscillation(motion)
-    turned = float(np.abs(angle).max())
-    if turned == 0.0:
+    if angle == 0.0:
         return "m"
-    stroke = float(np.hypot(ahead, aside).max())
-    of_bore = abs(turned / float(hertz.bore_angle(1.0)) - 1.0) <= SAME
+    of_bore = abs(angle / float(hertz.bore_angle(1.0)) - 1.0) <= SAME
     return "rad" if stroke == 0.0 and of_bore else None

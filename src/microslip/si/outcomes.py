@@ -16,12 +16,11 @@ import math
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
 from itertools import pairwise
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from microslip.foundation.errors import InputError
-from microslip.si.dimensionless import parts
 from microslip.si.prediction import Prediction
 from microslip.si.printed_lines import FIRST_ORDER, QUANTILES
 from microslip.si.request import Request
@@ -56,14 +55,13 @@ class UncertainInput:
 
     Attributes
     ----------
-    name, text : str
-        Name of the argument, and its text as the user wrote it.
+    name : str
+        Name of the argument.
     low, high : float
         The value minus and plus one standard deviation, in SI units.
     """
 
     name: str
-    text: str
     low: float
     high: float
 
@@ -83,73 +81,79 @@ RequestAt = Callable[[Mapping[str, float]], Request]
 """Function request_at(changes) -> Request.  changes: values of arguments by name."""
 
 
-@dataclass(frozen=True)
-class _State:
+class _State(NamedTuple):
     """Closed-form quantities for one set of inputs.
 
     Attributes
     ----------
-    still, largest, force : float
-        Friction without vibration, smallest force at which the contact runs away, and prescribed
-        force; all in N.  The prescribed force can be None.
-    amplitude : float or None
-        Dimensionless amplitude.
-    mu, poisson : float
-        Coefficient of friction and Poisson's ratio, dimensionless.
+    mu, still, largest, amplitude, poisson : float
+        Coefficient of friction, dimensionless; friction without vibration and smallest force at
+        which the contact runs away, N; dimensionless amplitude (0 without an oscillation);
+        Poisson's ratio.
     shape : tuple
         All other quantities on which the static limit depends.
     """
 
+    mu: float
     still: float
     largest: float
-    amplitude: float | None
-    mu: float
+    amplitude: float
     poisson: float
-    force: float | None
     shape: tuple
 
 
-def uncertainty_of_outcomes(
-    prediction: Prediction, inputs: list[UncertainInput], request_at: RequestAt, ends: Ends
+class _Draws(NamedTuple):
+    """Quantities of a _State at each draw, shape (DRAWS,), and the prescribed force, N.
+
+    `one_shape` is True if all tabulated states have the same shape.
+    """
+
+    mu: np.ndarray
+    still: np.ndarray
+    largest: np.ndarray
+    amplitude: np.ndarray
+    poisson: np.ndarray
+    force: np.ndarray | None
+    one_shape: bool
+
+
+def outcome_columns(
+    prediction: Prediction,
+    request: Request,
+    inputs: list[UncertainInput],
+    request_at: RequestAt,
+    ends: Ends,
 ) -> dict[str, Any]:
     """Columns for the uncertainty of the static limit and for the probabilities of the outcomes.
 
-    prediction: the Prediction for the central values.
+    prediction, request: the Prediction and the Request for the central values.
     """
-    request = request_at({})
     if request.sought is not None:
         return _normal_intervals(prediction, ends.values())
     share = equals_static_limit(request)
-    draws = _draws(len(inputs))
-    table = _Table(_state(request), inputs, request_at, draws)
-    if table.centre.amplitude is None:
-        static = None
-    else:
-        static = _static_of(prediction, request, table, ends, draws)
+    numbers = _normal_numbers(len(inputs))
+    draws = _at(numbers, request, inputs, request_at)
     fields: dict[str, Any] = {}
-    if static is not None:
-        value, error = static
-        solved = table.one_shape or not table.centre.amplitude
+    if not request.motion.steady:
+        value, error = _static_of(prediction, request, draws, ends, numbers)
+        solved = draws.one_shape or not request.groups[1]
         fields["interval_method"] = QUANTILES if solved else FIRST_ORDER
         fields |= _distribution("mu_static", value)
-        fields |= _distribution("mu_static_apparent", table.mu * value)
-    if share is True:
-        assert static is not None  # the motion oscillates
-        value, error = static
-    elif share is not None:
+        fields |= _distribution("mu_static_apparent", draws.mu * value)
+    if share is not None and share is not True:
         value, error = np.full(DRAWS, share), np.zeros(DRAWS)
     if share is not None:
-        fields |= _distribution("force_threshold", table.still * value, "_N")
-    if request.drive.force is None or table.force is None:
+        fields |= _distribution("force_threshold", draws.still * value, "_N")
+    if draws.force is None:
         return fields
-    away = table.force >= table.largest
+    away = draws.force >= draws.largest
     fields["probability_runs_away"] = float(np.mean(away))
     fields["probability_error"] = _error_of_draws(away)
     if share is None:
         return fields
-    fields |= _distribution("safety_factor", _ratio(table.still * value, table.force))
+    fields |= _distribution("safety_factor", _ratio(draws.still * value, draws.force))
     stays = {
-        sign: ~away & (table.force < table.still * (value + sign * error)) for sign in (0, -1, 1)
+        sign: ~away & (draws.force < draws.still * (value + sign * error)) for sign in (0, -1, 1)
     }
     probability = {sign: float(np.mean(one)) for sign, one in stays.items()}
     fields["probability_stays"] = probability[0]
@@ -219,7 +223,7 @@ def _distribution(name: str, draws: np.ndarray, unit: str = "") -> dict[str, Any
     }
 
 
-def _draws(count: int) -> np.ndarray:
+def _normal_numbers(count: int) -> np.ndarray:
     """Draws of independent standard normal numbers, shape (DRAWS, count).
 
     They form a Kronecker sequence.  Its irrational numbers are powers of the root of
@@ -236,66 +240,47 @@ def _draws(count: int) -> np.ndarray:
 
 def _state(request: Request) -> _State:
     contact, motion, still = request.contact, request.motion, request.still
-    amplitude = request.groups[1]
-    largest = still * largest_force(request)
+    amplitude = request.groups[1] or 0.0
     shape: tuple[object, ...] = (contact.pressure,)
     if amplitude and motion.several:
-        shape += tuple(
-            round(one / amplitude, SAME_SHARE) for one in parts(motion, contact).values()
-        )
+        shape += tuple(round(one / amplitude, SAME_SHARE) for one in request.parts.values())
     if motion.stroke is not None and not motion.stroke.columns.keys() <= {"forward", "lateral"}:
         shape += (contact.load, contact.contact_radius)
-    force = request.drive.force
-    return _State(still, largest, amplitude, contact.mu, contact.poisson, force, shape)
+    largest = still * largest_force(request)
+    return _State(contact.mu, still, largest, amplitude, contact.poisson, shape)
 
 
-class _Table:
-    """Closed-form quantities at all draws, interpolated along one input at a time.
-
-    Attributes
-    ----------
-    mu, still, largest, amplitude, poisson, force : np.ndarray, shape (DRAWS,)
-        Fields of a _State at each draw.  The force is None if no force is prescribed.
-    one_shape : bool
-        True if all states have the same `shape`.
-    """
-
-    def __init__(
-        self,
-        centre: _State,
-        inputs: list[UncertainInput],
-        request_at: RequestAt,
-        draws: np.ndarray,
-    ):
-        self.centre = centre
-        self.one_shape = True
-        logarithms = {name: math.log(getattr(centre, name)) for name in ("still", "mu")}
-        logarithms["largest"] = _log(centre.largest)
-        logarithms["amplitude"] = _log(centre.amplitude or 0.0)
-        self.poisson = np.full(DRAWS, centre.poisson)
-        self.force = None if centre.force is None else np.full(DRAWS, centre.force)
-        broken, at_rest = np.zeros((2, DRAWS), dtype=bool)
-        for column, one in zip(draws.T, inputs, strict=True):
-            drawn = one.value + column * one.deviation
-            signed = drawn * math.copysign(1.0, one.value)
-            broken |= (signed <= 0.0) & (one.name in ("mu", "load"))
-            at_rest |= (signed <= 0.0) & (one.name == "amplitude")
-            places, states = _along(one, request_at)
-            self.one_shape &= all(state.shape == centre.shape for state in states)
-            where = np.log(np.maximum(signed, SMALLEST_SHARE * abs(one.value)))
-            for name in logarithms:
-                values = [_log(getattr(state, name) or 0.0) for state in states]
-                change = np.array(values) - _log(getattr(centre, name) or 0.0)
-                logarithms[name] = logarithms[name] + np.interp(where, places, change)
-            change = np.array([state.poisson - centre.poisson for state in states])
-            self.poisson += np.interp(where, places, change)
-            if one.name == "force":
-                self.force = np.maximum(drawn, 0.0)
-        self.mu, self.still, self.largest = (
-            np.where(broken, 0.0, np.exp(logarithms[name]) * np.ones(DRAWS))
-            for name in ("mu", "still", "largest")
-        )
-        self.amplitude = np.where(at_rest, 0.0, np.exp(logarithms["amplitude"] * np.ones(DRAWS)))
+def _at(
+    numbers: np.ndarray, request: Request, inputs: list[UncertainInput], request_at: RequestAt
+) -> _Draws:
+    """The draws, interpolated along one input at a time.  numbers: normal numbers, shape (DRAWS,
+    inputs)."""
+    centre, force, one_shape = _state(request), request.drive.force, True
+    forces = None if force is None else np.full(DRAWS, force)
+    poisson = np.full(DRAWS, centre.poisson)
+    logarithms = {
+        name: np.full(DRAWS, _log(getattr(centre, name)))
+        for name in ("mu", "still", "largest", "amplitude")
+    }
+    broken, at_rest = np.zeros((2, DRAWS), dtype=bool)
+    for column, one in zip(numbers.T, inputs, strict=True):
+        drawn = one.value + column * one.deviation
+        signed = drawn * math.copysign(1.0, one.value)
+        broken |= (signed <= 0.0) & (one.name in ("mu", "load"))
+        at_rest |= (signed <= 0.0) & (one.name == "amplitude")
+        places, states = _along(one, request_at)
+        one_shape &= all(state.shape == centre.shape for state in states)
+        where = np.log(np.maximum(signed, SMALLEST_SHARE * abs(one.value)))
+        for name in logarithms:
+            change = np.array([_log(getattr(state, name)) for state in states])
+            logarithms[name] += np.interp(where, places, change - _log(getattr(centre, name)))
+        change = np.array([state.poisson - centre.poisson for state in states])
+        poisson += np.interp(where, places, change)
+        if one.name == "force":
+            forces = np.maximum(drawn, 0.0)
+    values = {name: np.where(broken, 0.0, np.exp(one)) for name, one in logarithms.items()}
+    values["amplitude"] = np.where(at_rest, 0.0, np.exp(logarithms["amplitude"]))
+    return _Draws(**values, poisson=poisson, force=forces, one_shape=one_shape)
 
 
 SMALLEST_LOGARITHM = -700.0
@@ -343,21 +328,21 @@ def _along(one: UncertainInput, request_at: RequestAt) -> tuple[np.ndarray, list
 
 
 def _static_of(
-    prediction: Prediction, request: Request, table: _Table, ends: Ends, draws: np.ndarray
+    prediction: Prediction, request: Request, draws: _Draws, ends: Ends, numbers: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray]:
-    """mu_static of all draws, and the error estimates."""
+    """mu_static of all draws, and the error estimates.  numbers: as for _at."""
     static, static_error = prediction.mu_static, prediction.mu_static_error
     assert static is not None and static_error is not None  # the motion oscillates
     if not math.isfinite(static):
         return np.full(DRAWS, np.nan), np.full(DRAWS, np.inf)
-    if not table.centre.amplitude:
+    if not request.groups[1]:
         return np.full(DRAWS, static), np.full(DRAWS, static_error)
-    if table.one_shape:
-        centre = (table.centre.amplitude, table.centre.poisson, static, static_error)
-        forces = None if table.force is None else (table.still, table.force)
-        return static_limits(request, centre, table.amplitude, table.poisson, forces)
+    if draws.one_shape:
+        forces = None if draws.force is None else (draws.still, draws.force)
+        centre = static, static_error
+        return static_limits(request, centre, draws.amplitude, draws.poisson, forces)
     value = np.full(DRAWS, static)
-    for column, (low, high) in zip(draws.T, ends.values(), strict=True):
+    for column, (low, high) in zip(numbers.T, ends.values(), strict=True):
         changes = [
             0.0 if one is None or one.mu_static is None else one.mu_static - static
             for one in (low, high)

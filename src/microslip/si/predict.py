@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
+from dataclasses import replace
 from inspect import signature
 from typing import Any
 
@@ -18,20 +19,18 @@ from microslip.si.energy import energy_fields
 from microslip.si.friction_map import MAP
 from microslip.si.prediction import (
     Drift,
-    DrivenBody,
     Prediction,
     Rest,
-    Search,
     Sliding,
     SpinDrift,
     SteadySpin,
-    Travel,
+    columns_of,
 )
 from microslip.si.reduction import reduce_friction
 from microslip.si.regimes import natural_frequency, regime
 from microslip.si.request import Request, request_of
 from microslip.si.static_limit import force_threshold, static_limit
-from microslip.si.uncertain import with_uncertainty, without_uncertainty
+from microslip.si.uncertain import with_uncertainty
 from microslip.si.validity import broken_assumptions, unchecked
 
 MILLIMETRE = 1e-3
@@ -191,11 +190,13 @@ NOTHING: dict[str, Any] = {name: None for name in signature(predict).parameters 
 def predict_arguments(motion: str, arguments: Mapping[str, object]) -> Prediction:
     """The Prediction for a mapping of `predict`'s arguments.  It includes the uncertainty if any
     input is uncertain."""
-    plain, uncertain = without_uncertainty(motion, {**NOTHING, **arguments})
-    prediction = answer_request(request_of(motion, plain))
-    if not uncertain:
-        return prediction
-    return with_uncertainty(prediction, motion, plain, uncertain, answer_request)
+    arguments = {**NOTHING, **arguments}
+    request = request_of(motion, arguments)
+
+    def request_at(changes: Mapping[str, float]) -> Request:
+        return request_of(motion, {**arguments, **changes})
+
+    return with_uncertainty(answer_request(request), request, request_at, answer_request)
 
 
 def answer_request(request: Request) -> Prediction:
@@ -203,7 +204,7 @@ def answer_request(request: Request) -> Prediction:
     parts: dict[str, Any] = {}
     if request.sought is not None:
         solution, error = reduce_friction(request)
-        parts["search"] = Search(request.sought, error)
+        parts |= {"sought": request.sought, "sought_error": error}
         load = solution.contact.load
         request = solution if request.sought != "load" else request.under(load)
     request.check_range()
@@ -222,9 +223,9 @@ def answer_request(request: Request) -> Prediction:
     parts |= _common(request, answer, threshold) | {"velocity": velocity}
     if request.motion.spins and not request.motion.amplitude:
         parts["velocity"] = None
-    most = request.carriers.most_loaded(request.contact)
-    parts["warnings"] = tuple(broken_assumptions(most, request.motion))
-    parts["not_checked"] = tuple(unchecked(most))
+    most = replace(request, contact=request.carriers.most_loaded(request.contact))
+    parts["warnings"] = tuple(broken_assumptions(most))
+    parts["not_checked"] = tuple(unchecked(most.contact))
     if answer.converged:
         parts |= energy_fields(request, answer)
     if request.motion.steady:
@@ -249,24 +250,17 @@ def without_solution(request: Request, reason: str) -> Prediction:
     answer = Result.from_dict(nothing)
     parts = _common(request, answer, None) | _oscillation(request, answer, None)
     parts |= {"velocity": math.nan} | dict.fromkeys(UNKNOWN_WITHOUT[request.sought], math.nan)
-    return Sliding(**parts, search=Search(request.sought, math.nan))
-
-
-def _columns(name: str, one: Estimate | None, unit: float = 1.0, si: str = "") -> dict[str, Any]:
-    """Fields for a quantity and its error.  unit: factor to SI units; si: suffix of the field
-    names."""
-    value, error = (None, None) if one is None else (unit * one.value, unit * one.error)
-    return {f"{name}{si}": value, f"{name}_error{si}": error}
+    return Sliding(**parts, sought=request.sought, sought_error=math.nan)
 
 
 def _common(request: Request, answer: Result, threshold: Estimate | None) -> dict[str, Any]:
     """Fields of every Prediction, except the velocity."""
     contact, still, friction = request.contact, request.still, answer.friction
     return {
-        **_columns("mu_macro", friction),
-        **_columns("mu_apparent", friction, contact.mu),
-        **_columns("friction_force", friction, still, "_N"),
-        **_columns("force_threshold", threshold, still, "_N"),
+        **columns_of("mu_macro", friction),
+        **columns_of("mu_apparent", friction, contact.mu),
+        **columns_of("friction_force", friction, still, "_N"),
+        **columns_of("force_threshold", threshold, still, "_N"),
         "friction_force_still_N": still,
         "force_reduction": 1.0 - friction.value,
         "understood": request.understood,
@@ -300,8 +294,8 @@ def _oscillation(request: Request, answer: Result, limit: Result | None) -> dict
     }
     if limit is None:
         return fields
-    fields |= _columns("mu_static", limit.friction)
-    fields |= _columns("mu_static_apparent", limit.friction, mu)
+    fields |= columns_of("mu_static", limit.friction)
+    fields |= columns_of("mu_static_apparent", limit.friction, mu)
     fields["mu_static_reason"] = limit.reason
     fields["displacement_per_cycle_m"] = motion.known_speed / motion.rate
     fields["displacement_per_cycle_error_m"] = 0.0
@@ -310,16 +304,13 @@ def _oscillation(request: Request, answer: Result, limit: Result | None) -> dict
         drive, spring = request.drive, Spring(**{"stiffness": 0.0} | groups)
         assert answer.amplitude is not None  # the motion oscillates
         widest = answer.amplitude * max(request.carriers.widest, 1.0)
-        fields["body"] = DrivenBody(
-            drive_stiffness_N_m=drive.stiffness,
-            mass_kg=drive.mass,
-            damping_N_s_m=drive.damping,
-            stiffness=groups.get("stiffness"),
-            mass=groups.get("mass"),
-            damping=groups.get("damping"),
-            regime=regime(motion.name, widest, spring),
-            natural_frequency=natural_frequency(spring),
-        )
+        fields |= groups | {
+            "drive_stiffness_N_m": drive.stiffness,
+            "mass_kg": drive.mass,
+            "damping_N_s_m": drive.damping,
+            "regime": regime(motion.name, widest, spring),
+            "natural_frequency": natural_frequency(spring),
+        }
     return fields
 
 
@@ -340,8 +331,10 @@ def _under_force(request: Request, answer: Result, threshold: Estimate | None) -
         fields["displacement_per_cycle_error_m"] = speed_error / motion.rate
     if fields["outcome"] == "moves":
         share = error / (velocity - error)  # largest relative error of a time
-        times = [way / speed for way in (MILLIMETRE, request.contact.contact_radius)]
-        fields["travel"] = Travel(times[0], times[0] * share, times[1], times[1] * share)
+        ways = {"1_mm": MILLIMETRE, "contact_radius": request.contact.contact_radius}
+        for name, way in ways.items():
+            fields[f"time_to_{name}_s"] = way / speed
+            fields[f"time_to_{name}_error_s"] = way / speed * share
     return fields
 
 

@@ -8,9 +8,10 @@ the columns used in JSON output and in tables.  The columns are the same for all
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field, fields
+from dataclasses import dataclass, field
 from typing import Any
 
+from microslip.estimate.estimate import Estimate
 from microslip.foundation.errors import InputError
 from microslip.si.prediction_text import prediction_text
 
@@ -40,9 +41,6 @@ COLUMNS = tuple(_NAMES.split())
 """Names of the columns in JSON output and in tables, in order."""
 EMPTY: dict[str, Any] = dict.fromkeys(COLUMNS) | {"mu_static_reason": "", "displacement_reason": ""}
 """Default values of missing columns."""
-PARTS = ("body", "travel", "search", "power", "wear", "uncertainty")
-"""Fields that contain a record, which has its own columns."""
-
 UNITS = {
     **{"_N_m": "N m", "_N_s_m": "N s m-1", "_m_s": "m s-1", "_rad_s": "rad s-1", "_Pa": "Pa"},
     **{"_Hz": "Hz", "_kg": "kg", "_rad": "rad", "_W": "W", "_J": "J", "_N": "N", "_m": "m"},
@@ -52,105 +50,19 @@ UNITS = {
 OTHER_UNITS = {"drive_stiffness_N_m": "N m-1", "time_to_1_mm_s": "s"}
 
 
-def unit_of(column: str) -> str:
+def column_unit(column: str) -> str:
     """SI unit of a column, "1" if it is dimensionless."""
     ends = (unit for end, unit in UNITS.items() if column.endswith(end))
     return OTHER_UNITS.get(column) or next(ends, "1")
 
 
-@dataclass(frozen=True)
-class DrivenBody:
-    """A body on a spring, or with a mass.
-
-    Attributes
-    ----------
-    drive_stiffness_N_m, mass_kg, damping_N_s_m : float or None
-        Stiffness of the spring (N/m), mass (kg) and damping (N s/m).  A missing part is None.
-    stiffness, mass, damping : float or None
-        Dimensionless stiffness, mass and damping, as in microslip.solve.
-    regime : str
-        A key of regimes.REGIMES.
-    natural_frequency : float or None
-        Natural frequency of the mass on the spring and the sticking contact, divided by the
-        frequency of the oscillation; None without a mass.
-    """
-
-    drive_stiffness_N_m: float | None
-    mass_kg: float | None
-    damping_N_s_m: float | None
-    stiffness: float | None
-    mass: float | None
-    damping: float | None
-    regime: str
-    natural_frequency: float | None
-
-
-@dataclass(frozen=True)
-class Travel:
-    """Times to travel 1 mm and one contact radius under a force, and their error estimates, s."""
-
-    time_to_1_mm_s: float
-    time_to_1_mm_error_s: float
-    time_to_contact_radius_s: float
-    time_to_contact_radius_error_s: float
-
-
-@dataclass(frozen=True)
-class Search:
-    """A search for the quantity that gives the requested reduction of friction.
-
-    Attributes
-    ----------
-    sought : str
-        "amplitude", "speed" or "load".
-    sought_error : float
-        Error estimate of this quantity, in its SI unit.
-    """
-
-    sought: str
-    sought_error: float
-
-
-@dataclass(frozen=True)
-class Power:
-    """Mean power of the oscillation or of the spin, and the dissipated energy.
-
-    Attributes
-    ----------
-    vibration_power_W, vibration_power_error_W : float or None
-        Mean power of the oscillation or of the spin, W.  It is None with a dashpot, because the
-        dashpot dissipates an unknown part of this power.
-    dissipated_power_W, dissipated_power_error_W : float
-        Mean power dissipated by friction, W.  Without a dashpot, it is the sum of the oscillation's
-        power and the drag power.
-    energy_per_cycle_J, energy_per_cycle_error_J : float
-        Energy dissipated by friction per period or per turn, J.
-    """
-
-    vibration_power_W: float | None
-    vibration_power_error_W: float | None
-    dissipated_power_W: float
-    dissipated_power_error_W: float
-    energy_per_cycle_J: float
-    energy_per_cycle_error_J: float
-
-
-@dataclass(frozen=True)
-class Wear:
-    """Wear of a body per period or per turn, by Archard's law.
-
-    Attributes
-    ----------
-    wear_volume_per_cycle_m3, wear_volume_per_cycle_error_m3 : float
-        Worn volume, m^3: the wear coefficient times the dissipated energy, divided by mu.
-    wear_depth_per_cycle_m, wear_depth_per_cycle_error_m : float
-        Mean worn depth over the contact area, m.
-    """
-
-    wear_volume_per_cycle_m3: float
-    wear_volume_per_cycle_error_m3: float
-    wear_depth_per_cycle_m: float
-    wear_depth_per_cycle_error_m: float
+def columns_of(
+    name: str, estimate: Estimate | None, unit: float = 1.0, suffix: str = ""
+) -> dict[str, Any]:
+    """Columns for a quantity and its error.  unit: factor to SI units; suffix: end of the column
+    names."""
+    pair = (None, None) if estimate is None else (unit * estimate.value, unit * estimate.error)
+    return dict(zip((f"{name}{suffix}", f"{name}_error{suffix}"), pair, strict=True))
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -206,11 +118,19 @@ class Prediction:
         Assumptions of the theory that the contact violates.
     not_checked : tuple of str
         Checks that were skipped because a property is missing.
-    power : Power or None
-        Power of the spin or of the oscillation, and dissipated energy; None if the answer is not
-        converged.
-    wear : Wear or None
-        Wear per cycle, if the user gave a wear coefficient.
+    vibration_power_W, vibration_power_error_W : float or None
+        Mean power of the oscillation or of the spin, W.  It is None with a dashpot, because the
+        dashpot dissipates an unknown part of this power.
+    dissipated_power_W, dissipated_power_error_W : float or None
+        Mean power dissipated by friction, W.  Without a dashpot, it is the sum of the oscillation's
+        power and the drag power.  It is None if the answer is not converged.
+    energy_per_cycle_J, energy_per_cycle_error_J : float or None
+        Energy dissipated by friction per period or per turn, J.
+    wear_volume_per_cycle_m3, wear_volume_per_cycle_error_m3 : float or None
+        Worn volume of a body per period or per turn by Archard's law, m^3: the wear coefficient
+        times the dissipated energy, divided by mu.
+    wear_depth_per_cycle_m, wear_depth_per_cycle_error_m : float or None
+        Mean worn depth over the contact area, m.
     uncertainty : mapping
         Standard uncertainties, 95 % intervals and probabilities of the outcomes for uncertain
         inputs, by column.  The columns are NAME_spread, NAME_low and NAME_high, `interval_method`
@@ -248,8 +168,16 @@ class Prediction:
     reason: str
     warnings: tuple = ()
     not_checked: tuple = ()
-    power: Power | None = None
-    wear: Wear | None = None
+    vibration_power_W: float | None = None
+    vibration_power_error_W: float | None = None
+    dissipated_power_W: float | None = None
+    dissipated_power_error_W: float | None = None
+    energy_per_cycle_J: float | None = None
+    energy_per_cycle_error_J: float | None = None
+    wear_volume_per_cycle_m3: float | None = None
+    wear_volume_per_cycle_error_m3: float | None = None
+    wear_depth_per_cycle_m: float | None = None
+    wear_depth_per_cycle_error_m: float | None = None
     uncertainty: Mapping[str, Any] = field(default_factory=dict)
 
     @property
@@ -259,17 +187,14 @@ class Prediction:
 
     def to_dict(self) -> dict[str, Any]:
         """All columns as a plain dict."""
-        own = {one.name: getattr(self, one.name) for one in fields(self)}
-        parts = [own.pop(name, None) or {} for name in PARTS]
-        flat = EMPTY | own | {"counterbody": self.counterbody}
-        for part in parts:
-            flat |= part if isinstance(part, Mapping) else vars(part)
-        return flat | {name: list(flat[name]) for name in ("warnings", "not_checked")}
+        columns = EMPTY | vars(self) | {"counterbody": self.counterbody}
+        columns |= columns.pop("uncertainty")
+        return columns | {name: list(columns[name]) for name in ("warnings", "not_checked")}
 
     def __getattr__(self, name: str) -> Any:
         if name not in EMPTY:
             raise AttributeError(f"{type(self).__name__} has no column {name!r}")
-        return self.to_dict()[name]
+        return self.uncertainty.get(name, EMPTY[name])
 
     def __str__(self) -> str:
         """The lines that `microslip predict` prints."""
@@ -299,8 +224,15 @@ class Oscillating(Prediction):
         Why the error of mu_static is above its tolerance; else empty.
     displacement_per_cycle_m, displacement_per_cycle_error_m : float
         Mean forward displacement in a period of the oscillation, m.
-    body : DrivenBody or None
-        The body, if it is on a spring or has a mass.
+    drive_stiffness_N_m, mass_kg, damping_N_s_m : float or None
+        Stiffness of the spring (N/m), mass (kg) and damping (N s/m).  A missing part is None.
+    stiffness, mass, damping : float or None
+        Dimensionless stiffness, mass and damping, as in microslip.solve.
+    regime : str or None
+        A key of regimes.REGIMES; None without a spring and a mass.
+    natural_frequency : float or None
+        Natural frequency of the mass on the spring and the sticking contact, divided by the
+        frequency of the oscillation; None without a mass.
     """
 
     amplitude_si: float | None
@@ -317,21 +249,37 @@ class Oscillating(Prediction):
     mu_static_reason: str = ""
     displacement_per_cycle_m: float | None = None
     displacement_per_cycle_error_m: float | None = None
-    body: DrivenBody | None = None
+    drive_stiffness_N_m: float | None = None
+    mass_kg: float | None = None
+    damping_N_s_m: float | None = None
+    stiffness: float | None = None
+    mass: float | None = None
+    damping: float | None = None
+    regime: str | None = None
+    natural_frequency: float | None = None
 
 
 @dataclass(frozen=True, kw_only=True)
 class Sliding(Oscillating):
-    """Friction at a prescribed speed.  `search` is set if a reduction was requested."""
+    """Friction at a prescribed speed.
 
-    search: Search | None = None
+    Attributes
+    ----------
+    sought : str or None
+        "amplitude", "speed" or "load" if a reduction was requested.
+    sought_error : float or None
+        Error estimate of this quantity, in its SI unit.
+    """
+
+    sought: str | None = None
+    sought_error: float | None = None
 
     @property
     def sought_value(self) -> float | None:
         """The result of a search in its SI unit.  It is NaN if there is no solution, and None
         without a search."""
         values = {"amplitude": self.amplitude_si, "speed": self.speed_m_s, "load": self.load_N}
-        return None if self.search is None else values[self.search.sought]
+        return None if self.sought is None else values[self.sought]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -366,8 +314,10 @@ class Forced(Prediction):
         Error estimates of speed_m_s and velocity.
     safety_factor, safety_factor_error : float or None
         Force threshold divided by the force; None if the threshold is unknown.
-    travel : Travel or None
-        Travel times if the contact moves, otherwise None.
+    time_to_1_mm_s, time_to_1_mm_error_s : float or None
+        Time to travel 1 mm, s; None if the contact does not move.
+    time_to_contact_radius_s, time_to_contact_radius_error_s : float or None
+        Time to travel one contact radius, s.
     """
 
     force_N: float
@@ -377,7 +327,10 @@ class Forced(Prediction):
     velocity_error: float
     safety_factor: float | None = None
     safety_factor_error: float | None = None
-    travel: Travel | None = None
+    time_to_1_mm_s: float | None = None
+    time_to_1_mm_error_s: float | None = None
+    time_to_contact_radius_s: float | None = None
+    time_to_contact_radius_error_s: float | None = None
 
 
 @dataclass(frozen=True, kw_only=True)

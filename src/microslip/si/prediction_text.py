@@ -7,11 +7,7 @@ from collections.abc import Callable
 from typing import Any
 
 from microslip.foundation.number_text import ROUNDING, interval_text, number_text
-from microslip.si.motions import (
-    has_several_amplitudes,
-    is_along_the_drive,
-    unit_of_amplitude,
-)
+from microslip.si.motions import kind_of
 from microslip.si.printed_lines import (
     EXCLUDED,
     FIRST_ORDER,
@@ -99,7 +95,7 @@ def prediction_text(record: Any) -> str:
     lines += ["", *show("contact radius", "{contact_radius_m}")]
     lines += show("indentation", "{indentation_m}", not math.isnan(record.indentation_m))
     lines += show("u_lim", "{u_lim_m}") + show("largest pressure", pressure)
-    several = has_several_amplitudes(record.motion)
+    several = kind_of(record.motion).several
     lines += show("amplitude", "{size}, dimensionless {amplitude}", not several)
     lines += show("amplitude", "the largest is dimensionless {amplitude}", several)
     lines += show("velocity", "dimensionless {velocity}", not forced)
@@ -116,7 +112,7 @@ def prediction_text(record: Any) -> str:
     lines += _spread(record, show)
     lines += show("torque", "{torque_N_m}")
     lines += show("power", "{vibration_power_W} for the {added}")
-    lines += show("", "{drag_power_W} for the drag", record.power is not None)
+    lines += show("", "{drag_power_W} for the drag", record.dissipated_power_W is not None)
     lines += show("energy", "{energy_per_cycle_J} of heat a cycle")
     lines += show("wear", "{wear_depth_per_cycle_m} a cycle, mean depth over the contact")
     lines += not_converged(record)
@@ -134,7 +130,7 @@ def _friction(record: Any, show: Show) -> list[str]:
     static = "{mu_static_apparent}: coefficient of friction at vanishing speed"
     lines += show("static friction", static) + show("", "{mu_static_apparent_interval}")
     if record.mu_static is not None:
-        threshold, along = record.force_threshold_N, is_along_the_drive(record.motion)
+        threshold, along = record.force_threshold_N, kind_of(record.motion).along_the_drive
         lines += show("", UNKNOWN_THRESHOLD, threshold is None and along)
         apart = threshold is not None and not _moves_at_static_friction(record)
         lines += show("", ALONG_THE_DRIVE, apart)
@@ -214,7 +210,7 @@ def _spread(record: Any, show: Show) -> list[str]:
     text = "standard uncertainties from the uncertain inputs"
     if record.sought is not None:
         parts.insert(0, "{sought_spread_text} of the {sought}")
-    if record.power is not None:
+    if record.dissipated_power_W is not None:
         text += "; not computed for torque, power and energy"
     return show("spread", f"{', '.join(parts)}: {text}")
 
@@ -239,7 +235,7 @@ class _Texts(dict[str, Any]):
         if record.contact_radius_m >= LARGEST_NUMBER * length[1]:
             unit = unit_for(record.contact_radius_m, LENGTHS)
             self["contact_radius_m"] = in_unit(record.contact_radius_m, 0.0, unit)
-        turned = ("rad", 1.0) if unit_of_amplitude(record.motion) == "rad" else length
+        turned = ("rad", 1.0) if kind_of(record.motion).unit == "rad" else length
         if record.amplitude_si is not None:
             self["size"] = in_unit(record.amplitude_si, 0.0, turned)
         if record.sought is not None:

@@ -6,7 +6,7 @@ import math
 from decimal import Decimal
 from typing import Any
 
-from microslip.foundation.number_text import error_text, number_text
+from microslip.foundation.number_text import EXACT_DIGITS, error_text, number_text
 
 WIDTH = 18
 """Width of the name at the start of a line, in characters."""
@@ -50,11 +50,17 @@ def unit_for(value: float, units: tuple, least: float = 1.0) -> tuple[str, float
     return next((one for one in units if abs(value) >= least * one[1]), units[-1])
 
 
-def prefixed(value: float, base: str, least: float = 1.0) -> tuple[str, float]:
-    """The unit with the largest metric prefix that leaves the value at least `least`.  For 0, the
-    unit has no prefix."""
-    prefix, size = unit_for(value or 1.0, PREFIXES, least)
+def prefixed(value: float, base: str) -> tuple[str, float]:
+    """The unit with the largest metric prefix that leaves the value at least 1.  For 0, the unit
+    has no prefix."""
+    prefix, size = unit_for(value or 1.0, PREFIXES)
     return f"{prefix}{base}", size
+
+
+def prefixed_text(value: float, base: str, digits: int = EXACT_DIGITS) -> str:
+    """Format an exact quantity in the unit with this prefix.  value: in the SI unit `base`."""
+    name, size = prefixed(value, base)
+    return number_text(value / size, unit=name, digits=digits)
 
 
 def force_unit(newtons: float) -> tuple[str, float]:

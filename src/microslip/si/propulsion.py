@@ -12,12 +12,11 @@ from microslip.adaptive.checks import checked_propulsion
 from microslip.adaptive.propulsion import POINTS, PROPELS_NOTHING, PropulsionLine, propulsion
 from microslip.foundation.arguments import LARGEST
 from microslip.foundation.errors import InputError
-from microslip.si.dimensionless import RealMotion
-from microslip.si.inputs import read_argument, read_bodies, read_contact
+from microslip.si.dimensionless import MovingContact, RealMotion
+from microslip.si.inputs import contact_of, read_inputs
 from microslip.si.printed_lines import force_unit, in_unit
 from microslip.si.propulsion_text import propulsion_text
 from microslip.si.quantities import read
-from microslip.si.uncertain import refuse_uncertainty
 from microslip.si.validity import broken_assumptions, unchecked
 
 TOLERANCE = 1e-2
@@ -153,15 +152,14 @@ def predict_propulsion(
         If an argument is missing, out of range or not allowed.
     """
     arguments = dict(locals())
-    refuse_uncertainty(arguments, "propulsion")
     for name in ("amplitude", "frequency"):
         if arguments[name] is None:
             raise InputError(name, None, "needed")
-    size, rate = read("amplitude", amplitude, "m"), read_argument("frequency", frequency)
+    inputs = read_inputs(arguments)
+    size, rate = (inputs.quantities[name].si for name in ("amplitude", "frequency"))
     accepted = read("tolerance", tolerance, "", low_open=False)
-    spheres = dict.fromkeys(("radius_across", "contact_radius", "pressure"))
-    contact, understood = read_contact(read_bodies(arguments), arguments | spheres, load=load)
-    group = size.si / contact.u_lim
+    contact = contact_of(inputs)
+    group = size / contact.u_lim
     if not group <= LARGEST["amplitude"]:
         allowed = f"{group:.3g} times u_lim; allowed is at most {LARGEST['amplitude']:g} times"
         raise InputError("amplitude", amplitude, allowed)
@@ -170,17 +168,17 @@ def predict_propulsion(
         raise InputError("motion", motion, "allowed is a motion without a rotation")
     line = propulsion(motion, group, poisson=contact.poisson, tolerance=accepted.si, points=points)
     newtons = contact.mu * contact.load * problem.mean_load
-    speed = 2.0 * math.pi * rate.si * contact.u_lim
+    speed = 2.0 * math.pi * rate * contact.u_lim
     fastest = speed * float(np.max(np.abs(line.velocity), initial=0.0))
-    real = RealMotion(motion, fastest, size.si, rate.si)
+    real = RealMotion(motion, "m", fastest, size, rate)
     holding, reason = _holding_forces(line, newtons)
     return RealPropulsionLine(
-        understood=understood | {"motion": motion, "amplitude": size.text, "frequency": rate.text},
+        understood={"motion": motion} | inputs.texts,
         motion=motion,
         contact_radius_m=contact.contact_radius,
         u_lim_m=contact.u_lim,
-        amplitude_m=size.si,
-        frequency_Hz=rate.si,
+        amplitude_m=size,
+        frequency_Hz=rate,
         amplitude=group,
         no_load_speed_m_s=speed * line.no_load_velocity,
         no_load_speed_error_m_s=speed * line.no_load_velocity_error,
@@ -192,7 +190,7 @@ def predict_propulsion(
         **_in_si(line, newtons * speed, "W", "power_out", "power_in"),
         converged=line.converged,
         reason=reason,
-        warnings=tuple(broken_assumptions(contact, real)),
+        warnings=tuple(broken_assumptions(MovingContact(contact, real))),
         not_checked=tuple(unchecked(contact)),
     )
 

@@ -73,10 +73,13 @@ class Quantity:
     text : str
         The user's text.  The SI value is appended if the unit is of another kind, such as turns for
         an angle, or revolutions per minute for a frequency.
+    deviation : float or None
+        Standard uncertainty in the SI unit; None if the value is exact.
     """
 
     si: float
     text: str
+    deviation: float | None = None
 
 
 def read(

@@ -8,7 +8,6 @@ from dataclasses import dataclass
 
 from microslip.foundation.errors import InputError
 from microslip.foundation.number_text import number_text
-from microslip.si.dimensionless import groups
 from microslip.si.request import Request
 
 LARGEST_AMPLITUDE = 1e4
@@ -34,17 +33,15 @@ class _NoAnswerError(Exception):
 
 @dataclass(frozen=True)
 class _Line:
-    """A one-parameter family of requests with decreasing friction.  The parameter is a real number,
+    """Values of the quantity of a search, with decreasing friction, as a function of a real number,
     called the place.
 
     Attributes
     ----------
-    at : callable
-        Function at(place) -> Request.
-    low, start, high : float
-        First place of the search, initial guess of the bracket's upper end, and last place.
     size : callable
         Function size(place) -> the quantity in its SI unit.
+    low, start, high : float
+        First place of the search, initial guess of the bracket's upper end, and last place.
     every, none : str
         Subjects of two error messages.  If the reduction is already too large at `low`, the subject
         is `every`.  If the reduction is too small everywhere, the subject is `none`.
@@ -54,11 +51,10 @@ class _Line:
         Derivative of log(size) with respect to the place.
     """
 
-    at: Callable[[float], Request]
+    size: Callable[[float], float]
     low: float
     start: float
     high: float
-    size: Callable[[float], float]
     every: str
     none: str
     end: float | None = None
@@ -83,17 +79,18 @@ def reduce_friction(request: Request) -> tuple[Request, float]:
     """
     from scipy.optimize import brentq
 
-    share, tolerance = request.share, request.tolerance
-    reduction = request.arguments["reduction"]
+    share, tolerance = request.inputs.si("reduction"), request.tolerance
+    reduction = request.inputs.arguments["reduction"]
     assert share is not None and request.sought is not None  # the request has a reduction
     _check_share(request, share)
-    line = _LINES[request.sought](request, share)
+    sought: str = request.sought
+    line = _LINES[sought](request, share)
     last, error, reductions = request, 0.0, []
 
     def excess(place: float) -> float:
         """mu_macro minus the requested mu_macro."""
         nonlocal last, error
-        last = line.at(place)
+        last = request.at(**{sought: line.size(place)})
         answer = last.solve(last.groups[0], tolerance)
         friction, error = answer.mu_macro, answer.mu_macro_error
         if not math.isfinite(friction):
@@ -125,7 +122,8 @@ def reduce_friction(request: Request) -> tuple[Request, float]:
         return last, math.nan
     steep = [slope / STRIDE for slope in slopes if slope > 0.0]
     place_error = (abs(here) + error_here) / min(steep) if steep else math.inf
-    return line.at(place), line.rate * line.size(place) * place_error
+    size = line.size(place)
+    return request.at(**{sought: size}), line.rate * size * place_error
 
 
 def _check_share(request: Request, share: float) -> None:
@@ -139,7 +137,7 @@ def _check_share(request: Request, share: float) -> None:
         allowed = f"allowed is at most {100.0 * (1.0 - tolerance):g} %, 100 % minus the tolerance"
         allowed += ": at a speed some friction remains"
     if allowed:
-        raise InputError("reduction", request.arguments["reduction"], allowed)
+        raise request.inputs.error("reduction", allowed)
 
 
 def _amplitudes(request: Request, _share: float) -> _Line:
@@ -148,28 +146,26 @@ def _amplitudes(request: Request, _share: float) -> _Line:
     unit = contact.u_lim / (contact.contact_radius if request.motion.spins else 1.0)
     name = "u_lim divided by the contact radius" if request.motion.spins else "u_lim"
     return _Line(
-        lambda place: request.at(amplitude=unit * math.exp(place)),
+        lambda place: unit * math.exp(place),
         math.log(SMALLEST_AMPLITUDE),
         0.0,
         math.log(LARGEST_AMPLITUDE),
-        lambda place: unit * math.exp(place),
         f"the smallest amplitude of the search, {SMALLEST_AMPLITUDE:g} times {name},",
         f"no amplitude up to {LARGEST_AMPLITUDE:g} times {name}",
     )
 
 
 def _speeds(request: Request, _share: float) -> _Line:
-    """A line of requests with decreasing speeds.  The place is minus the logarithm of the speed."""
+    """The line of decreasing speeds.  The place is minus the logarithm of the speed."""
     size, unit = request.groups[1], request.speed_unit
     if not request.motion.spins and size is not None:
         unit *= max(1.0, size)  # at large amplitudes the speed of the vibration is the unit
     slowest, fastest = SPEEDS
     return _Line(
-        lambda place: request.at(speed=unit * math.exp(-place)),
+        lambda place: unit * math.exp(-place),
         -math.log(fastest),
         0.0,
         -math.log(slowest),
-        lambda place: unit * math.exp(-place),
         f"the largest speed of the search, {fastest * unit:.2g} m/s,",
         "no speed",
         math.inf,
@@ -181,31 +177,25 @@ def _loads(request: Request, share: float) -> _Line:
 
     The dimensionless amplitude is a power of the load, with a negative exponent.
     """
-    contact, motion = request.contact, request.motion
-
-    def size_at(load: float) -> float:
-        size = groups(motion, contact.with_load(load))[1]
-        assert size is not None  # the motion oscillates
-        return size
-
-    here = contact.load
-    if not size_at(here) > 0.0:
-        raise InputError("amplitude", motion.amplitude, "allowed is above 0 with a reduction")
-    power = math.log(size_at(here) / size_at(8.0 * here)) / math.log(8.0)
+    load = request.contact.load
+    size, smaller = (request.at(load=one).groups[1] for one in (load, 8.0 * load))
+    assert size is not None and smaller is not None  # the motion oscillates
+    if not size > 0.0:
+        raise request.inputs.error("amplitude", "allowed is above 0 with a reduction")
+    power = math.log(size / smaller) / math.log(8.0)
 
     def load_at(place: float) -> float:
-        return here * (size_at(here) / math.exp(place)) ** (1.0 / power)
+        return load * (size / math.exp(place)) ** (1.0 / power)
 
     # Under a large load nothing slips, and under a small load the dimensionless velocity of a bore
     # is large.  The reduction is largest in between.  Small steps from large loads downwards find
     # the first load with the requested reduction.
     low, high = math.log(SMALLEST_AMPLITUDE), math.log(LARGEST_AMPLITUDE)
     return _Line(
-        lambda place: request.at(contact=contact.with_load(load_at(place))),
+        load_at,
         low,
         math.log(0.01 * share),
         high,
-        load_at,
         f"the largest load of the search, {load_at(low):.2g} N,",
         f"no load of the search, down to {load_at(high):.2g} N,",
         rate=1.0 / power,

@@ -19,7 +19,7 @@ from __future__ import annotations
 import math
 
 from microslip.motions.drive import Drive
-from microslip.si.motions import is_along_the_drive
+from microslip.si.motions import kind_of
 
 SAME = 0.01
 """Largest difference in mu_macro between two drives that count as equivalent."""
@@ -54,7 +54,7 @@ def regime(motion: str, amplitude: float, drive: Drive) -> str:
     drive : drive.Drive
         Dimensionless stiffness, mass and damping.
     """
-    first, further = (1, ALONG) if is_along_the_drive(motion) else (2, 1.0)
+    first, further = (1, ALONG) if kind_of(motion).along_the_drive else (2, 1.0)
     swings = [n * first for n in range(1, HARMONICS + 1)]
     answers = [math.hypot(drive.stiffness - drive.mass * n * n, drive.damping * n) for n in swings]
     if min(answers) >= STIFFER * CONTACT_STIFFNESS * further:

@@ -13,34 +13,22 @@ from microslip.adaptive.point import Result, solve
 from microslip.foundation.arguments import LARGEST, SMALLEST_TOLERANCE
 from microslip.foundation.errors import InputError, shown
 from microslip.foundation.named_files import speaks_of_file
-from microslip.motions.motion import Motion
 from microslip.motions.problem import Problem
-from microslip.si import motions
-from microslip.si.bodies import TwoBodies
-from microslip.si.dimensionless import (
-    RealDrive,
-    RealMotion,
-    drive_groups,
-    full_friction,
-    groups,
-    solver_motion,
-    speed_unit,
-)
+from microslip.si.dimensionless import MovingContact, RealDrive
 from microslip.si.friction_map import REFUSED, FrictionMap
 from microslip.si.inputs import (
     DRIVE_FIELDS,
-    Arguments,
-    Body,
-    read_argument,
-    read_bodies,
-    read_contact,
-    read_drive,
-    read_motion,
+    Inputs,
+    check_motion_and_drive,
+    contact_of,
+    drive_of,
+    motion_of,
+    read_inputs,
     with_stroke,
 )
+from microslip.si.motions import kind_of
 from microslip.si.quantities import read
 from microslip.si.several import Carriers, read_carriers
-from microslip.si.strokes import read_stroke
 
 LARGEST_TOLERANCE = 0.1
 """Largest allowed tolerance, absolute for mu_macro and relative for a speed."""
@@ -57,42 +45,37 @@ NOT_FINITE = "is beyond the range of floating-point numbers; allowed are sizes o
 
 
 @dataclass(frozen=True, eq=False)
-class Request:
+class Request(MovingContact):
     """A contact with its motion and its drive, as requested from `predict`.
 
     Attributes
     ----------
-    arguments : Mapping
-        Arguments of `predict`, as the user wrote them.
-    bodies : tuple of Body
-        Bodies of the contact.
-    contact, motion, drive : TwoBodies, RealMotion, RealDrive
-        The contact, its motion and the drive of the body, in SI units.
+    inputs : Inputs
+        Arguments of `predict`.
+    drive : RealDrive
+        The drive of the body.
     carriers : several.Carriers
         All contacts of the body.  The load of `contact` is their mean load.
-    sought, share : str or None, float or None
-        Name of the quantity that a search determines, and the requested reduction of friction, from
-        0 to 1.
+    sought : str or None
+        Name of the quantity that a search determines.
     tolerance : float
         Accepted error of mu_macro, or accepted relative error of the speed under a force.
     understood : dict of str
         The arguments as the user wrote them, by name.
     """
 
-    arguments: Arguments
-    bodies: tuple[Body, Body]
-    contact: TwoBodies
-    motion: RealMotion
+    inputs: Inputs
     drive: RealDrive
     carriers: Carriers
     sought: str | None
-    share: float | None
     tolerance: float
     understood: dict[str, str]
 
     def at(self, **changes: Any) -> Request:
-        """A copy with changed fields of the motion, or with another `contact`."""
-        contact = changes.pop("contact", self.contact)
+        """A copy with changed fields of the motion, or with another load, N."""
+        contact = self.contact
+        if "load" in changes:
+            contact = contact.with_load(changes.pop("load"))
         return replace(self, contact=contact, motion=replace(self.motion, **changes))
 
     def under(self, load: float) -> Request:
@@ -101,37 +84,21 @@ class Request:
         Raises InputError if Hertz's theory does not apply under this load.
         """
         try:
-            contact, _ = read_contact(self.bodies, self.arguments, load=load)
+            contact = contact_of(self.inputs, load)
         except InputError as error:
             problem = f"it takes a load of {load:.3g} N; {error}"
-            raise InputError("reduction", self.arguments["reduction"], problem) from None
+            raise self.inputs.error("reduction", problem) from None
         return replace(self, contact=contact)
 
     @cached_property
     def still(self) -> float:
         """Friction of all contacts without vibration, N: mu times the mean normal load."""
-        return full_friction(self.motion, self.contact) * self.carriers.count
-
-    @property
-    def speed_unit(self) -> float:
-        """Forward speed, m/s, at which the dimensionless velocity is 1."""
-        return speed_unit(self.motion, self.contact)
-
-    @cached_property
-    def groups(self) -> tuple[float | None, float | None]:
-        """Velocity and amplitude for microslip.solve.  A missing value is None."""
-        return groups(self.motion, self.contact)
+        return self.full_friction * self.carriers.count
 
     @cached_property
     def drive_groups(self) -> dict[str, float]:
         """Force, stiffness, mass and damping for microslip.solve, for one contact."""
-        return drive_groups(self.carriers.share_of(self.drive), self.motion, self.contact)
-
-    @property
-    def wear_coefficient(self) -> float | None:
-        """Wear coefficient, m^2/N, or None."""
-        value = self.arguments["wear_coefficient"]
-        return None if value is None else read_argument("wear_coefficient", value).si
+        return self.drive.groups(self, self.carriers.count)
 
     @cached_property
     def map(self) -> FrictionMap | None:
@@ -139,12 +106,12 @@ class Request:
 
         Raises InputError if it is not a map of this motion, this pressure and this drive.
         """
-        dataset = self.arguments["map"]
+        dataset = self.inputs.arguments["map"]
         if dataset is None:
             return None
         for name in REFUSED:
-            if self.arguments[name] is not None:
-                raise InputError(name, self.arguments[name], "allowed only without a map")
+            if self.inputs.arguments[name] is not None:
+                raise self.inputs.error(name, "allowed only without a map")
         if self.motion.stroke is not None:
             allowed = "not allowed for a motion from a file: no map has its unit of the amplitude"
             raise InputError("map", self.motion.name, allowed)
@@ -157,11 +124,6 @@ class Request:
         """
         settings: dict[str, Any] = {"contacts": self.carriers.text} | self.settings
         return checked_driven_problem(self.solver_motion, 0.0, self.groups[1], **settings)
-
-    @property
-    def solver_motion(self) -> str | Motion:
-        """The motion for microslip.solve, as text or as an object."""
-        return solver_motion(self.motion, self.contact)
 
     @property
     def settings(self) -> dict[str, Any]:
@@ -216,40 +178,37 @@ class Request:
     def _in_si(self, error: InputError) -> InputError:
         """Return a copy of the error in which `predict`'s argument replaces the solver's
         argument."""
-        name = ARGUMENTS.get(error.argument)
-        if name is None or self.arguments[name] is None:
+        name = ARGUMENTS.get(error.argument, "")
+        if name not in self.inputs.quantities:
             return error
         group = f"{error.value:.6g}" if isinstance(error.value, float) else shown(error.value)
-        return InputError(name, self.arguments[name], f"dimensionless {group}: {error.allowed}")
+        return self.inputs.error(name, f"dimensionless {group}: {error.allowed}")
 
     def check_range(self) -> None:
         """Raise InputError for an argument whose dimensionless group is out of range."""
-        arguments, (velocity, size) = self.arguments, self.groups
+        velocity, size = self.groups
         if velocity is not None and not math.isfinite(velocity):
-            raise InputError(
-                "speed", arguments["speed"], f"divided by that of the vibration {NOT_FINITE}"
-            )
+            raise self.inputs.error("speed", f"divided by that of the vibration {NOT_FINITE}")
         most = LARGEST["amplitude"]
         if (self.motion.load_amplitude or 0.0) > most * self.contact.load:
             allowed = f"allowed is at most {most:g} times the load"
-            raise InputError("load_amplitude", arguments["load_amplitude"], allowed)
+            raise self.inputs.error("load_amplitude", allowed)
         if size is not None and not size <= most:
             unit = "the angle at which the stick radius is half the contact radius"
             if not self.motion.spins:
                 unit = f"the {self.contact.u_lim:.3g} m at which the whole contact slides"
             allowed = f"{size:.3g} times {unit}; allowed is at most {most:g} times"
-            raise InputError("amplitude", arguments["amplitude"], allowed)
+            raise self.inputs.error("amplitude", allowed)
         for name, value in self.drive_groups.items():
             if not math.isfinite(value):
-                argument = ARGUMENTS[name]
                 problem = f"divided by that of the contact {NOT_FINITE}"
-                raise InputError(argument, arguments[argument], problem)
+                raise self.inputs.error(ARGUMENTS[name], problem)
 
 
-def request_of(motion: str, arguments: Arguments) -> Request:
+def request_of(motion: str, arguments: Mapping[str, Any]) -> Request:
     """The Request for a mapping of all arguments of `predict`.  Raises InputError."""
     if speaks_of_file(motion):
-        arguments = with_stroke(read_stroke(motion), arguments)
+        arguments = with_stroke(motion, arguments)
     for name, value in arguments.items():
         if name not in ("counterbody", "map") and _is_sequence(value):
             allowed = "allowed is one value; predict_table takes a sequence, with many contacts"
@@ -257,36 +216,31 @@ def request_of(motion: str, arguments: Arguments) -> Request:
     if arguments["mu"] is None:
         raise InputError("mu", None, "needed")
     sought = _sought(motion, arguments)
-    real, motion_texts = read_motion(motion, arguments, sought)
-    drive, drive_texts = read_drive(real, arguments, sought)
+    check_motion_and_drive(motion, arguments, sought)
+    inputs = read_inputs(arguments, motion)
     tolerance = arguments["tolerance"]
     if tolerance is None:
         tolerance = TOLERANCE if arguments["force"] is None else TOLERANCE_OF_SPEED
     limits: dict[str, Any] = {"low": SMALLEST_TOLERANCE, "high": LARGEST_TOLERANCE}
-    if arguments["wear_coefficient"] is not None:
-        read_argument("wear_coefficient", arguments["wear_coefficient"])
-    accepted = read("tolerance", tolerance, "", low_open=False, **limits)
-    bodies = read_bodies(arguments)
-    carriers, carrier_texts = read_carriers(arguments["contacts"], reduction=arguments["reduction"])
-    load = ANY_LOAD if sought == "load" else arguments["load"]
-    contact, contact_texts = read_contact(bodies, arguments, load=load, contacts=carriers.count)
-    amplitude = real.load_amplitude
-    if carrier_texts and amplitude is not None and amplitude * carriers.widest > contact.load:
-        allowed = "allowed is at most the load with several contacts: above it the bodies part"
-        raise InputError("load_amplitude", arguments["load_amplitude"], allowed)
-    understood, share = contact_texts | motion_texts | drive_texts | carrier_texts, None
-    if sought is not None:
-        if drive_texts:
-            allowed = "allowed only without a force and a drive_stiffness"
-            raise InputError("reduction", arguments["reduction"], allowed)
-        reduction = read_argument("reduction", arguments["reduction"])
-        share, understood["reduction"] = reduction.si, reduction.text
-        understood.pop(sought, None)
-    parts = (contact, real, drive, carriers, sought, share, accepted.si, understood)
-    request = Request(arguments, bodies, *parts)
+    accepted = read("tolerance", tolerance, "", low_open=False, **limits).si
+    carriers = read_carriers(arguments["contacts"])
+    if sought is not None and carriers.text is not None:
+        raise inputs.error("reduction", "allowed only without contacts")
+    contact = contact_of(inputs, ANY_LOAD if sought == "load" else None, carriers.count)
+    real, drive = motion_of(motion, inputs), drive_of(motion, inputs)
+    if sought is not None and drive != RealDrive():
+        raise inputs.error("reduction", "allowed only without a force and a drive_stiffness")
+    understood = {"motion": f"{motion}: the sphere {kind_of(motion).description}"} | inputs.texts
+    if real.stroke is not None:
+        understood["amplitude"] += " times the samples"
+    request = Request(contact, real, inputs, drive, carriers, sought, accepted, understood)
     if sought is None:
         request.check_range()
-    if carrier_texts:
+    if carriers.text is not None:
+        if (real.load_amplitude or 0.0) * carriers.widest > contact.load:
+            allowed = "allowed is at most the load with several contacts: above it the bodies part"
+            raise inputs.error("load_amplitude", allowed)
+        understood["contacts"] = " ".join(arguments["contacts"].split())
         request.problem()  # raises InputError if several contacts are not allowed
     if request.map is not None:
         understood["map"] = "friction from a map in place of the solver"
@@ -301,13 +255,12 @@ def _is_sequence(value: object) -> bool:
     return hasattr(values, "__len__") and getattr(values, "ndim", 1) > 0
 
 
-def _sought(motion: str, arguments: Arguments) -> str | None:
+def _sought(motion: str, arguments: Mapping[str, Any]) -> str | None:
     """Name of the missing quantity, which a search determines; None without a reduction.
 
     Raises InputError unless exactly one quantity is missing.
     """
-    motions.check_motion(motion)
-    reduction = arguments["reduction"]
+    kind, reduction = kind_of(motion), arguments["reduction"]
     if reduction is None:
         if arguments["load"] is None:
             raise InputError("load", None, "needed")
@@ -315,8 +268,8 @@ def _sought(motion: str, arguments: Arguments) -> str | None:
     missing = [name for name in SOUGHT if arguments[name] is None]
     if "speed" in missing and arguments["force"] is not None:
         missing.remove("speed")
-    if not motions.unit_of_amplitude(motion) and missing != ["speed"]:
-        what = "several amplitudes" if motions.has_several_amplitudes(motion) else "no amplitude"
+    if not kind.unit and missing != ["speed"]:
+        what = "several amplitudes" if kind.several else "no amplitude"
         raise InputError("reduction", reduction, f"not allowed: {motion} has {what}")
     if not missing:
         allowed = "allowed only without the amplitude, the speed or the load, which it determines"

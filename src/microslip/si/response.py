@@ -23,17 +23,10 @@ from microslip.foundation import spec
 from microslip.foundation.errors import InputError, shown
 from microslip.si.bodies import TwoBodies
 from microslip.si.fitting.measured import named
-from microslip.si.inputs import read_bodies, read_contact
+from microslip.si.inputs import OF_CONTACT, contact_of, read_inputs
 from microslip.si.quantities import read
 from microslip.si.strokes import UNITS, scales
 from microslip.si.tables import LABELS, table_of
-
-ARGUMENTS = (
-    *("mu", "load", "radius", "counter_radius", "radius_across", "contact_radius", "pressure"),
-    *("young", "nu", "material", "counterbody", "hardness", "density"),
-    *("counter_hardness", "counter_density"),
-)
-"""Arguments of `predict` that describe a contact."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -143,7 +136,7 @@ def predict_response(
     InputError
         If an argument or a column is invalid.  The message names it.
     """
-    real = contact_of(contact)
+    real = only_contact(contact)
     columns = read_path(path, UNITS, decimal=decimal, encoding=encoding)
     answer = response_to(
         path,
@@ -177,18 +170,13 @@ def predict_response(
     )
 
 
-def contact_of(contact: Mapping[str, object]) -> TwoBodies:
-    """The contact described by a mapping with keys from ARGUMENTS.  Raises InputError."""
-    strange = sorted(contact.keys() - set(ARGUMENTS))
+def only_contact(contact: Mapping[str, object]) -> TwoBodies:
+    """The contact described by a mapping with keys from OF_CONTACT.  Raises InputError."""
+    strange = sorted(contact.keys() - set(OF_CONTACT))
     if strange:
-        allowed = f"allowed are {', '.join(ARGUMENTS)}"
+        allowed = f"allowed are {', '.join(OF_CONTACT)}"
         raise InputError(strange[0], contact[strange[0]], allowed)
-    arguments: dict[str, Any] = {**dict.fromkeys(ARGUMENTS), **contact}
-    for name in ("mu", "load"):
-        if arguments[name] is None:
-            raise InputError(name, None, "needed")
-    real, _ = read_contact(read_bodies(arguments), arguments, load=arguments["load"])
-    return real
+    return contact_of(read_inputs(contact))
 
 
 def response_to(

@@ -9,11 +9,9 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from typing import Any
 
-from microslip.foundation.errors import InputError
 from microslip.motions.body_contacts import contacts_of, contacts_text
 from microslip.pressures.by_name import pressure_named
 from microslip.si.bodies import TwoBodies
-from microslip.si.dimensionless import RealDrive
 from microslip.si.shapes import ShapedContact
 
 
@@ -37,11 +35,6 @@ class Carriers:
     heaviest: float = 1.0
     widest: float = 1.0
 
-    def share_of(self, drive: RealDrive) -> RealDrive:
-        """The drive of the body divided by the number of contacts."""
-        parts = {name: value for name, value in vars(drive).items() if value is not None}
-        return RealDrive(**{name: value / self.count for name, value in parts.items()})
-
     def most_loaded(self, contact: TwoBodies) -> TwoBodies:
         """Return the contact with the largest load.  contact: the contact with the mean load."""
         if self.heaviest == 1.0:
@@ -54,17 +47,11 @@ class Carriers:
         return replace(contact, load=load, size=contact.size * grown)
 
 
-def read_carriers(contacts: Any, **alone: object) -> tuple[Carriers, dict[str, str]]:
-    """The Carriers, and a dict with the text of the argument `contacts`.  Raises InputError.
-
-    alone: values of arguments that are allowed only for a single contact.
-    """
+def read_carriers(contacts: Any) -> Carriers:
+    """The Carriers for the argument `contacts`.  Raises InputError."""
     if contacts is None:
-        return Carriers(), {}
+        return Carriers()
     carriers = contacts_of(contacts)
-    for name, value in alone.items():
-        if value:
-            raise InputError(name, value, "allowed only without contacts")
     text = contacts_text(carriers)
     most = (max(one.load for one in carriers), max(one.amplitude for one in carriers))
-    return Carriers(text, len(carriers), *most), {"contacts": " ".join(contacts.split())}
+    return Carriers(text, len(carriers), *most)

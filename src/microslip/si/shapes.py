@@ -7,12 +7,11 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 
 from microslip.foundation.errors import InputError
-from microslip.foundation.number_text import number_text
 from microslip.pressures.by_name import pressure_named
 from microslip.pressures.ellipse import SMALLEST_RATIO
 from microslip.pressures.pressure import Pressure
 from microslip.si.bodies import TwoBodies
-from microslip.si.printed_lines import prefixed
+from microslip.si.printed_lines import prefixed_text
 
 ROUND = 1e-6
 """Largest relative difference between two radii that count as equal."""
@@ -85,14 +84,9 @@ class ShapedContact(TwoBodies):
         for what, value, name, unit in inputs:
             sizes = [getattr(one, name, None) or value for one in readings]
             if not (1.0 - AGREES) * min(sizes) <= value <= (1.0 + AGREES) * max(sizes):
-                text = {"value": _printed(value, unit), "measured": _printed(sizes[0], unit)}
-                texts.append(DISAGREES.format(what=what, **text))
+                pair = [prefixed_text(one, unit) for one in (value, sizes[0])]
+                texts.append(DISAGREES.format(what=what, value=pair[0], measured=pair[1]))
         return texts
-
-
-def _printed(value: float, unit: str) -> str:
-    name, size = prefixed(value, unit)
-    return number_text(value / size, unit=name)
 
 
 def ellipse_of_radii(forward: float, lateral: float) -> tuple[float, float]:
@@ -141,9 +135,8 @@ def elliptic(contact: TwoBodies, radius_across: float) -> TwoBodies:
     size = stretch * (0.75 * contact.load * long / contact.E_star) ** (1.0 / 3.0)
     across = int(radius_across > contact.radius)
     name = "hertz" if ratio == 1.0 else f"ellipse:ratio={ratio!r},across={across}"
-    radii = (*contact.radii, radius_across)
-    shared = (contact.first, contact.second, contact.radius, contact.load, contact.mu)
-    return ShapedContact(*shared, radii, pressure=name, size=size)
+    shape = {"radii": (*contact.radii, radius_across), "pressure": name, "size": size}
+    return ShapedContact(**vars(contact) | shape)
 
 
 def of_size(contact: TwoBodies, size: float, pressure: str) -> TwoBodies:
@@ -152,6 +145,5 @@ def of_size(contact: TwoBodies, size: float, pressure: str) -> TwoBodies:
     The field `radius` is the radius of a sphere with the same contact radius under the same load.
     """
     radius = 4.0 * contact.E_star * size**3 / (3.0 * contact.load)
-    shared = (contact.first, contact.second, radius, contact.load, contact.mu)
-    name = pressure_named(pressure).name
-    return ShapedContact(*shared, pressure=name, size=size)
+    shape = {"radius": radius, "radii": (), "pressure": pressure_named(pressure).name}
+    return ShapedContact(**vars(contact) | shape, size=size)

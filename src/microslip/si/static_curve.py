@@ -29,7 +29,7 @@ standard deviation of Poisson's ratio."""
 
 def static_limits(
     request: Request,
-    centre: tuple[float, float, float, float],
+    centre: tuple[float, float],
     amplitudes: np.ndarray,
     poisson: np.ndarray,
     forces: tuple[np.ndarray, np.ndarray] | None,
@@ -41,8 +41,7 @@ def static_limits(
     request : request.Request
         The request for the central values.
     centre : tuple of float
-        Amplitude, Poisson's ratio, mu_static and the error estimate of mu_static for the central
-        values; all dimensionless.
+        mu_static and its error estimate for the central values, dimensionless.
     amplitudes, poisson : np.ndarray, shape (draws,)
         Dimensionless amplitude and Poisson's ratio of each draw.
     forces : tuple of np.ndarray or None
@@ -57,12 +56,12 @@ def static_limits(
     from scipy.interpolate import PchipInterpolator
     from scipy.special import ndtr
 
-    limit = _limits_of(request)
-    amplitude, ratio, *solved = centre
+    limit, amplitude, ratio = _limits_of(request), request.groups[1], request.contact.poisson
+    assert amplitude is not None  # the motion oscillates
     # The interpolation variable is x = A / (A + centre).  For a small amplitude A, x is
     # proportional to A.  For a large one, 1 - x is proportional to 1 / A.  So the static limit is
     # a smooth function of x at both ends.
-    nodes: dict[float, tuple[float, float]] = {0.5: (solved[0], solved[1])}
+    nodes: dict[float, tuple[float, float]] = {0.5: centre}
     where = np.minimum(amplitudes, LARGEST["amplitude"])
     where = where / (where + amplitude)
 

@@ -9,13 +9,12 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from microslip.foundation.errors import InputError
-from microslip.si.motions import unit_of_amplitude
+from microslip.si.inputs import unit_of
 from microslip.si.predict import NOTHING, predict_arguments, without_solution
-from microslip.si.prediction import COLUMNS, NoPrediction, Prediction, unit_of
+from microslip.si.prediction import COLUMNS, NoPrediction, Prediction, column_unit
 from microslip.si.reduction import NotAttainedError
 from microslip.si.request import Request, request_of
 from microslip.si.tables import ALLOWED, LABELS, Table, table_of
-from microslip.si.uncertain import without_uncertainty
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -121,8 +120,7 @@ def _request(motion: str, arguments: Mapping[str, object]) -> Request:
     for name, value in arguments.items():
         if name not in NOTHING:
             raise InputError(name, value, f"allowed are {', '.join(['motion', *NOTHING])}")
-    plain, _ = without_uncertainty(motion, arguments)
-    return request_of(motion, NOTHING | plain)
+    return request_of(motion, NOTHING | dict(arguments))
 
 
 def _count(columns: Mapping[str, Any], shared: Mapping[str, object]) -> int:
@@ -155,7 +153,7 @@ def as_dataset(motion: str, table: Table, cases: Sequence[Prediction | NoPredict
         variables[name if name in LABELS else f"case_{name}"] = "case", texts, {}
     errors = [str(row.get("error", "")) for row in rows]
     variables["error"] = "case", errors, {"long_name": "error message of the case"}
-    amplitude = variables["amplitude_si"][2]["units"] = unit_of_amplitude(motion) or "m"
+    amplitude = variables["amplitude_si"][2]["units"] = unit_of("amplitude", motion) or "m"
     units = {"amplitude": amplitude, "speed": "m s-1", "load": "N"}
     sought = {row["sought"] for row in rows if row.get("sought")}
     if sought:  # the quantity of the search, `sought`, can vary between cases
@@ -175,4 +173,4 @@ def _variable(name: str, values: list[Any]) -> tuple[str, list, dict[str, str]]:
     if all(isinstance(value, str) for value in arguments) and (arguments or name in TEXTS):
         return "case", ["" if value is None else value for value in values], {}
     numbers = [np.nan if value is None else float(value) for value in values]
-    return "case", numbers, {"units": unit_of(name)}
+    return "case", numbers, {"units": column_unit(name)}

@@ -28,9 +28,11 @@ _NUMBER = re.compile(r"[+\-−]?(?:\d+\.?\d*|\.\d+)(?:[eE][+\-−]?\d+)?", re.AS
 _NOT_FINITE = re.compile(r"[+\-−]?(?:infinity|inf|nan)(?![^\W\d_])", re.IGNORECASE)
 _FRACTION = re.compile(r"/\s*([1-9]\d*)\s*(.*)", re.ASCII | re.DOTALL)
 """Pattern for the rest of a fraction after its numerator."""
-_NAME = re.compile(r"[^\W\d⁻¹²³]+|°")
-_POWER = re.compile(r"\s*(?:\^|\*\*)\s*(-?[1-9])(?!\d)|(⁻?[¹²³])(?!\w)")
-_SIGN = re.compile(r"\s*(?:([*·⋅])(?!\*)|(/))\s*")
+_NAME = r"(?:[^\W\d⁻¹²³]+|°)"
+_POWER = r"(?:\s*(?:\^|\*\*)\s*-?[1-9](?!\d)|⁻?[¹²³](?!\w))?"
+_SIGN = r"\s*(?:[*·⋅](?!\*)|/)\s*"
+_PRODUCT = re.compile(f"{_NAME}{_POWER}(?:{_SIGN}{_NAME}{_POWER})*")
+_FACTOR = re.compile(rf"(/?)\s*({_NAME})({_POWER})")
 _RAISED = str.maketrans("⁻¹²³", "-123")
 _EXACT = Context(prec=40)
 
@@ -93,24 +95,17 @@ def factors(text: str) -> list[tuple[str, int]]:
     dot.  Division is read from left to right.  Raises UnitError at the first character that does
     not fit.
     """
-    units, place, sign = [], 0, 1
-    while True:
-        name = _NAME.match(text, place)
-        if name is None:
-            where = f"at {text[place:]!r}" if text[place:] else f"at the end of {text!r}"
-            raise UnitError(f"stopped {where}, where a unit was expected")
-        power = _POWER.match(text, name.end())
-        exponent = int((power[1] or power[2]).translate(_RAISED)) if power else 1
-        units.append((name[0], sign * exponent))
-        if len(units) > MOST_FACTORS:
-            raise UnitError(f"found more than {MOST_FACTORS} units in a row")
-        place = (power or name).end()
-        if place == len(text):
-            return units
-        between = _SIGN.match(text, place)
-        if between is None:
-            raise UnitError(f"read {text[:place]!r} and stopped at {text[place:].strip()!r}")
-        place, sign = between.end(), -1 if between[2] else 1
+    product = _PRODUCT.match(text)
+    if product is None:
+        raise UnitError(f"stopped at {text!r}, where a unit was expected")
+    if product.end() < len(text):
+        rest = text[product.end() :].strip()
+        raise UnitError(f"read {product[0]!r} and stopped at {rest!r}")
+    units = _FACTOR.findall(text)
+    if len(units) > MOST_FACTORS:
+        raise UnitError(f"found more than {MOST_FACTORS} units in a row")
+    powers = [int(power.translate(_RAISED).strip(" ^*") or 1) for _, _, power in units]
+    return [(one[1], -n if one[0] else n) for one, n in zip(units, powers, strict=True)]
 
 
 def read_unit(text: str) -> Unit:

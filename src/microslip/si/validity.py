@@ -11,10 +11,9 @@ import re
 import sys
 from typing import NamedTuple
 
-from microslip.foundation.number_text import number_text
 from microslip.si.bodies import TwoBodies
-from microslip.si.dimensionless import RealMotion, largest_slip_speed, mean_load
-from microslip.si.printed_lines import prefixed
+from microslip.si.dimensionless import MovingContact
+from microslip.si.printed_lines import prefixed_text
 
 YIELDS_AT = 0.57
 """Largest Hertz pressure divided by hardness at the onset of plastic flow below the surface.  At
@@ -183,12 +182,12 @@ SIDES = ("the body", "the counterbody")
 """Names of the two bodies in sentences."""
 
 
-def broken_assumptions(contact: TwoBodies, motion: RealMotion) -> list[str]:
+def broken_assumptions(moving: MovingContact) -> list[str]:
     """The warnings for a contact and its motion."""
-    values = measures(contact, motion)
+    values = measures(moving)
     first = (next((rule for rule in rules if _applies(rule, values)), None) for rules in CHECKS)
     texts = [_text(rule.text, values) for rule in first if rule is not None]
-    return [*contact.contradictions, *texts]
+    return [*moving.contact.contradictions, *texts]
 
 
 def _text(template: str, values: dict[str, float | None]) -> str:
@@ -198,8 +197,7 @@ def _text(template: str, values: dict[str, float | None]) -> str:
         value, digits, unit = float(values[match[1]] or 0.0), int(match[2]), match[3]
         if unit is None:
             return f"{value:.{digits}g}"
-        name, size = prefixed(value, unit)
-        return number_text(value / size, unit=name, digits=digits)
+        return prefixed_text(value, unit, digits)
 
     return MEASURE.sub(number, template)
 
@@ -224,14 +222,15 @@ def unchecked(contact: TwoBodies) -> list[str]:
     return texts
 
 
-def measures(contact: TwoBodies, motion: RealMotion) -> dict[str, float | None]:
+def measures(moving: MovingContact) -> dict[str, float | None]:
     """Measures of a contact by name.  A measure that is unknown or does not apply is None.
 
     Pressures and the contact radius are evaluated at the largest load in a period.
     """
-    largest = contact.with_load(contact.load + (motion.load_amplitude or 0.0))
+    contact = moving.contact
+    largest = contact.with_load(contact.load + (moving.motion.load_amplitude or 0.0))
     bodies = _of_bodies(largest) | {"load": contact.load}
-    return bodies | _of_adhesion(contact) | _of_motion(contact, motion)
+    return bodies | _of_adhesion(contact) | _of_motion(moving)
 
 
 def _of_bodies(contact: TwoBodies) -> dict[str, float | None]:
@@ -273,12 +272,13 @@ def _of_adhesion(contact: TwoBodies) -> dict[str, float | None]:
     }
 
 
-def _of_motion(contact: TwoBodies, motion: RealMotion) -> dict[str, float | None]:
+def _of_motion(moving: MovingContact) -> dict[str, float | None]:
     """Measures of the motion.  Measures of inertia are None without a density."""
-    steady, along = motion.frequency is None, motion.swing[0]
+    contact, motion = moving.contact, moving.motion
+    along, radius = motion.swing[0], contact.contact_radius
     values: dict[str, float | None]
-    values = {"amplitude": along, "stroke": None if steady else along / contact.contact_radius}
-    values["mean_load"] = mean_load(motion, contact)
+    values = {"amplitude": along, "stroke": None if motion.steady else along / radius}
+    values["mean_load"] = moving.mean_load
     waves = [
         (b.shear_modulus, b.density)
         for b in contact.bodies
@@ -288,6 +288,6 @@ def _of_motion(contact: TwoBodies, motion: RealMotion) -> dict[str, float | None
         return values | {"crossing": None, "slip_speed": None}
     wave = min(math.sqrt(shear / density) for shear, density in waves)
     return values | {
-        "crossing": motion.turn * contact.contact_radius / wave,
-        "slip_speed": largest_slip_speed(motion, contact) / wave,
+        "crossing": motion.turn * radius / wave,
+        "slip_speed": moving.largest_slip_speed / wave,
     }

@@ -16,6 +16,7 @@ different CPUs have different keys and are not drawn in one chart.
 
 from typing import NamedTuple
 
+from microslip.config.settings import StudyPoint
 from microslip.foundation.canonical import number
 from microslip.foundation.machine import cpu_model
 from microslip.studies.ladders import Level, exact_model
@@ -36,7 +37,11 @@ class Point(NamedTuple):
     poisson: float = 0.0
 
 
-def of_point(point: Point) -> dict:
+AnyPoint = Point | StudyPoint
+"""A point of a study, or a point of the configuration."""
+
+
+def of_point(point: AnyPoint) -> dict:
     """Return the entries of a request that describe the point."""
     return {
         "motion": point.motion,
@@ -47,7 +52,7 @@ def of_point(point: Point) -> dict:
 
 
 def trial(
-    point: Point, model: str, method: str, level: Level, tolerance: float, repeats: int
+    point: AnyPoint, model: str, method: str, level: Level, tolerance: float, repeats: int
 ) -> dict:
     """Return the request for a timed run at a level of a ladder (ladders.Level).
 
@@ -66,14 +71,18 @@ def trial(
     }
 
 
-def choice(point: Point, tolerance: float, repeats: int) -> dict:
+def choice(point: AnyPoint, tolerance: float, repeats: int) -> dict:
     """Return the request for a timed solve at a tolerance."""
     kind = {"kind": "choice", "cpu": cpu_model(), "tolerance": number(tolerance)}
     return of_point(point) | kind | {"repeats": repeats}
 
 
 def probe(
-    point: Point, method: str, tolerance: float, cells: int | None = None, steps: int | None = None
+    point: AnyPoint,
+    method: str,
+    tolerance: float,
+    cells: int | None = None,
+    steps: int | None = None,
 ) -> dict:
     """Return the request for an untimed solve with a method and the budget MOST_WORK.
 
@@ -84,7 +93,7 @@ def probe(
     return of_point(point) | kind | {"cells": cells, "steps": steps} | budget
 
 
-def reference(point: Point, tolerance: float | None = None) -> dict:
+def reference(point: AnyPoint, tolerance: float | None = None) -> dict:
     """Return the request for the reference of a point.
 
     tolerance: defaults to RINGS_TOLERANCE for rings and to TOLERANCE for other models.

@@ -161,15 +161,13 @@ def cut(items: Sequence, mean: int) -> list[list]:
 # Results
 
 
-def key_of(request: dict, digest: str | None = None) -> str:
+def key_of(request: dict) -> str:
     """Return the name under which a request's result is stored, a hash of the request and the code.
 
     Results differ by rounding errors between versions of NumPy, SciPy and Numba.  These versions
     are recorded in each result, but they are not part of the name.
-
-    digest: digest of the code that computes the result.  Default: the digest of the running code.
     """
-    digest = source_digest.of_request(request) if digest is None else digest
+    digest = source_digest.of_request(request)
     content = {"request": request, "source": digest, "format": RECORD_FORMAT}
     return sha256(canonical_json(content))
 

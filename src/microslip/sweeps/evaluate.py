@@ -8,6 +8,7 @@ import logging
 import math
 import time
 from collections.abc import Callable
+from functools import partial
 from statistics import median
 from typing import Any, TypeVar
 
@@ -20,6 +21,10 @@ Answer = TypeVar("Answer")
 
 log = logging.getLogger(__name__)
 
+REALS = {"velocity", "amplitude", "poisson", "tolerance", "travel", *DRIVES}
+"""Keys of requests whose values are numbers in texts."""
+OTHER_KEYS = ("kind", "cpu")
+"""Keys of requests that are no arguments.  Measured times belong to a CPU."""
 SHORTEST = 0.02
 """Shortest CPU time that is measured, in seconds.  Shorter runs are repeated and measured
 together."""
@@ -35,13 +40,23 @@ def computed(request: dict, time_limit: float | None = None) -> dict:
     and `reason` is the error message in one line.  Any other exception is an error of the code or
     the machine and propagates.
     """
+    limits = {} if time_limit is None else {"time_limit": time_limit}
     try:
-        limits = {} if time_limit is None else {"time_limit": time_limit}
-        return plain(_KINDS[request["kind"]](request, **limits))
+        return plain(_KINDS[request["kind"]](**arguments(request), **limits))
     except (SolverError, InputError) as error:
         log.debug("%s", request, exc_info=True)
         reason = " ".join(f"{type(error).__name__}: {error}".split())
         return {"converged": False, "crashed": True, "reason": reason}
+
+
+def arguments(request: dict) -> dict:
+    """Return the keyword arguments of the function that computes a request.  Texts of numbers
+    become floats."""
+    return {
+        name: float(value) if name in REALS and value is not None else value
+        for name, value in request.items()
+        if name not in OTHER_KEYS
+    }
 
 
 def is_final(result: dict) -> bool:
@@ -75,105 +90,84 @@ def timed(run: Callable[[], Answer], repeats: int) -> tuple[Answer, float]:
 # Kinds of requests
 
 
-def _point(request: dict, time_limit: float | None = None) -> dict:
-    return _solved(request, model=request["model"], time_limit=time_limit)
+def _point(**arguments: Any) -> dict:
+    result = microslip.solve(**arguments).to_dict()
+    result.pop("solve_time_s", None)
+    return result
 
 
-def _history(request: dict) -> dict:
-    history = microslip.history(request["motion"], **_of_single_run(request))
+def _history(**arguments: Any) -> dict:
+    history = microslip.history(**arguments)
     names = ("phase", "displacement_forward", "force_forward", "force_lateral", "torque")
     return {name: getattr(history, name) for name in names}
 
 
-def _field(request: dict) -> dict:
-    return microslip.traction_field(request["motion"], **_of_single_run(request))
+def _field(**arguments: Any) -> dict:
+    return microslip.traction_field(**arguments)
 
 
-def _period(request: dict) -> dict:
+def _period(**arguments: Any) -> dict:
     """Compute one period of the periodic state, packed by microslip.sweeps.period_codec."""
     from microslip.sweeps.period_codec import packed
 
-    return _result_or_reason(lambda: packed(microslip.period(**_at(request)), request["angles"]))
+    period = partial(microslip.period, **arguments)
+    return _result_or_reason(lambda: packed(period(), arguments["angles"]))
 
 
-def _trial(request: dict) -> dict:
+def _trial(repeats: int, **arguments: Any) -> dict:
     """Time a run at one resolution; `applies` is False if the method cannot be used."""
-    from microslip.adaptive import single_run
-
-    place = _place(request)
-    settings = {"model": request["model"], "method": request["method"]}
-    motion = {name: place[name] for name in ("motion", "poisson", "pressure") if name in place}
-    reason = single_run.applies(**motion, **settings)
-    if reason:
-        return {"applies": False, "converged": False, "reason": reason}
-    settings |= {"cells": request["cells"], "angles": request["angles"]}
-    settings["steps"] = request["steps"] or 2  # a steady motion ignores the number of steps
-    settings["tolerance"] = float(request["tolerance"])
-
-    def run() -> dict:
-        return single_run.run_trial(**place, **settings)
-
-    return {"applies": True} | _timed(run, request["repeats"])
+    names = ("motion", "poisson", "model", "method", "pressure")
+    if reason := _refusal(**{name: arguments[name] for name in names if name in arguments}):
+        return reason
+    arguments["steps"] = arguments["steps"] or 2  # a steady motion ignores the number of steps
+    return {"applies": True} | _timed(partial(_run, **arguments), repeats)
 
 
-def _choice(request: dict) -> dict:
+def _choice(repeats: int, **arguments: Any) -> dict:
     """Time `solve` with a tolerance and automatic settings."""
-    return _timed(lambda: _solved(request), request["repeats"])
+    return _timed(partial(_point, **arguments), repeats)
 
 
-def _probe(request: dict) -> dict:
+def _probe(**arguments: Any) -> dict:
     """Solve with another method; `applies` is False if the method cannot be used."""
-    from microslip.adaptive import single_run
     from microslip.adaptive.checks import checked_problem
     from microslip.adaptive.choice import choose_model
 
-    place = _place(request)
-    problem = checked_problem(**{"amplitude": None} | place)
-    model = choose_model(problem, request["model"])
-    how = {"model": model, "method": request["method"], "pressure": problem.pressure.name}
-    reason = single_run.applies(place["motion"], place["poisson"], **how)
-    if reason:
-        return {"applies": False, "converged": False, "reason": reason}
-    settings = {"model": request["model"], "method": request["method"]}
-    return {"applies": True} | _solved(request, **settings)
+    names = ("motion", "velocity", "amplitude", "pressure", "poisson")
+    problem = checked_problem(**{name: arguments[name] for name in names if name in arguments})
+    model, pressure = choose_model(problem, arguments["model"]), problem.pressure.name
+    place = arguments["motion"], arguments["poisson"], model, arguments["method"], pressure
+    return _refusal(*place) or {"applies": True} | _point(**arguments)
 
 
-def _scaling(request: dict) -> dict:
+def _scaling(**arguments: Any) -> dict:
     from microslip.adaptive import single_run
 
-    sizes = [request["cells"], request["angles"], float(request["poisson"]), request["steps"]]
-    return single_run.measure_steps(request["model"], *sizes) | {"machine": machine.describe()}
+    return single_run.measure_steps(**arguments) | {"machine": machine.describe()}
 
 
-def _run(request: dict) -> dict:
+def _run(**arguments: Any) -> dict:
     """Run at one resolution.  Times are not measured, so that equal requests have equal results."""
     from microslip.adaptive import single_run
 
-    names = ("model", "method", "cells", "angles", "steps")
-    settings = {name: request[name] for name in names}
-    tolerance = float(request["tolerance"])
-    return single_run.run_trial(**_place(request), **settings, tolerance=tolerance)
+    return single_run.run_trial(**arguments)
 
 
-def _patches(request: dict) -> dict:
+def _patches(**arguments: Any) -> dict:
     """Compute the stick zone during a period."""
     from microslip.adaptive.stick_area import patches
 
-    return _result_or_reason(lambda: patches(**_at(request)))
+    return _result_or_reason(partial(patches, **arguments))
 
 
-def _propulsion(request: dict) -> dict:
+def _propulsion(**arguments: Any) -> dict:
     """Compute the force-velocity line of a self-propelled motion, from stall to no load."""
-    numbers = {name: float(request[name]) for name in ("poisson", "tolerance")}
-    amplitude = float(request["amplitude"])
-    line = microslip.propulsion(
-        request["motion"], amplitude, points=request["points"], **numbers
-    ).to_dict()
+    line = microslip.propulsion(**arguments).to_dict()
     line.pop("solve_time_s")
     return line
 
 
-_KINDS = {
+_KINDS: dict[str, Callable[..., dict]] = {
     "point": _point,
     "history": _history,
     "field": _field,
@@ -191,44 +185,15 @@ _KINDS = {
 # Shared functions
 
 
-def _place(request: dict) -> dict:
-    amplitude, velocity = request["amplitude"], request["velocity"]
-    place = {
-        "motion": request["motion"],
-        "velocity": None if velocity is None else float(velocity),
-        "amplitude": None if amplitude is None else float(amplitude),
-        "poisson": float(request["poisson"]),
-    }
-    if "pressure" in request:
-        place["pressure"] = request["pressure"]
-    return place
+def _refusal(*place: Any, **settings: Any) -> dict:
+    """Return the result for a model or a method that does not apply, and an empty dict otherwise.
 
+    The arguments are those of single_run.applies.
+    """
+    from microslip.adaptive import single_run
 
-def _of_single_run(request: dict) -> dict:
-    numbers = {k: float(request[k]) for k in ("velocity", "amplitude", "travel") if k in request}
-    return numbers | {k: request[k] for k in ("cells", "steps", "periods", "start") if k in request}
-
-
-def _solved(request: dict, **settings: object) -> dict:
-    place = _place(request)
-    names = ("cells", "steps", "most_work", "contacts")
-    settings |= {name: request[name] for name in names if name in request}
-    settings |= {name: float(request[name]) for name in DRIVES if name in request}
-    tolerance = request["tolerance"]
-    result = microslip.solve(
-        place.pop("motion"),
-        place.pop("velocity"),
-        place.pop("amplitude"),
-        tolerance=None if tolerance is None else float(tolerance),
-        **place,
-        **settings,
-    ).to_dict()
-    result.pop("solve_time_s", None)
-    return result
-
-
-def _at(request: dict) -> dict:
-    return _place(request) | {name: request[name] for name in ("cells", "angles", "steps")}
+    reason = single_run.applies(*place, **settings)
+    return {"applies": False, "converged": False, "reason": reason} if reason else {}
 
 
 def _result_or_reason(look: Callable[[], dict]) -> dict:

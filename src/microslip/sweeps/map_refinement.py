@@ -9,6 +9,7 @@ from concurrent.futures import ProcessPoolExecutor
 from dataclasses import replace
 from functools import partial
 from multiprocessing import parent_process
+from pathlib import Path
 from threading import Thread
 
 from microslip.config.extended import solver_names
@@ -100,16 +101,15 @@ def solve_points(map_: CertifiedMap, store: Store, processes: int) -> tuple[list
             answers[record["key"]] = record, seconds
             yield record
 
-    names = [named_files.with_path(name) for name in (map_.sweep.motion, map_.sweep.pressure)]
-    with ProcessPoolExecutor(processes, None, _begin, (names,)) as pool:
+    with ProcessPoolExecutor(processes, None, _begin, (named_files.PLACES,)) as pool:
         refine(map_, ask)
     return gather(answers.values())
 
 
-def _begin(names: list[str]) -> None:
-    """Prepare a worker process: store the paths of motion and pressure files, and make the process
-    end with its parent."""
-    named_files.remember(names)
+def _begin(places: dict[str, Path]) -> None:
+    """Prepare a worker process: store the paths of motion and pressure files by digest, and make
+    the process end with its parent."""
+    named_files.PLACES.update(places)
     Thread(target=_end_with_parent, daemon=True).start()
 
 

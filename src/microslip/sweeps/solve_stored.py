@@ -8,21 +8,15 @@ import warnings
 from dataclasses import replace
 from pathlib import Path
 
-from microslip.adaptive.checks import (
-    checked_driven_problem,
-    checked_request,
-    refuse_bounds,
-)
-from microslip.adaptive.choice import choose_model
-from microslip.adaptive.driven_contact import refuse_drive
-from microslip.adaptive.request import TOLERANCE
+from microslip.adaptive.checks import checked_driven_problem
+from microslip.adaptive.request import TOLERANCE, request_for
 from microslip.adaptive.result import Result
 from microslip.config.axes import DRIVES
 from microslip.config.records import Sweep
 from microslip.foundation.errors import InputError
 from microslip.foundation.files import refuse_no_folder, refuse_unusable
 from microslip.motions.problem import Problem
-from microslip.sweeps import batches
+from microslip.sweeps import batches, evaluate
 from microslip.sweeps.store import Store
 
 
@@ -85,16 +79,12 @@ def solve_stored(
         contacts=contacts,
         **drive,
     )
-    tolerance, cells, steps = checked_request(tolerance, cells, steps)
-    refuse_bounds(time_limit=time_limit)
-    chosen = choose_model(problem, model)
-    if problem.drive is not None:
-        refuse_drive(problem, chosen)
+    point = request_for(problem, model, tolerance, cells=cells, steps=steps, time_limit=time_limit)
     if tolerance is None:
         from microslip.adaptive.friction import refuse_choice  # here: it loads compiled code
 
         moving = problem if force is None else replace(problem, velocity=1.0, drive=None)
-        refuse_choice(moving, model, cells, steps)
+        refuse_choice(replace(point, problem=moving))
     kind, pressure = problem.motion.name, problem.pressure.name
     grid = Sweep(
         name=kind,
@@ -104,9 +94,9 @@ def solve_stored(
         poisson=(problem.poisson,),
         poisson_is_axis=False,
         model=model,
-        tolerance=tolerance,
-        cells=cells,
-        steps=steps,
+        tolerance=point.tolerance,
+        cells=point.cells,
+        steps=point.steps,
         pressure=pressure,
         contacts=contacts,
         drives=_drives(**drive),
@@ -121,9 +111,7 @@ def solve_stored(
             raise
         warnings.warn(str(edited), stacklevel=2)
         record = edited.record
-    values = {"pressure": pressure} | request | record["result"]
-    numbers = ("velocity", "amplitude", "poisson", "tolerance", *DRIVES)
-    values |= {k: float(values[k]) for k in numbers if values.get(k) is not None}
+    values = {"pressure": pressure} | evaluate.arguments(request) | record["result"]
     return Result.from_dict(values | {"solve_time_s": time.perf_counter() - started})
 
 

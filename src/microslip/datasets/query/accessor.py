@@ -5,8 +5,10 @@ from __future__ import annotations
 
 import hashlib
 from collections.abc import Callable
+from dataclasses import replace
 from functools import partial
 from pathlib import Path
+from typing import NamedTuple
 
 import numpy as np
 import xarray as xr
@@ -28,10 +30,10 @@ from microslip.datasets.query.answers import (
     WIDER,
     dataset_of,
 )
-from microslip.datasets.query.cells import CellNodes, Map
+from microslip.datasets.query.cells import Map
 from microslip.datasets.query.coordinates import coordinate_array, evaluate, grid_axes
 from microslip.datasets.query.drift import Drift
-from microslip.datasets.query.nodes import Nodes, nodes_of, poisson_within, refuse_values
+from microslip.datasets.query.nodes import nodes_of, poisson_within, refuse_values, tables_at
 from microslip.datasets.query.solver import drive_of, solve_and_store
 from microslip.datasets.variables import variable
 from microslip.foundation.arguments import real
@@ -41,6 +43,22 @@ from microslip.motions.by_name import motion_named
 
 Answer = tuple[np.ndarray, np.ndarray, np.ndarray]
 """Friction, its error bound, and its source (an index into SOURCES), shape (n,) each."""
+
+
+class Maps(NamedTuple):
+    """Maps of a dataset at one Poisson's ratio.
+
+    Attributes
+    ----------
+    poisson : float
+        Poisson's ratio.
+    moving, still : Table, CellTable or None
+        Friction at velocities above 0, and at the velocity 0; None if the dataset has no such map.
+    """
+
+    poisson: float
+    moving: Map | None
+    still: Map | None
 
 
 def accessor(dataset: xr.Dataset) -> Friction | Drift:
@@ -75,8 +93,7 @@ class Friction:
         self._motion, self._periodic = name, periodic
         self._pressure = dataset.attrs.get("pressure", "hertz")
         self._has_limits = beyond.has_limits(dataset)
-        self._read: tuple[tuple, Nodes | CellNodes] | None = None
-        self._tables: dict[tuple[float, bool], Map | None] = {}
+        self._read: tuple[tuple, Maps] | None = None
 
     def at(
         self,
@@ -132,15 +149,14 @@ class Friction:
             proved for the motion, the pressure or the drive.
         """
         coordinates = self._coordinates(velocity, amplitude)
-        nodes = self._nodes(poisson)
-        nu = poisson_within(nodes.poisson, poisson)
+        maps = self._maps(poisson)
         if tolerance is not None:
             tolerance = real("tolerance", tolerance, 0.0)
             if tolerance == 0.0:
                 raise InputError("tolerance", tolerance, "allowed is a number above 0")
-        function = partial(self._friction, nodes, nu, tolerance)
+        function = partial(self._friction, maps, tolerance)
         parts = evaluate(function, coordinates, (float, float, np.int8))
-        poisson_ratio = variable((), nu, "Poisson's ratio")
+        poisson_ratio = variable((), maps.poisson, "Poisson's ratio")
         answer = dataset_of(parts, FRICTION, self._motion, poisson_ratio)
         if answer.chunks:
             return answer
@@ -223,12 +239,11 @@ class Friction:
             raise InputError("solve_for", sorted(others), f"allowed is {allowed}")
         name = "velocity" if "velocity" not in others else "amplitude"
         ends = inverse.ends_of(self._dataset, name, within)
-        nodes = self._nodes(poisson)
-        nu = poisson_within(nodes.poisson, poisson)
+        maps = self._maps(poisson)
 
         def at(place: np.ndarray, other: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
             points = {name: place} | dict.fromkeys(others, other)
-            value, error, _ = self._friction(nodes, nu, None, **points)
+            value, error, _ = self._friction(maps, None, **points)
             return value, error
 
         parts = [coordinate_array("wanted", wanted)]
@@ -253,8 +268,7 @@ class Friction:
 
     def _friction(
         self,
-        nodes: Nodes | CellNodes,
-        nu: float,
+        maps: Maps,
         tolerance: float | None,
         velocity: np.ndarray,
         amplitude: np.ndarray | None = None,
@@ -264,50 +278,49 @@ class Friction:
         if amplitude is None:
             amplitude = np.full(len(velocity), np.nan)
         if not self._has_limits or cells.is_static(self._dataset):
-            answer = self._map_alone(nodes, velocity, amplitude, nu, tolerance)
-        elif (table := self._table(nodes, nu)) is None:
+            answer = self._map_alone(maps, velocity, amplitude, tolerance)
+        elif maps.moving is None:
             raise InputError("velocity", 0.0, "microslip.at needs nodes above 0 in the dataset")
         elif steady:
-            answer = self._steady(table, velocity)
+            answer = self._steady(maps.moving, velocity)
         else:
-            answer = self._oscillating(table, velocity, amplitude, nu)
+            answer = self._oscillating(maps.moving, velocity, amplitude, maps.poisson)
         value, error, source = answer
         error[np.isnan(value) | np.isnan(error)] = np.inf
         if tolerance is not None:
-            self._solve(answer, (velocity, amplitude), nu, tolerance)
+            self._solve(answer, (velocity, amplitude), maps.poisson, tolerance)
         return value, error, source
 
-    def _nodes(self, poisson: float | None) -> Nodes | CellNodes:
-        """Return the nodes of the map.  The nodes are read again only if the dataset has changed.
+    def _maps(self, poisson: float | None) -> Maps:
+        """Return the maps at a Poisson's ratio.  They are read again only if the dataset has
+        changed.
 
-        Reading the nodes takes ten times as long as interpolating.  A dataset can be changed in
-        place, so changes are detected by a digest of all data.
+        Reading takes ten times as long as interpolating.  A dataset can be changed in place, so
+        changes are detected by a digest of all data.
         """
-        digest = (_digest(self._dataset), poisson)
+        digest, least = (_digest(self._dataset), poisson), 0.0 if self._has_limits else -1.0
         if digest[0] is None or self._read is None or self._read[0] != digest:
-            nodes: Nodes | CellNodes
             if cells.is_certified(self._dataset):
-                nodes = cells.cells_of(self._dataset)
+                table = cells.cells_of(self._dataset)
+                refuse_values(self._dataset, least)
+                nu = poisson_within(table.ratios, poisson)
+                table = replace(table, poisson=nu)
+                maps = Maps(nu, None, table) if table.is_static else Maps(nu, table, None)
             else:
                 nodes = nodes_of(self._dataset, periodic=self._periodic, poisson=poisson)
-            refuse_values(nodes, 0.0 if self._has_limits else -1.0)
-            self._read, self._tables = (digest, nodes), {}
+                refuse_values(nodes, least)
+                nu = poisson_within(nodes["poisson"].values, poisson)
+                maps = Maps(nu, *tables_at(nodes, nu))
+            self._read = digest, maps
         return self._read[1]
-
-    def _table(self, nodes: Nodes | CellNodes, nu: float, still: bool = False) -> Map | None:
-        """Return the map at one Poisson's ratio (see Nodes.table)."""
-        if (nu, still) not in self._tables:
-            self._tables[nu, still] = nodes.table(nu, still=still)
-        return self._tables[nu, still]
 
     # Motions without known limits
 
     def _map_alone(
         self,
-        nodes: Nodes | CellNodes,
+        maps: Maps,
         velocity: np.ndarray,
         amplitude: np.ndarray,
-        nu: float,
         tolerance: float | None,
     ) -> Answer:
         """Return friction from the map alone.
@@ -317,15 +330,14 @@ class Friction:
         """
         value, error = np.full(len(velocity), np.nan), np.full(len(velocity), np.inf)
         rows, outside = np.nan_to_num(amplitude), np.ones(len(velocity), bool)
-        table, still = self._table(nodes, nu), self._table(nodes, nu, still=True)
-        for part, chosen in ((table, velocity > 0.0), (still, velocity == 0.0)):
+        for part, chosen in ((maps.moving, velocity > 0.0), (maps.still, velocity == 0.0)):
             if part is not None:
                 inside = chosen & part.rows.holds(rows) & part.columns.holds(velocity)
                 value[inside], error[inside] = part.at(rows[inside], velocity[inside])
                 outside &= ~inside
         if tolerance is None and outside.any():
             first = int(np.flatnonzero(outside)[0])
-            part = still if velocity[first] == 0.0 else table
+            part = maps.still if velocity[first] == 0.0 else maps.moving
             self._refuse_outside(part, velocity[first], rows[first])
         return value, error, np.full(len(value), MAP)
 

@@ -108,16 +108,11 @@ LIMITS = {
 }
 
 
-def is_known(motion: str, pressure: str) -> bool:
-    """Return True if limits are proved for a motion under a pressure."""
-    return pressure == "hertz" and (motion in LIMITS or motion == "continuous-bore")
-
-
 def has_limits(dataset: xr.Dataset) -> bool:
     """Return True if limits are proved for the motion, the pressure and the drive of a dataset."""
-    if not is_alone(dataset):
-        return False
-    return is_known(dataset.attrs["motion"], dataset.attrs.get("pressure", "hertz"))
+    about, motion = dataset.attrs, dataset.attrs["motion"]
+    is_known = motion in LIMITS or motion == "continuous-bore"
+    return is_known and about.get("pressure", "hertz") == "hertz" and is_alone(dataset)
 
 
 def is_alone(dataset: xr.Dataset) -> bool:
@@ -157,11 +152,7 @@ def faster(
     """
     low = 1.0 - limits.drop(velocity, amplitude)
     low = np.clip(np.fmax(low, edge.value - edge.error), 0.0, 1.0)  # never falls with the velocity
-    share = (fastest / velocity) ** FAST_EXPONENT
-    gap = np.fmax(1.0 - edge.value - edge.error, 0.0)
-    high = np.maximum(1.0 - share**STEEPEST * gap, low)
-    far = 1.0 - (1.0 - edge.value) * share
-    return _within(low, high, np.where(np.isnan(far), low, far))
+    return _near_full_friction(edge, low, (fastest / velocity) ** FAST_EXPONENT)
 
 
 def wider(
@@ -223,10 +214,18 @@ def narrower(limits: Limits, edge: Estimate, amplitude: np.ndarray, narrowest: f
     shape (n,) each.
     """
     low = np.clip(edge.value - edge.error, 0.0, 1.0)
-    share = (amplitude / narrowest) ** NARROW_EXPONENT
-    gap = np.maximum(1.0 - edge.value - edge.error, 0.0)
+    return _near_full_friction(edge, low, (amplitude / narrowest) ** NARROW_EXPONENT)
+
+
+def _near_full_friction(edge: Estimate, low: np.ndarray, share: np.ndarray) -> tuple:
+    """Estimate friction between the edge of a map, where `share` is 1, and 1, where it is 0.
+
+    low: lower end of the bracket.  The value is `low` if friction at the edge is unknown.
+    """
+    gap = np.fmax(1.0 - edge.value - edge.error, 0.0)
     high = np.maximum(1.0 - share**STEEPEST * gap, low)
-    return _within(low, high, 1.0 - (1.0 - edge.value) * share)
+    guess = 1.0 - (1.0 - edge.value) * share
+    return _within(low, high, np.where(np.isnan(guess), low, guess))
 
 
 def within_the_balance(

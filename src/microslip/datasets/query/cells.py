@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
@@ -45,6 +45,8 @@ class CellTable:
         asinh(velocity) instead of friction.
     bounds : numpy.ndarray, shape (k,)
         Error bound for each cell.
+    ratios : numpy.ndarray, shape (1,) or (2,)
+        The only Poisson's ratio, or the smallest and the largest Poisson's ratio.
     poisson : float, optional
         Poisson's ratio at which the map is evaluated, if Poisson's ratio is a direction of the map.
     """
@@ -53,6 +55,7 @@ class CellTable:
     borders: np.ndarray
     nodes: np.ndarray
     bounds: np.ndarray
+    ratios: np.ndarray
     poisson: float = 0.0
 
     @cached_property
@@ -130,59 +133,28 @@ Map = Table | CellTable
 """Friction over velocity and amplitude at one Poisson's ratio."""
 
 
-@dataclass(frozen=True, eq=False)
-class CellNodes:
-    """Points and cells of a certified map, with the method `table` of nodes.Nodes.
-
-    Attributes
-    ----------
-    poisson : numpy.ndarray, shape (1,) or (2,)
-        The only Poisson's ratio, or the smallest and the largest Poisson's ratio.
-    values, errors : numpy.ndarray, shape (n,)
-        mu_macro and its errors at the points.  Unknown values are NaN, with an infinite error.
-    cells : CellTable
-        Friction in the cells.
-    """
-
-    poisson: np.ndarray
-    values: np.ndarray
-    errors: np.ndarray
-    cells: CellTable
-
-    def table(self, poisson: float, *, still: bool = False) -> CellTable | None:
-        """Return the map at a Poisson's ratio, or None if there is no such map.
-
-        The map is for velocities above 0 or, if `still` is True, for the velocity 0.
-        """
-        if still != self.cells.is_static:
-            return None
-        return replace(self.cells, poisson=poisson)
-
-
-def cells_of(dataset: xr.Dataset) -> CellNodes:
-    """Read the dataset of a certified map.
+def cells_of(dataset: xr.Dataset) -> CellTable:
+    """Read the cells of a certified map.
 
     Raises InputError with the name of a missing variable.
     """
     coordinates = _coordinates_in(dataset)
     names = [certified_map.BORDERS[direction] for direction in coordinates.directions]
     drifts = certified_map.is_of_drift(dataset)
-    quantity = ("velocity", "velocity_error") if drifts else ("mu_macro", "mu_macro_error")
-    names_needed = (*quantity, "poisson", "cell_node", "cell_error")
+    quantity = "velocity" if drifts else "mu_macro"
+    names_needed = (quantity, f"{quantity}_error", "poisson", "cell_node", "cell_error")
     for name in (*names_needed, *sum(names, ())):
         if name not in dataset.variables:
             raise InputError(name, None, LOST)
-    values, errors = (dataset[name].values for name in quantity)
+    values = dataset[quantity].values
     cell_nodes = dataset["cell_node"].values.astype(int)
     if cell_nodes.max() >= len(values):
         raise InputError("point", len(values), "allowed are all points of the dataset")
     borders = np.stack([[dataset[name].values for name in pair] for pair in names])
     interpolated = np.arcsinh(values) if drifts else values
     nodes = interpolated[cell_nodes].reshape(-1, *(n + 1 for n in coordinates.degrees))
-    bounds = dataset["cell_error"].values
-    cells = CellTable(coordinates, borders.transpose(2, 0, 1), nodes, bounds)
-    poisson = coordinates.poisson or np.atleast_1d(dataset["poisson"].values)
-    return CellNodes(np.array(poisson), values, errors, cells)
+    bounds, ratios = dataset["cell_error"].values, coordinates.poisson or dataset["poisson"].values
+    return CellTable(coordinates, borders.transpose(2, 0, 1), nodes, bounds, np.atleast_1d(ratios))
 
 
 def _coordinates_in(dataset: xr.Dataset) -> MapCoordinates | DriftCoordinates:

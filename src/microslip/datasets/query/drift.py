@@ -73,7 +73,7 @@ class Drift:
             If an argument is invalid, if the dataset lacks a variable, or if a contact drifts
             outside the range of the map.  The message names the argument or the variable.
         """
-        table = cells_of(self._dataset).cells
+        table = cells_of(self._dataset)
         # The amplitude is the first dimension, as in the datasets.
         coordinates = {
             "amplitude": coordinate_array("amplitude", amplitude),

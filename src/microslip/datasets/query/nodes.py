@@ -8,9 +8,6 @@ node errors and the interpolation error.  The interpolation error is estimated b
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from typing import TYPE_CHECKING
-
 import numpy as np
 import xarray as xr
 
@@ -19,60 +16,12 @@ from microslip.datasets.query.interpolation import Axis, Table, largest_around
 from microslip.foundation.arguments import is_real
 from microslip.foundation.errors import InputError
 
-if TYPE_CHECKING:
-    from microslip.datasets.query.cells import CellNodes
-
+AXES = ("poisson", "amplitude", "velocity")
 SAME = 1e-12
 """Difference below which two Poisson's ratios, or two values of friction, count as equal."""
 
 
-@dataclass(frozen=True, eq=False)
-class Nodes:
-    """Values and their errors at the nodes of a map.  Unknown values are NaN.
-
-    Attributes
-    ----------
-    poisson, amplitude, velocity : numpy.ndarray
-        Ascending dimensionless coordinates, shapes (k,), (n,) and (m,).
-    values, errors : numpy.ndarray, shape (k, n, m)
-        mu_macro and its error bound.
-    """
-
-    poisson: np.ndarray
-    amplitude: np.ndarray
-    velocity: np.ndarray
-    values: np.ndarray
-    errors: np.ndarray
-
-    def table(self, poisson: float, *, still: bool = False) -> Table | None:
-        """Return the map at a Poisson's ratio, or None if there is no such map.
-
-        The map contains velocities above 0 or, if `still` is True, only the velocity 0.
-        """
-        chosen = self.velocity == 0.0 if still else self.velocity > 0.0
-        if not chosen.any():
-            return None
-        values, errors = self._at(poisson)
-        columns = Axis(self.velocity[chosen])
-        return Table(Axis(self.amplitude), columns, values[:, chosen], errors[:, chosen])
-
-    def _at(self, poisson: float) -> tuple[np.ndarray, np.ndarray]:
-        """Return values and errors at a Poisson's ratio, shape (n, m) each."""
-        near = int(np.argmin(np.abs(self.poisson - poisson)))
-        if abs(self.poisson[near] - poisson) <= SAME:
-            return self.values[near], self.errors[near]
-        axis = Axis(self.poisson)
-        (cell,), (share,), (index,), (weights,) = axis.cubics(np.array([poisson]))
-        value = np.tensordot(weights, self.values[index], 1)
-        flat = self.values.reshape(len(self.poisson), -1)
-        misses = axis.misses(flat).reshape(self.values.shape)
-        # at the nodes around the cell, as along the other axes
-        around = misses[max(cell - 1, 0) : cell + 3].max(axis=0)
-        error = 4.0 * share * (1.0 - share) * largest_around(around)
-        return value, self.errors[index].max(axis=0) + error
-
-
-def nodes_of(dataset: xr.Dataset, *, periodic: bool, poisson: float | None = None) -> Nodes:
+def nodes_of(dataset: xr.Dataset, *, periodic: bool, poisson: float | None = None) -> xr.Dataset:
     """Read the nodes of a map from a sweep's dataset, or from a selection of such a dataset.
 
     Parameters
@@ -87,12 +36,18 @@ def nodes_of(dataset: xr.Dataset, *, periodic: bool, poisson: float | None = Non
     poisson : float, optional
         Poisson's ratio of the dataset, if the dataset lacks this coordinate.
 
+    Returns
+    -------
+    xarray.Dataset
+        mu_macro and mu_macro_error over AXES, which are ascending.  Unknown values are NaN.  The
+        amplitude of a steady motion is 0.
+
     Raises
     ------
     InputError
         If a variable is missing or a dimension is not allowed.  The message contains the name.
     """
-    axes = ("poisson", "amplitude", "velocity") if periodic else ("poisson", "velocity")
+    axes = tuple(axis for axis in AXES if periodic or axis != "amplitude")
     if "poisson" not in dataset.coords and poisson is not None:
         dataset = dataset.assign_coords(poisson=float(poisson))
     for name in ("mu_macro", "mu_macro_error", *axes):
@@ -113,16 +68,10 @@ def nodes_of(dataset: xr.Dataset, *, periodic: bool, poisson: float | None = Non
         if not chosen.sizes[dim]:
             raise InputError(dim, "no entry", f"{NEEDS} one at least, and none is selected")
     _refuse_contradictions(chosen, axes)
-    chosen = chosen.drop_duplicates(list(axes)).sortby(list(axes)).transpose(*axes)
-    values, errors = (
-        chosen[name].where(chosen["is_known"]).values.astype(float)
-        for name in ("mu_macro", "mu_macro_error")
-    )
     if not periodic:
-        values, errors = values[:, None], errors[:, None]
-    amplitude = chosen["amplitude"].values.astype(float) if periodic else np.zeros(1)
-    poissons, velocity = (chosen[dim].values.astype(float) for dim in ("poisson", "velocity"))
-    nodes = Nodes(poissons, amplitude, velocity, values, errors)
+        chosen = chosen.expand_dims(amplitude=[0.0])
+    nodes = chosen.drop_duplicates(list(axes)).sortby(list(axes)).transpose(*AXES)
+    nodes = nodes[["mu_macro", "mu_macro_error"]].where(nodes["is_known"])
     _refuse_impossible(nodes)
     return nodes
 
@@ -143,28 +92,29 @@ def _refuse_contradictions(chosen: xr.Dataset, axes: tuple[str, ...]) -> None:
             raise InputError(axis, float(low[axis][apart][0]), allowed)
 
 
-def _refuse_impossible(nodes: Nodes) -> None:
+def _refuse_impossible(nodes: xr.Dataset) -> None:
     """Raise InputError if a coordinate or an error is outside its allowed range."""
     for name, top in (("poisson", 0.5 + SAME), ("amplitude", np.inf), ("velocity", np.inf)):
-        axis = getattr(nodes, name)
+        axis = nodes[name].values
         wrong = axis[~(np.isfinite(axis) & (axis >= 0.0) & (axis <= top))]
         if wrong.size:
             allowed = "0 to 0.5" if name == "poisson" else "a finite number >= 0"
             raise InputError(name, float(wrong[0]), f"in the dataset; allowed is {allowed}")
-    if (nodes.errors < 0.0).any():
-        least = float(np.nanmin(nodes.errors))
+    least = float(nodes["mu_macro_error"].min())
+    if least < 0.0:
         raise InputError("mu_macro_error", least, "in the dataset; allowed is 0 or more")
 
 
-def refuse_values(nodes: Nodes | CellNodes, least: float) -> None:
+def refuse_values(nodes: xr.Dataset, least: float) -> None:
     """Raise InputError if mu_macro is outside the range `least` to 1 by more than its error.
 
     `least` is -1, or 0 for motions that cannot propel the contact.
     """
-    off = np.fmax(nodes.values - 1.0, least - nodes.values) > nodes.errors + SAME
+    values = nodes["mu_macro"].values
+    off = np.fmax(values - 1.0, least - values) > nodes["mu_macro_error"].values + SAME
     if off.any():
         allowed = f"in the dataset; allowed is {least:g} to 1"
-        raise InputError("mu_macro", float(nodes.values[off][0]), allowed)
+        raise InputError("mu_macro", float(values[off][0]), allowed)
 
 
 def _converged(dataset: xr.Dataset) -> xr.DataArray:
@@ -205,3 +155,35 @@ def poisson_within(ratios: np.ndarray, poisson: float | None) -> float:
     if not low - SAME <= nu <= high + SAME:
         raise InputError("poisson", poisson, f"{allowed}; microslip.solve computes any")
     return nu
+
+
+def tables_at(nodes: xr.Dataset, poisson: float) -> tuple[Table | None, Table | None]:
+    """Return the maps of velocities above 0 and of the velocity 0 at a Poisson's ratio.
+
+    nodes: see `nodes_of`.  A map is None if it has no nodes.
+    """
+    amplitude, velocity = (np.asarray(nodes[axis], float) for axis in ("amplitude", "velocity"))
+    values, errors = _values_at(nodes, poisson)
+
+    def part(chosen: np.ndarray) -> Table | None:
+        if not chosen.any():
+            return None
+        return Table(Axis(amplitude), Axis(velocity[chosen]), values[:, chosen], errors[:, chosen])
+
+    return part(velocity > 0.0), part(velocity == 0.0)
+
+
+def _values_at(nodes: xr.Dataset, poisson: float) -> tuple[np.ndarray, np.ndarray]:
+    """Return values and errors at a Poisson's ratio, shape (amplitudes, velocities) each."""
+    values, errors = (np.asarray(nodes[name], float) for name in ("mu_macro", "mu_macro_error"))
+    ratios = np.asarray(nodes["poisson"], float)
+    near = int(np.argmin(np.abs(ratios - poisson)))
+    if abs(ratios[near] - poisson) <= SAME:
+        return values[near], errors[near]
+    axis = Axis(ratios)
+    (cell,), (share,), (index,), (weights,) = axis.cubics(np.array([poisson]))
+    misses = axis.misses(values.reshape(len(ratios), -1)).reshape(values.shape)
+    # at the nodes around the cell, as along the other axes
+    around = misses[max(cell - 1, 0) : cell + 3].max(axis=0)
+    error = 4.0 * share * (1.0 - share) * largest_around(around)
+    return np.tensordot(weights, values[index], 1), errors[index].max(axis=0) + error

@@ -17,10 +17,10 @@ from typing import Any
 import xarray as xr
 
 from microslip.config.records import MOTION_OF_SWEEP
-from microslip.config.schema import near_miss
 from microslip.datasets.netcdf import group_names, refuse_oversized
 from microslip.foundation.errors import CacheError, InputError
 from microslip.foundation.files import refuse_no_folder
+from microslip.foundation.spec import near_miss
 from microslip.sweeps.stamps import is_damaged
 
 SOLVED = {"mu_macro", "velocity_error"}

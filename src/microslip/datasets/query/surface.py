@@ -65,9 +65,7 @@ class Surface:
             self._rows.misses(self._points),
             self._columns.misses(self._points.T).T,
         ):
-            nodes = largest_around(np.nan_to_num(missed))
-            corners = nodes[:-1, :-1], nodes[1:, :-1], nodes[:-1, 1:], nodes[1:, 1:]
-            error += np.maximum.reduce(corners)
+            error += largest_around(np.nan_to_num(missed), 4)
         cells = error <= np.diff(levels).min(initial=np.inf) / 2.0
         # A line between two cells is drawn if it is reliable in one of them.
         rows = _cells(self._rows, self.amplitude)

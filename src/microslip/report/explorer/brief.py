@@ -17,7 +17,7 @@ from microslip.datasets.catalogue import FORMS, ClosedForm
 from microslip.datasets.query.interpolation import Axis
 from microslip.foundation.canonical import number
 from microslip.report.figures import style
-from microslip.report.figures.data import at_each_poisson, curve, limit, require, sweep
+from microslip.report.figures.data import at_each_poisson, curve, limit, spans_a_map
 from microslip.report.figures.formulas import html
 from microslip.report.figures.maps import CURVES
 from microslip.sweeps.evaluate import plain
@@ -39,47 +39,35 @@ NAMES = {
 
 def is_map(dataset: xr.Dataset) -> bool:
     """Return whether a dataset is shown as maps instead of lines."""
-    if DRIVE in dataset.attrs or "amplitude" not in dataset.dims:
-        return False
-    return dataset.sizes["amplitude"] > 1 and int((dataset["velocity"] > 0).sum()) > 1
+    return DRIVE not in dataset.attrs and spans_a_map(dataset)
 
 
 def maps(name: str, dataset: xr.Dataset) -> list[dict]:
-    """Pack the maps at all Poisson's ratios as JSON values.
-
-    Raises ValueError if a variable is missing.
-    """
-    require("explorer", name, dataset, ["amplitude", "velocity", *POINTS])
+    """Pack the maps at all Poisson's ratios as JSON values."""
     return [_map(name, part) for part in at_each_poisson(dataset)]
 
 
 def _map(name: str, dataset: xr.Dataset) -> dict:
-    shown, poisson = sweep(dataset, ("amplitude", "velocity"))
-    shown = shown.transpose("amplitude", "velocity", ...)
-    return about(name, dataset, poisson) | {
+    shown = dataset.transpose("amplitude", "velocity", ...)
+    return about(name, dataset) | {
         "labels": [axis_label(shown, dim) for dim in ("velocity", "amplitude")],
         "velocity": plain(shown["velocity"].values),
         "amplitude": plain(shown["amplitude"].values),
         "points": {key: plain(shown[key].values) for key in POINTS},
-        "limits": limits_of(shown, poisson),
+        "limits": limits_of(shown),
         "periods": {"index": None, "failed": [], "count": 0},
     }
 
 
 def lines(name: str, dataset: xr.Dataset) -> list[dict]:
-    """Pack the lines at all Poisson's ratios as JSON values.
-
-    Raises ValueError if a variable is missing.
-    """
+    """Pack the lines at all Poisson's ratios as JSON values."""
     return [_lines(name, part) for part in at_each_poisson(dataset)]
 
 
 def _lines(name: str, dataset: xr.Dataset) -> dict:
     has_force = "force" in dataset.attrs.get(DRIVE, "").split(", ")
     value = "velocity" if has_force else "mu_macro"
-    require("explorer", name, dataset, [value, f"{value}_error", "converged"])
     dims = [dim for dim in AXES if dim in dataset[value].dims]
-    poisson = float(dataset["poisson"])
     along = max(dims, key=lambda dim: (dataset.sizes[dim], dims.index(dim)))
     others = [dim for dim in dims if dim != along]
     shown = dataset.transpose(*others, along, ...).sortby(along)
@@ -93,8 +81,8 @@ def _lines(name: str, dataset: xr.Dataset) -> dict:
         series.append({"label": label} | entries)
     at = shown[along].values
     even_ratios = at[0] > 0 and Axis(at).logarithmic
-    limits = [] if has_force else limits_of(shown, poisson)
-    return about(name, dataset, poisson) | {
+    limits = [] if has_force else limits_of(shown)
+    return about(name, dataset) | {
         "x": {"label": axis_label(shown, along), "values": plain(at), "log": bool(even_ratios)},
         "y": {"label": "mean velocity" if has_force else MU_MACRO.description, "log": has_force},
         "series": series,
@@ -118,8 +106,9 @@ def _torque(shown: xr.Dataset, along: str) -> list[dict]:
     return [torque]
 
 
-def about(name: str, dataset: xr.Dataset, poisson: float) -> dict:
+def about(name: str, dataset: xr.Dataset) -> dict:
     """Return the description of a map or of lines. The paper's sweeps have the group None."""
+    poisson = float(dataset["poisson"])
     group = dataset.attrs.get("group", "drives" if DRIVE in dataset.attrs else None)
     return {
         "name": name,
@@ -139,7 +128,7 @@ def axis_label(dataset: xr.Dataset, dim: str) -> str:
     return f"{text}  {html(attributes.get('formula', ''))}".strip()
 
 
-def limits_of(dataset: xr.Dataset, poisson: float) -> list[dict]:
+def limits_of(dataset: xr.Dataset) -> list[dict]:
     """Return the theoretical limits of a dataset at one Poisson's ratio.
 
     Each limit has a value at every point. A limit with a fine axis also has a curve, unless the
@@ -151,17 +140,15 @@ def limits_of(dataset: xr.Dataset, poisson: float) -> list[dict]:
         name: form for name, form in NAMES.items() if name not in own
     }
     return [
-        _limit(dataset, motion, form, poisson)
-        for name, form in forms.items()
-        if name in dataset.variables
+        _limit(dataset, motion, form) for name, form in forms.items() if name in dataset.variables
     ]
 
 
-def _limit(dataset: xr.Dataset, motion: str, form: ClosedForm, poisson: float) -> dict:
+def _limit(dataset: xr.Dataset, motion: str, form: ClosedForm) -> dict:
     key = form.name
     spare = SPARE_COLOURS[list(NAMES).index(key) % len(SPARE_COLOURS)], style.DOTTED
     color, dash = CURVES.get(motion, {}).get(key, spare)
-    only_at_0 = poisson > 0 and form.exact and not form.any_poisson
+    only_at_0 = dataset["poisson"] > 0 and form.exact and not form.any_poisson
     values = dataset[key]
     entry = {
         "label": f"{form.label} for ν = 0" if only_at_0 else form.label,

@@ -35,8 +35,8 @@ def packed(dataset: xr.Dataset) -> dict:
     InputError
         If the dataset is incomplete.
     """
-    source = cells_of(dataset)
-    table, coordinates = source.cells, source.cells.coordinates
+    table = cells_of(dataset)
+    coordinates = table.coordinates
     assert isinstance(coordinates, map_coordinates.MapCoordinates)  # for maps of friction
     motion, pressure = dataset.attrs["motion"], dataset.attrs.get("pressure", "hertz")
     return {
@@ -45,7 +45,7 @@ def packed(dataset: xr.Dataset) -> dict:
         "error": float(dataset.attrs["error"]),
         "velocity": list(coordinates.velocity),
         "amplitude": list(coordinates.amplitude),
-        "poisson": [float(source.poisson[0]), float(source.poisson[-1])],
+        "poisson": [float(table.ratios[0]), float(table.ratios[-1])],
         "kink_amplitudes": list(coordinates.kinks.amplitudes),
         "kink_velocity": list(coordinates.kinks.velocity),
         "gathering": {

@@ -19,8 +19,8 @@ FOLDER = Path(__file__).parent
 def write(path: str | os.PathLike, datasets: dict, periods: dict, certified: Sequence = ()) -> None:
     """Write the page atomically. Equal arguments give equal bytes.
 
-    datasets, periods, certified: arguments of `payload.build`. Raises ValueError if an argument is
-    incomplete, and CacheError if the file cannot be written.
+    datasets, periods, certified: arguments of `payload.build`. Raises CacheError if the file cannot
+    be written.
     """
     write_atomically(Path(path), page(payload.build(datasets, periods, certified)).encode())
 

@@ -15,12 +15,11 @@ import numpy as np
 import xarray as xr
 from numpy.typing import ArrayLike
 
-from microslip.datasets.catalogue import FORMS
 from microslip.foundation.canonical import number
 from microslip.report.explorer import brief, si_form
 from microslip.report.explorer.certified import packed
 from microslip.report.figures import drawing
-from microslip.report.figures.data import require, sweep
+from microslip.report.figures.data import at_one_poisson
 from microslip.sweeps.evaluate import plain
 from microslip.sweeps.period_codec import SHARES, text_of, unpacked_half, values_of
 
@@ -60,11 +59,6 @@ def build(datasets: dict, periods: dict, certified: Sequence = ()) -> dict:
     -------
     dict
         JSON values.
-
-    Raises
-    ------
-    ValueError
-        If a variable is missing, or if a period is for a point that is not on its map.
     """
     content: dict[str, list[dict]] = {"maps": [], "lines": []}
     for name, dataset in datasets.items():
@@ -89,12 +83,10 @@ def _maps(name: str, dataset: xr.Dataset, records: list[dict]) -> list[dict]:
 
     Only the map at the ratio nearest 0 has periods and all errors.
     """
-    require("explorer", name, dataset, ["amplitude", "velocity", *POINTS, *FORMS[name]])
-    shown, poisson = sweep(dataset, ("amplitude", "velocity"))
-    shown = shown.transpose("amplitude", "velocity", ...)
+    shown = at_one_poisson(dataset).transpose("amplitude", "velocity", ...)
     force, label = OTHER_FORCES[name]
     maps = [one | {"title": TITLES[name]} for one in brief.maps(name, dataset)]
-    first = next(one for one in maps if one["poisson"] == poisson)
+    first = next(one for one in maps if one["poisson"] == float(shown["poisson"]))
     first |= {
         "labels": [*first["labels"], label],
         "points": {key: plain(shown[key].values) for key in POINTS},
@@ -112,10 +104,7 @@ def _periods(dataset: xr.Dataset, records: list[dict], force: str) -> dict:
     results: list[dict] = []
     for record in records:
         request, result = record["request"], record["result"]
-        try:
-            place = rows[request["amplitude"]], columns[request["velocity"]]
-        except KeyError as error:
-            raise ValueError(f"explorer: a period at {error}, which is not on the map") from None
+        place = rows[request["amplitude"]], columns[request["velocity"]]
         if "tractions" in result:
             index[place] = len(results)
             results.append(result)

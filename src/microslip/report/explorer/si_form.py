@@ -82,7 +82,7 @@ CHOSEN = {"material": "steel", "counterbody": "steel", "motion": "transverse"}
 def packed() -> dict:
     """Pack the data of the form as JSON values."""
     return {
-        "motions": {motion: f"{motion}: {MOTIONS[motion]}" for motion in CHOICES},
+        "motions": {motion: f"{motion}: {MOTIONS[motion].description}" for motion in CHOICES},
         "fields": {
             name: asdict(field) | {"units": [_unit(unit, field.unit) for unit in field.units]}
             for name, field in FIELDS.items()

@@ -28,21 +28,15 @@ def profile(name: str, dataset: xr.Dataset) -> Figure:
 
     A profile is the fraction of points that a competitor solves within a cost.
     """
-    if not dataset["point"].size or not dataset["competitor"].size:
-        raise ValueError(f"figure {name}: the dataset holds no points or no trials")
     dataset = dataset.isel(map_tolerance=int(np.argmin(dataset["map_tolerance"].values)))
     of_contest = dataset["competitor_contest"].values.astype(str)
     contests = list(dict.fromkeys(of_contest))
-    rows = -(-len(contests) // 2)
-    figure = look.new_figure(look.DOUBLE, 3.1 * rows)
-    grid = figure.subplots(rows, 2, squeeze=False).ravel()
+    figure = look.new_figure(look.DOUBLE, 3.1 * -(-len(contests) // 2))
+    grid = panels.grid(figure, len(contests), 2)
     tolerance = look.power_of_ten(float(dataset["map_tolerance"]))
-    letters = look.letters(len(contests))
-    for axes, letter, contest in zip(grid, letters, contests, strict=False):
+    for axes, contest in zip(grid, contests, strict=True):
         _profile(axes, dataset.isel(competitor=of_contest == contest), contest == contests[0])
-        panels.legend_above(axes, letter, rf"{contest}, error within ${tolerance}$")
-    for axes in grid[len(contests) :]:
-        axes.remove()
+        panels.legend_above(axes, rf"{contest}, error within ${tolerance}$")
     return figure
 
 
@@ -68,9 +62,9 @@ def _profile(axes: Axes, contest: xr.Dataset, of_models: bool) -> None:
         ink |= {"lw": 1.8 if name in ("shipped", "auto") else 1.3, "gid": f"profile {name}"}
         label = NAMES.get(name, name) + ("" if at.size else ": never")
         axes.plot([1.0, *at, high], shares, label=label, **ink)
-    axes.set(xscale="log", xlim=(1.0, high), ylabel="fraction of points  (dimensionless)")
+    axes.set_ylabel("fraction of points  (dimensionless)")
     axes.set_xlabel(r"CPU time divided by the smallest  $t/t_\mathrm{best}$")
-    panels.logarithmic(axes.xaxis)
+    panels.logarithmic(axes, (1.0, high))
     panels.unit_range(axes)
 
 
@@ -78,10 +72,10 @@ def scaling(name: str, dataset: xr.Dataset) -> Figure:
     """Draw a panel for each quantity, with a curve for each model and its fitted exponent."""
     figure = look.new_figure(look.DOUBLE, 3.1)
     grid = figure.subplots(1, len(GROWTH), sharex=True)
-    for letter, axes, (quantity, label) in zip("abc", grid, GROWTH.items(), strict=True):
+    for axes, (quantity, label) in zip(grid, GROWTH.items(), strict=True):
         _growth(axes, dataset, quantity)
         axes.set(xlabel="unknowns  $N$  (dimensionless)", ylabel=label)
-        panels.legend_above(axes, letter, "fitted growth", ncols=1)
+        panels.legend_above(axes, "fitted growth", ncols=1)
     return figure
 
 
@@ -106,4 +100,4 @@ def _growth(axes: Axes, dataset: xr.Dataset, quantity: str) -> None:
             axes.annotate(size, (x[last], y[last]), (-2, 3), **text)
     axes.margins(0.06, 0.14)
     for axis in (axes.xaxis, axes.yaxis):
-        panels.logarithmic(axis)
+        panels.logarithmic_ticks(axis)

@@ -69,7 +69,6 @@ def draw(name: str, dataset: xr.Dataset) -> Figure:
     figure = look.new_figure(look.DOUBLE, height)
     figure.set_layout_engine("constrained", w_pad=0.0, wspace=0.0, rect=(0.01, 0.0, 0.98, 1.0))
     grid = figure.add_gridspec(len(bands), squares, height_ratios=[len(rows) for rows in used])
-    letters = iter(look.letters(len(blocks)))
     for k, (band, rows) in enumerate(zip(bands, used, strict=True)):
         start = 0
         for block in band:
@@ -77,7 +76,7 @@ def draw(name: str, dataset: xr.Dataset) -> Figure:
             _squares(axes, block.outcome[rows])
             names = [methods[i] for i in rows] if not start else [""] * len(rows)
             _labels(axes, block, names, WIDTH / squares)
-            _head(axes, block, next(letters), WIDTH / squares)
+            _head(axes, block, WIDTH / squares)
             start += block.width
     figure.align_xlabels()
     figure.align_titles()
@@ -147,10 +146,10 @@ def _labels(axes: Axes, block: Block, names: list[str], square: float) -> None:
     axes.get_yticklabels()[0].set_fontweight("bold")
 
 
-def _head(axes: Axes, block: Block, letter: str, square: float) -> None:
+def _head(axes: Axes, block: Block, square: float) -> None:
     """Write a block's letter, title and note above its cases."""
     room = (block.width - 1) * square
-    panels.letter(axes, letter, block.title, room)
+    panels.heading(axes, block.title, room)
     axes.xaxis.set_label_position("top")
     note = look.wrapped(block.note, room, look.SMALLEST)
     axes.set_xlabel(note, loc="left", color=look.GREY, fontsize=look.SMALLEST)

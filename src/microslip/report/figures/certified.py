@@ -55,8 +55,8 @@ def draw(name: str, dataset: xr.Dataset) -> Figure:
     errors = _show_cells(left, right, dataset, _points(dataset, poisson), across)
     panels.colour_bar(errors, right, BOUND, aspect=20)
     ratio = rf" at $\nu = {look.number(poisson)}$" if poisson or _is_deep(dataset) else ""
-    panels.letter(left, "a", f"{_points_of(dataset)}, {len(dataset['cell_error'])} cells")
-    panels.letter(right, "b", bound + ratio)
+    panels.heading(left, f"{_points_of(dataset)}, {len(dataset['cell_error'])} cells")
+    panels.heading(right, bound + ratio)
     left.set_ylabel(axis_label(dataset, "amplitude", DIMENSIONLESS))
     for axes in (left, right):
         axes.set_xlabel(axis_label(dataset, across, DIMENSIONLESS))
@@ -114,8 +114,8 @@ def _lines(dataset: xr.Dataset) -> Figure:
         at = _points(dataset, poisson)
         left.plot(at["amplitude"], at["mu_macro"], ".", color=color, ms=3.5, gid="points")
     panels.unit_range(left)
-    panels.legend_above(left, "a", _points_of(dataset))
-    panels.letter(right, "b", f"{len(dataset['cell_error'])} cells")
+    panels.legend_above(left, _points_of(dataset))
+    panels.heading(right, f"{len(dataset['cell_error'])} cells")
     right.set_ylim(0.0, 1e3 * float(dataset.attrs["error"]))
     for axes, label in ((left, look.FRICTION), (right, BOUND)):
         axes.set(xlabel=axis_label(dataset, "amplitude", DIMENSIONLESS), ylabel=label)

@@ -47,15 +47,15 @@ def static(name: str, dataset: xr.Dataset) -> Figure:
     """Draw friction against the amplitude, and fractions of the bound against the radius."""
     figure = look.new_figure(look.DOUBLE, 6.4)
     grid = figure.subplots(2, 2)
-    for column, (motion, title, quantity, curves) in enumerate(MOTIONS):
-        upper, lower = grid[:, column]
-        _friction(upper, dataset, motion, curves)
-        upper.set(xlabel=look.axis(quantity), ylabel=look.FRICTION)
-        panels.legend_above(upper, "ab"[column], title)
-        _shares(lower, dataset, motion, quantity)
-        panels.legend_above(lower, "cd"[column], "fraction of the friction bound")
-        panels.unit_range(upper)
-        panels.unit_range(lower)
+    for axes, (motion, title, quantity, curves) in zip(grid[0], MOTIONS, strict=True):
+        _friction(axes, dataset, motion, curves)
+        axes.set(xlabel=look.axis(quantity), ylabel=look.FRICTION)
+        panels.legend_above(axes, title)
+    for axes, (motion, _, quantity, _) in zip(grid[1], MOTIONS, strict=True):
+        _shares(axes, dataset, motion, quantity)
+        panels.legend_above(axes, "fraction of the friction bound")
+    for axes in grid.flat:
+        panels.unit_range(axes)
     return figure
 
 
@@ -103,9 +103,9 @@ def patches(name: str, dataset: xr.Dataset) -> Figure:
     figure = look.new_figure(look.DOUBLE, 5.2)
     grid = figure.subplot_mosaic("abc;ddd", height_ratios=(1.0, 0.72))
     contacts = [grid[which] for which in "abc"]
-    for axes, which, (moment, note) in zip(contacts, "abc", MOMENTS.items(), strict=True):
+    for axes, (moment, note) in zip(contacts, MOMENTS.items(), strict=True):
         shade = _contact(axes, dataset.isel(patch_moment=moment))
-        panels.letter(axes, which, note)
+        panels.heading(axes, note)
     contacts[0].set_ylabel(look.axis(FORWARD))
     label = "traction divided by bound  $|q|/(\\mu p)$\nwhere it sticks"
     panels.colour_bar(shade, contacts, label, shrink=0.8, pad=0.015, aspect=24)
@@ -145,7 +145,7 @@ def _areas(axes: Axes, dataset: xr.Dataset) -> None:
     symbols = BORE_AMPLITUDE.latex, VELOCITY["bore"].latex
     values = (float(dataset[f"patch_{n}"]) for n in ("amplitude", "velocity"))
     at = look.conditions(zip(symbols, values, strict=True))
-    panels.legend_above(axes, "d", f"stick area, {at}", ncols=3)
+    panels.legend_above(axes, f"stick area, {at}", ncols=3)
     axes.set(xlim=phase[[0, -1]], xlabel=r"phase  $\Omega t/\pi$")
     axes.set_ylabel("fraction of the contact  (dimensionless)")
     panels.unit_range(axes)

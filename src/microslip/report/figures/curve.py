@@ -32,7 +32,7 @@ def draw(name: str, dataset: xr.Dataset) -> Figure:
     shown = DRIFT if dataset["force_N"].notnull().any() else FRICTION
     figure = look.new_figure(look.SINGLE, 0.4 + 1.9 * len(shown))
     axes = figure.subplots(len(shown), 1, sharex=True, squeeze=False)[:, 0]
-    for panel, which, (variable, error, label, si) in zip(axes, "ab", shown, strict=False):
+    for panel, (variable, error, label, si) in zip(axes, shown, strict=True):
         factor, prefixed = look.prefixed(dataset[variable].fillna(0.0).values, si)
         for line, (color, marker, ls) in zip(lines, look.LINES, strict=False):
             title = "".join(_title(line[other]) for other in others)
@@ -44,7 +44,7 @@ def draw(name: str, dataset: xr.Dataset) -> Figure:
         panel.set_ylabel(f"{label}({prefixed or 'dimensionless'})")
         panel.set_ylim(bottom=0.0)
         if len(shown) > 1:
-            panels.letter(panel, which)
+            panels.heading(panel)
     panels.logarithmic_if_wide(axes[-1], x)
     axes[-1].set_xlabel(f"{dataset[abscissa].attrs['long_name']} ({unit or 'dimensionless'})")
     if others:

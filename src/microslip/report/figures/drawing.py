@@ -2,7 +2,7 @@
 
 Figures show stored numbers only: every curve, including those from theory, is a variable of a
 dataset. Each kind of figure has a module. The module `style` defines colours and fonts, and `data`
-checks datasets.
+selects parts of datasets.
 
     figure = draw("fig2_transverse_map", {"transverse": data.loaded("results/transverse.nc")})
     save(figure, "results/figures/fig2_transverse_map.pdf")
@@ -15,12 +15,10 @@ from __future__ import annotations
 import importlib
 import json
 import os
-import re
 from collections.abc import Iterable, Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from microslip.config.records import MOTION_OF_SWEEP
 from microslip.foundation.files import writing_beside
 
 if TYPE_CHECKING:
@@ -52,8 +50,8 @@ _DRAWN: dict[str, tuple[str, ...]] = {
 }
 """For each figure, the module and function that draw it, and the names of its datasets."""
 
-ON_DEMAND = {"fit": ("fit",), "curve": ("curve",)}
-"""Figures that commands draw from their own results, with the names of the datasets."""
+ON_DEMAND = ("fit", "curve")
+"""Figures that commands draw from their own results."""
 FIGURES = {name: tuple(keys) for name, (_, *keys) in _DRAWN.items() if name not in ON_DEMAND}
 """Figures of the workflow, with the names of the datasets.
 
@@ -109,77 +107,31 @@ def draw(name: str, datasets: Mapping[str, xr.Dataset]) -> Figure:
     Parameters
     ----------
     name : str
-        Name of the figure: a key of `FIGURES` or `ON_DEMAND`, a value that `figure_of` returns, or
-        the name of a certified map.
+        Name of the figure: a key of `FIGURES`, an entry of `ON_DEMAND`, a value that `figure_of`
+        returns, or the name of a certified map.
     datasets : dict of xarray.Dataset
-        The datasets of the figure by name, or all datasets of the group. Others are ignored.
+        The datasets of the figure by name, or all datasets of the group.
 
     Returns
     -------
     Figure
         A figure without a window and without global state.
-
-    Raises
-    ------
-    ValueError
-        If the name is unknown, a dataset has the wrong motion, or a dataset or variable is missing.
     """
-    keys = _keys_of(name, datasets)
-    missing = [key for key in keys if key not in datasets]
-    if missing:
-        present = ", ".join(map(repr, datasets)) or "none"
-        raise ValueError(f"figure {name} needs the dataset {missing[0]!r}; datasets: {present}")
-    for key in keys:
-        motion, other = MOTION_OF_SWEEP.get(key), datasets[key].attrs.get("motion")
-        if motion and other not in (motion, None):
-            raise ValueError(f"figure {name}: dataset {key!r} is of {other!r}; allowed: {motion!r}")
     from microslip.report.figures.style import style
 
+    keys = _DRAWN[name][1:] if name in _DRAWN else datasets
+    shown = [datasets[key] for key in keys]
     module, function = _function_of(name)
     draw_panels = getattr(importlib.import_module(f"microslip.report.figures.{module}"), function)
     with style():
-        try:
-            figure = draw_panels(name, *(datasets[key] for key in keys))
-        except KeyError as error:
-            raise _missing_variable(name, {key: datasets[key] for key in keys}, error) from error
+        figure = draw_panels(name, *shown)
         for _ in range(2):  # the second pass converges; the layout is then fixed
             figure.get_layout_engine().execute(figure)
         figure.set_layout_engine("none")
         for finish in getattr(figure, "finishing", ()):
             finish()
-    figure.made_from = made_from(datasets[key] for key in keys)
+    figure.made_from = made_from(shown)
     return figure
-
-
-def _missing_variable(
-    name: str, datasets: Mapping[str, xr.Dataset], error: KeyError
-) -> KeyError | ValueError:
-    """Convert an xarray KeyError to an error that names the dataset and the missing variable.
-
-    Other errors are returned unchanged.
-    """
-    variable = re.match(r"No variable named '(\w+)'", str(error.args[0]))
-    lacking = [k for k, data in datasets.items() if variable and variable[1] not in data.variables]
-    if not variable or not lacking:
-        return error
-    keys = " or ".join(map(repr, lacking))
-    return ValueError(f"figure {name}: dataset {keys} has no variable {variable[1]!r}")
-
-
-def _keys_of(name: str, datasets: Mapping[str, xr.Dataset]) -> tuple[str, ...]:
-    """Return the names of the datasets of a figure."""
-    if name in _DRAWN:
-        return _DRAWN[name][1:]
-    if name.startswith(CERTIFIED):
-        return (name,)
-    groups = {key: dataset.attrs.get("group") for key, dataset in datasets.items()}
-    keys = tuple(key for key, group in groups.items() if group and figure_of(group) == name)
-    if not keys:
-        raise ValueError(
-            f"unknown figure {name!r}; known figures: {', '.join(FIGURES)}, and extended_GROUP for "
-            "a group of these datasets"
-        )
-    return keys
 
 
 def made_from(datasets: Iterable[xr.Dataset]) -> str:
@@ -192,15 +144,12 @@ def save(figure: Figure, path: str | os.PathLike[str]) -> Path:
     """Write a figure atomically as `.png` (300 dpi) or `.pdf` and return its path.
 
     The metadata contain the provenance, see `made_from`, and no date, so that equal figures have
-    equal bytes. A missing folder is created. Raises CacheError if the file cannot be written, and
-    ValueError for another suffix.
+    equal bytes. A missing folder is created. Raises CacheError if the file cannot be written.
     """
     from microslip.report.figures.style import style
 
     path = Path(path)
     kind = path.suffix.lower().removeprefix(".")
-    if kind not in FORMATS:
-        raise ValueError(f"cannot write {path.name!r}: the name must end in .png or .pdf")
     plain, key = FORMATS[kind]
     metadata = plain | {key: getattr(figure, "made_from", None)}
     with writing_beside(path) as beside, style():

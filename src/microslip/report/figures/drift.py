@@ -15,7 +15,7 @@ from microslip.config.quantities import AMPLITUDE, DRIVES, VELOCITY
 from microslip.datasets.catalogue import STATIC
 from microslip.report.figures import panels
 from microslip.report.figures import style as look
-from microslip.report.figures.data import columns, curve, limit, sweep
+from microslip.report.figures.data import at_one_poisson, columns, curve, limit
 from microslip.report.figures.map_panel import bands
 
 DECADES = np.linspace(-3.0, 1.0, 17)
@@ -34,8 +34,8 @@ def draw(name: str, *datasets: xr.Dataset) -> Figure:
     figure = look.new_figure(look.DOUBLE, 3.3)
     grid = figure.subplots(1, len(datasets))
     any_unconverged = False
-    for axes, letter, dataset in zip(grid, "ab", datasets, strict=True):
-        filled, has_marks = _map(axes, dataset, letter)
+    for axes, dataset in zip(grid, datasets, strict=True):
+        filled, has_marks = _map(axes, dataset)
         any_unconverged |= has_marks
     velocity_bar(filled, list(grid))
     handles: list[Artist] = [
@@ -69,11 +69,11 @@ def velocity_bar(filled: ContourSet, grid: Axes | list[Axes]) -> None:
     bar.set_ticklabels([f"${look.number(10.0**power)}$" for power in powers])
 
 
-def _map(axes: Axes, dataset: xr.Dataset, letter: str) -> tuple[ContourSet, bool]:
+def _map(axes: Axes, dataset: xr.Dataset) -> tuple[ContourSet, bool]:
     """Draw one map. Returns the bands, and True if the map has unconverged points."""
     motion = dataset.attrs["motion"]
-    part, poisson = sweep(dataset.assign(mu_macro=dataset["velocity"]), ("amplitude", "force"))
-    part = part.transpose("amplitude", "force", ...)
+    part = at_one_poisson(dataset).transpose("amplitude", "force", ...)
+    poisson = float(part["poisson"])
     force, amplitude, velocity, rigid = columns(part, "force", "amplitude", "velocity", RIGID)
     filled, shown = velocity_bands(axes, force, amplitude, velocity)
     levels = np.log10(LINES)
@@ -91,7 +91,7 @@ def _map(axes: Axes, dataset: xr.Dataset, letter: str) -> tuple[ContourSet, bool
     axes.set(xlabel=look.axis(DRIVES["force"]), ylabel=look.axis(AMPLITUDE[motion]))
     panels.ticks_outside(axes)
     note = "velocity " + look.axis(VELOCITY[motion]).removeprefix(VELOCITY[motion].text).strip()
-    panels.letter(axes, letter, note + (rf", $\nu = {look.number(poisson)}$" if poisson else ""))
+    panels.heading(axes, note + (rf", $\nu = {look.number(poisson)}$" if poisson else ""))
     bad = np.argwhere(part["converged"].values == 0)
     axes.plot(force[bad[:, 1]], amplitude[bad[:, 0]], gid="unconverged", **UNCONVERGED)
     return filled, bool(len(bad))

@@ -12,7 +12,7 @@ from matplotlib.figure import Figure
 from microslip.config.quantities import DRIVES, VELOCITY
 from microslip.report.figures import panels
 from microslip.report.figures import style as look
-from microslip.report.figures.data import at_one_poisson, columns, require
+from microslip.report.figures.data import at_one_poisson, columns
 from microslip.theory.drift import antiphase_drift
 
 SPRINGS = ((look.BLUE, "s"), (look.GREEN, "^"), (look.ORANGE, "D"))
@@ -30,7 +30,6 @@ def drives(
     name: str, transverse: xr.Dataset, force: xr.Dataset, spring: xr.Dataset, body: xr.Dataset
 ) -> Figure:
     """Draw friction against the mean velocity, and against the mass at one velocity."""
-    require(name, "drive_body", body, ("mass", "stiffness"))
     figure = look.new_figure(look.DOUBLE, 3.1)
     left, right = figure.subplots(1, 2)
     _over_velocity(left, transverse, force, spring)
@@ -52,10 +51,10 @@ def pairs(name: str, *datasets: xr.Dataset) -> Figure:
     right.plot(form, forces, label="its closed form", **ink)
     velocity = pair["velocity"].values
     amplitude = f"amplitude {float(pair['amplitude']):g}, along the motion"
-    panels.letter(left, "a", f"one contact, {amplitude}")
-    panels.letter(right, "b", "two in antiphase")
+    panels.heading(left, f"one contact, {amplitude}")
+    panels.heading(right, "two in antiphase")
     for axes in (left, right):
-        _logarithmic(axes, velocity[0] / MARGIN, velocity[-1] * MARGIN)
+        panels.logarithmic(axes, (velocity[0] / MARGIN, velocity[-1] * MARGIN))
         axes.set_xlabel(look.axis(VELOCITY["transverse"]))
     panels.unit_range(left)
     left.set_ylabel(look.FRICTION_IN_TWO_LINES)
@@ -74,25 +73,26 @@ def _over_velocity(
     axes.plot(velocity, mu, label="constant velocity", **ink)
     _springs(axes, springs, "velocity", mfc="white")
     _force(axes, _one(force))
-    _logarithmic(axes, velocity[velocity > 0.0][0], velocity[-1])
+    panels.logarithmic(axes, (velocity[velocity > 0.0][0], velocity[-1]))
     axes.set(xlabel=look.axis(VELOCITY["transverse"]), ylabel=look.FRICTION_IN_TWO_LINES)
     panels.unit_range(axes)
-    panels.legend_above(axes, "a", f"amplitude {amplitude:g}, lateral oscillation")
+    panels.legend_above(axes, f"amplitude {amplitude:g}, lateral oscillation")
 
 
 def _over_mass(axes: Axes, transverse: xr.Dataset, body: xr.Dataset) -> None:
     """Draw friction as a function of the mass on a spring, and friction at a constant velocity."""
     bodies = _one(body)
     amplitude, velocity = float(bodies["amplitude"]), float(bodies["velocity"])
-    mu = float(_at(_constant_velocity(transverse, amplitude), "velocity", velocity)["mu_macro"])
+    at = _constant_velocity(transverse, amplitude).sel(velocity=velocity, method="nearest")
+    mu = float(at["mu_macro"])
     axes.axhspan(mu * (1 - GOOD), mu * (1 + GOOD), color=look.PALE, label="within 1 %")
     axes.axhline(mu, color=look.BLACK, lw=1.3, label="constant velocity", gid="velocity")
     _springs(axes, bodies, "mass", name="")
     mass = bodies["mass"].values
-    _logarithmic(axes, mass[0], mass[-1])
+    panels.logarithmic(axes, mass[[0, -1]])
     axes.set(xlabel=look.axis(DRIVES["mass"]), ylabel=look.FRICTION_IN_TWO_LINES)
     at = look.conditions([(VELOCITY["transverse"].latex, velocity)])
-    panels.legend_above(axes, "b", f"a mass on a spring, {at}", ncols=3)
+    panels.legend_above(axes, f"a mass on a spring, {at}", ncols=3)
 
 
 def _springs(axes: Axes, dataset: xr.Dataset, dim: str, name: str = "spring, ", **ink: Any) -> None:
@@ -115,24 +115,11 @@ def _force(axes: Axes, dataset: xr.Dataset) -> None:
     panels.computed(axes, velocity, force, exact, converged, label=label, color=look.VERMILLION)
 
 
-def _logarithmic(axes: Axes, low: float, high: float) -> None:
-    axes.set(xscale="log", xlim=(low, high))
-    panels.logarithmic(axes.xaxis)
-
-
 def _one(dataset: xr.Dataset) -> xr.Dataset:
     """Select one Poisson's ratio and drop axes with one entry."""
-    return at_one_poisson(dataset)[0].squeeze()
+    return at_one_poisson(dataset).squeeze()
 
 
 def _constant_velocity(transverse: xr.Dataset, amplitude: float) -> xr.Dataset:
-    """Select an amplitude of the sweep `transverse`."""
-    return _at(at_one_poisson(transverse)[0], "amplitude", amplitude)
-
-
-def _at(dataset: xr.Dataset, dim: str, value: float) -> xr.Dataset:
-    """Select a value of a dimension, up to rounding. Raises ValueError if it is missing."""
-    same = np.flatnonzero(np.isclose(dataset[dim].values, value, rtol=1e-9, atol=0.0))
-    if not same.size:
-        raise ValueError(f"the sweep transverse has no {dim} {value:g}; the drives need it")
-    return dataset.isel({dim: same[0]})
+    """Select an amplitude of the sweep `transverse`, up to rounding."""
+    return at_one_poisson(transverse).sel(amplitude=amplitude, method="nearest")

@@ -26,7 +26,7 @@ SHADES = LinearSegmentedColormap.from_list("bound", ["#FFFFFF", "#8CC8EE"])
 
 def draw(name: str, dataset: xr.Dataset) -> Figure:
     """Draw traction arrows over a colour map of the bound, with a horizontal lateral axis."""
-    dataset, _ = at_one_poisson(dataset)
+    dataset = at_one_poisson(dataset)
     x, y = columns(dataset, "field_lateral_position", "field_forward_position")
     tractions = columns(dataset, "field_traction_lateral", "field_traction_forward")
     bound, centre = dataset["field_bound"].values, float(dataset["field_centre_lateral"])

@@ -69,8 +69,8 @@ def draw(name: str, dataset: xr.Dataset) -> Figure:
     if len(handles) > 1:
         handles.append(Line2D([], [], color=look.GREY, lw=1.0, label="lines: model"))
     upper.legend(handles=handles, loc="best", fontsize=look.SMALLEST)
-    panels.letter(upper, "a", _parameters(dataset), look.SINGLE - 0.6)
-    panels.letter(lower, "b")
+    panels.heading(upper, _parameters(dataset), look.SINGLE - 0.6)
+    panels.heading(lower)
     return figure
 
 

@@ -19,13 +19,11 @@ from microslip.report.figures.data import (
     columns,
     finite_or_nan,
     limit,
-    require,
-    sweep,
+    spans_a_map,
 )
 from microslip.report.figures.formulas import axis_label, mathtext
 from microslip.report.figures.map_panel import fill
 
-NEEDED = ("velocity", "mu_macro", "mu_macro_error", "converged")
 COLUMNS = {1: 1, 2: 2, 4: 2}
 """Number of columns for 1, 2 and 4 maps. Any other number of maps is drawn in 3 columns."""
 HEIGHT, AROUND = {1: 3.4, 2: 2.5, 3: 1.75}, 0.45
@@ -47,25 +45,17 @@ def draw(name: str, *datasets: xr.Dataset) -> Figure:
     It shows lines if no dataset has that many. If there is enough space, `poisson.draw` draws the
     effect of Poisson's ratio instead.
     """
-    if all(map(_spans_a_map, datasets)) and poisson.has_room(datasets):
+    if all(map(spans_a_map, datasets)) and poisson.has_room(datasets):
         return poisson.draw(name, *datasets)
     shown, titles = [], []
     for dataset in datasets:
         title = dataset.attrs.get("title", "")
-        require(name, title or name, dataset, NEEDED)
-        dims = tuple(dim for dim in ("amplitude", "velocity") if dim in dataset["mu_macro"].dims)
-        parts = [sweep(part, dims) for part in at_each_poisson(dataset)]
-        for part, ratio in parts:
+        parts = at_each_poisson(dataset)
+        for part in parts:
             shown.append(part)
-            at = rf", $\nu = {look.number(ratio)}$" if len(parts) > 1 else ""
-            titles.append(look.literal(title) + at)
-    return (_maps if _spans_a_map(shown[0]) else _lines)(shown, titles)
-
-
-def _spans_a_map(dataset: xr.Dataset) -> bool:
-    """Return whether a dataset has at least two amplitudes and two velocities above 0."""
-    positive = int((dataset["velocity"] > 0).sum())
-    return dataset.sizes.get("amplitude", 0) > 1 and positive > 1
+            ratio = rf", $\nu = {look.number(float(part['poisson']))}$"
+            titles.append(look.literal(title) + ratio * (len(parts) > 1))
+    return (_maps if spans_a_map(shown[0]) else _lines)(shown, titles)
 
 
 def _maps(datasets: Sequence[xr.Dataset], titles: Sequence[str]) -> Figure:
@@ -76,22 +66,18 @@ def _maps(datasets: Sequence[xr.Dataset], titles: Sequence[str]) -> Figure:
     width = look.DOUBLE if columns_ > 1 else 0.65 * look.DOUBLE
     figure = look.new_figure(width, rows * HEIGHT[columns_] + AROUND)
     fills, contours = levels_of(datasets)
-    grid = figure.subplots(rows, columns_, squeeze=False).ravel()
+    grid = panels.grid(figure, count, columns_)
     entries: dict[str, Artist] = {}
-    for axes, letter, dataset, title in zip(
-        grid, look.letters(count), datasets, titles, strict=False
-    ):
+    for axes, dataset, title in zip(grid, datasets, titles, strict=True):
         filled, handles, _ = fill(axes, dataset, fills, contours, look.SMALLEST)
         entries |= {str(handle.get_label()): handle for handle in handles}
         axes.set_gid("map")
-        panels.letter(axes, letter, title, 0.8 * width / columns_ - 0.1)
-    for axes in grid[count:]:
-        axes.remove()
+        panels.heading(axes, title, 0.8 * width / columns_ - 0.1)
     for dim in ("velocity", "amplitude"):
-        _label_maps(figure, list(grid[:count]), dim, datasets)
+        _label_maps(figure, grid, dim, datasets)
     label = look.FRICTION if rows > 1 or columns_ < 3 else look.FRICTION_IN_TWO_LINES
-    shown = fills[np.isclose(np.round(5 * fills), 5 * fills)]
-    panels.colour_bar(filled, list(grid[:count]), label, aspect=20 * rows, ticks=shown)
+    ticks = fills[np.isclose(np.round(5 * fills), 5 * fills)]
+    panels.colour_bar(filled, grid, label, aspect=20 * rows, ticks=ticks)
     panels.legend_of_figure(figure, list(entries.values()), "lower right")
     return figure
 
@@ -151,8 +137,7 @@ def _lines(datasets: Sequence[xr.Dataset], titles: Sequence[str]) -> Figure:
     panels.unit_range(axes, low=np.floor(5 * low) / 5 if low < -BEYOND else 0.0)
     axes.set(ylabel=look.FRICTION, xlabel=_axis_label(dim, datasets))
     if dim == "velocity":
-        axes.set_xscale("log")
-        panels.logarithmic(axes.xaxis)
+        panels.logarithmic(axes)
     axes.margins(x=0.02)
     figure.legend(handles=handles, loc="outside right upper", handlelength=3.0)
     if dim == "amplitude" and velocities:

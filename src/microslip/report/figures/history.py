@@ -15,7 +15,7 @@ from microslip.report.figures.data import at_one_poisson, columns
 
 def draw(name: str, dataset: xr.Dataset) -> Figure:
     """Draw the forward force with its mean over the last period, and the lateral force."""
-    dataset, _ = at_one_poisson(dataset)
+    dataset = at_one_poisson(dataset)
     periods = dataset["history_phase"].values / (2.0 * np.pi)
     forward, lateral = columns(dataset, "history_force_forward", "history_force_lateral")
     figure = look.new_figure(look.SINGLE, 3.2)
@@ -38,6 +38,6 @@ def draw(name: str, dataset: xr.Dataset) -> Figure:
         axes.set_axisbelow(True)
     symbols = VELOCITY["transverse"].latex, AMPLITUDE["transverse"].latex
     values = (float(dataset[f"history_{n}"]) for n in ("velocity", "amplitude"))
-    panels.legend_above(upper, "a", look.conditions(zip(symbols, values, strict=True)))
-    panels.letter(lower, "b")
+    panels.legend_above(upper, look.conditions(zip(symbols, values, strict=True)))
+    panels.heading(lower)
     return figure

@@ -110,8 +110,6 @@ def fill(
         The bands, for a colour bar; the legend entries; the number of hatched cells.
     """
     shown = dataset.isel(velocity=dataset["velocity"].values > 0)
-    if min(shown.sizes["amplitude"], shown.sizes["velocity"]) < 2:
-        raise ValueError("a map needs at least two amplitudes and two positive velocities")
     shown = shown.transpose("amplitude", "velocity", ...)
     velocity, amplitude, mu = columns(shown, "velocity", "amplitude", "mu_macro")
     surface = Surface(velocity, amplitude, mu)
@@ -131,8 +129,8 @@ def fill(
     )
     contours.set_gid("contours")
     number_contours(axes, contours, size, filled)
-    axes.set(xscale="log", xlim=velocity[[0, -1]], ylim=amplitude[[0, -1]])
-    panels.logarithmic(axes.xaxis)
+    axes.set_ylim(*amplitude[[0, -1]])
+    panels.logarithmic(axes, velocity[[0, -1]])
     panels.ticks_outside(axes)
     handles: list[Artist] = []
     few = min(len(velocity), len(amplitude)) < FEW

@@ -14,7 +14,7 @@ from microslip.config.quantities import AMPLITUDE, VELOCITY
 from microslip.datasets.catalogue import FORMS, STATIC
 from microslip.report.figures import panels
 from microslip.report.figures import style as look
-from microslip.report.figures.data import at_each_poisson, columns, curve, limit, require, sweep
+from microslip.report.figures.data import at_each_poisson, columns, curve, limit
 from microslip.report.figures.map_panel import fill
 
 MOTIONS = {"fig2_transverse_map": "transverse", "fig6_bore_map": "bore"}
@@ -51,9 +51,6 @@ ACROSS = 3
 ROW = {2: 2.9, 3: 2.4}
 """Height of a row in inches, by the number of maps in the row."""
 
-Cut = list[tuple[xr.Dataset, float]]
-"""List of pairs: a dataset at one Poisson's ratio, and this ratio."""
-
 
 def draw(name: str, dataset: xr.Dataset) -> Figure:
     """Draw the figure `name`: maps, and cuts at the smallest velocity and the largest amplitude.
@@ -63,20 +60,20 @@ def draw(name: str, dataset: xr.Dataset) -> Figure:
     states this.
     """
     motion, every = MOTIONS[name], at_each_poisson(dataset)
-    require(name, motion, dataset, ("amplitude", "velocity"))
     indices = np.unique(np.linspace(0, len(every) - 1, len(POISSONS)).round().astype(int))
-    parts = [sweep(every[k], ("amplitude", "velocity")) for k in indices]
+    parts = [every[k] for k in indices]
     figure, maps, static_cut, large_cut = _page(len(parts))
     if len(parts) < len(every):
         some = f"{len(parts)} of the {len(every)} Poisson's ratios in the dataset"
         figure.suptitle(some, x=0.01, ha="left", fontsize=look.HEADING)
-    letters, alone = look.letters(len(parts) + 2), len(parts) == 1
+    alone = len(parts) == 1
     quantities = VELOCITY[motion], AMPLITUDE[motion]
     labels = [look.axis(one if alone else replace(one, unit="")) for one in quantities]
-    for index, (axes, (part, poisson)) in enumerate(zip(maps, parts, strict=True)):
+    for index, (axes, part) in enumerate(zip(maps, parts, strict=True)):
+        poisson = float(part["poisson"])
         filled, handles, unconverged = fill(axes, part)
         ratio = rf"$\nu = {look.number(poisson)}$" if len(every) > 1 or poisson else ""
-        panels.letter(axes, letters[index], ratio)
+        panels.heading(axes, ratio)
         axes.set_xlabel(labels[0])
         if handles:
             if unconverged:
@@ -88,8 +85,8 @@ def draw(name: str, dataset: xr.Dataset) -> Figure:
             axes.set_ylabel(labels[1])
     friction = look.FRICTION if alone else look.FRICTION_IN_TWO_LINES
     panels.colour_bar(filled, maps, friction, aspect=32, ticks=np.linspace(0, 1, 6))
-    _static_cut(static_cut, parts, motion, letters[-2])
-    _large_cut(large_cut, parts, motion, letters[-1])
+    _static_cut(static_cut, parts, motion)
+    _large_cut(large_cut, parts, motion)
     return figure
 
 
@@ -104,22 +101,19 @@ def _page(count: int) -> tuple[Figure, list[Axes], Axes, Axes]:
     heights = rows * ROW[across], 2.7
     figure = look.new_figure(look.DOUBLE, sum(heights))
     upper, lower = figure.subfigures(2, 1, height_ratios=heights, squeeze=False).flat
-    maps = list(upper.subplots(rows, across, squeeze=False).flat)
-    for axes in maps[count:]:
-        axes.remove()
-    return figure, maps[:count], *lower.subplots(1, 2)
+    return figure, panels.grid(upper, count, across), *lower.subplots(1, 2)
 
 
-def _static_cut(axes: Axes, parts: Cut, motion: str, letter: str) -> None:
+def _static_cut(axes: Axes, parts: list[xr.Dataset], motion: str) -> None:
     """Draw mu_macro against the amplitude at the smallest velocity, with the static limits."""
-    velocity = float(parts[0][0]["velocity"][0])
+    velocity = float(parts[0]["velocity"][0])
     for name in CURVES[motion]:
         if name != LARGE:
             _curve(axes, parts, motion, name, velocity=velocity)
-    _points(axes, [(part.sel(velocity=velocity), nu) for part, nu in parts], "amplitude")
+    _points(axes, [part.sel(velocity=velocity) for part in parts], "amplitude")
     where = "left edge" if velocity > 0 else "static limit"
     at = look.conditions([(VELOCITY[motion].latex, velocity)])
-    panels.legend_above(axes, letter, f"{where}, {at}")
+    panels.legend_above(axes, f"{where}, {at}")
     axes.set(xlabel=look.axis(AMPLITUDE[motion]), xlim=_where_not_zero(axes))
 
 
@@ -131,33 +125,32 @@ def _where_not_zero(axes: Axes) -> tuple[float, float]:
     return x.min(), min(max(1.5 * last, following), x.max())
 
 
-def _large_cut(axes: Axes, parts: Cut, motion: str, letter: str) -> None:
+def _large_cut(axes: Axes, parts: list[xr.Dataset], motion: str) -> None:
     """Draw mu_macro against the velocity at the largest amplitude, with the limit from theory."""
-    amplitude = float(parts[0][0]["amplitude"][-1])
+    amplitude = float(parts[0]["amplitude"][-1])
     _curve(axes, parts, motion, LARGE, amplitude=amplitude)
-    _points(axes, [(part.sel(amplitude=amplitude), nu) for part, nu in parts], "velocity")
+    _points(axes, [part.sel(amplitude=amplitude) for part in parts], "velocity")
     at = look.conditions([(AMPLITUDE[motion].latex, amplitude)])
-    panels.legend_above(axes, letter, f"top edge, {at}")
-    velocity = parts[0][0]["velocity"].values
-    axes.set(xscale="log", xlim=(velocity[velocity > 0][0], velocity[-1]))
+    panels.legend_above(axes, f"top edge, {at}")
+    velocity = parts[0]["velocity"].values
     axes.set_xlabel(look.axis(VELOCITY[motion]))
-    panels.logarithmic(axes.xaxis)
+    panels.logarithmic(axes, (velocity[velocity > 0][0], velocity[-1]))
 
 
-def _curve(axes: Axes, parts: Cut, motion: str, name: str, **at: float) -> None:
+def _curve(axes: Axes, parts: list[xr.Dataset], motion: str, name: str, **at: float) -> None:
     """Draw a closed form from its variable in the dataset."""
     form, (color, ls) = FORMS[motion][name], CURVES[motion][name]
     label = form.label
-    if name == STATIC and not form.any_poisson and any(poisson > 0 for _, poisson in parts):
+    if name == STATIC and not form.any_poisson and any(part["poisson"] > 0 for part in parts):
         label = r"limit at $\nu = 0$"  # the closed form is exact for this ratio only
-    x, y = curve(limit(parts[0][0], name), **at)
+    x, y = curve(limit(parts[0], name), **at)
     axes.plot(x, y, color=color, ls=ls, label=label, gid=name)
 
 
-def _points(axes: Axes, cut: Cut, dim: str) -> None:
+def _points(axes: Axes, cut: list[xr.Dataset], dim: str) -> None:
     """Draw the computed points of a cut and set the vertical axis."""
-    for (line, poisson), (color, marker) in zip(cut, POISSONS, strict=False):
-        ratio = rf", $\nu = {look.number(poisson)}$" if len(cut) > 1 else ""
+    for line, (color, marker) in zip(cut, POISSONS, strict=False):
+        ratio = rf", $\nu = {look.number(float(line['poisson']))}$" if len(cut) > 1 else ""
         points = columns(line, dim, "mu_macro", "mu_macro_error", "converged")
         panels.computed(axes, *points, label=f"computed{ratio}", color=color, marker=marker)
     panels.unit_range(axes)

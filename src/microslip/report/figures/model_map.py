@@ -27,12 +27,11 @@ def draw(name: str, dataset: xr.Dataset) -> Figure:
     models = look.in_order(names - {""})
     figure = look.new_figure(look.DOUBLE, 5.9)
     grid = figure.subplots(len(MOTIONS), tolerances.size, squeeze=False, sharex="row", sharey="row")
-    letters = iter(look.letters(grid.size))
     for row, motion in zip(grid, MOTIONS, strict=True):
         for index, axes in enumerate(row):
             _panel(axes, dataset.isel(map_tolerance=index), motion, models)
             tolerance = look.power_of_ten(float(tolerances[index]))
-            panels.letter(axes, next(letters), rf"{motion}, error within ${tolerance}$")
+            panels.heading(axes, rf"{motion}, error within ${tolerance}$")
             axes.set_xlabel(look.axis(VELOCITY[motion]))
         row[0].set_ylabel(look.axis(AMPLITUDE[motion]))
     handles = [
@@ -70,7 +69,7 @@ def _panel(axes: Axes, dataset: xr.Dataset, motion: str, models: list[str]) -> N
             axes.text(*centre, look.model(name)[2], gid="region", **text)
     axes.set(xlim=x[[0, -1]], ylim=y[[0, -1]])
     for axis in (axes.xaxis, axes.yaxis) if logarithmic else (axes.xaxis,):
-        panels.logarithmic(axis)
+        panels.logarithmic_ticks(axis)
     panels.ticks_outside(axes)
 
 

@@ -11,7 +11,7 @@ from matplotlib.axes import Axes
 from matplotlib.axis import Axis
 from matplotlib.cm import ScalarMappable
 from matplotlib.colorbar import Colorbar
-from matplotlib.figure import Figure
+from matplotlib.figure import Figure, SubFigure
 from matplotlib.ticker import FuncFormatter, LogLocator, MaxNLocator, NullFormatter
 
 from microslip.report.figures import style as look
@@ -23,16 +23,34 @@ VISIBLE_ERROR = 0.01
 """Smallest error estimate that is drawn. The markers hide smaller error estimates."""
 
 
-def letter(axes: Axes, which: str, note: str = "", room: float = np.inf) -> None:
+def grid(figure: Figure | SubFigure, count: int, across: int, **shared: bool) -> list[Axes]:
+    """Return `count` new panels in rows of `across` panels. shared: arguments of `subplots`."""
+    rows = -(-count // across)
+    axes = list(figure.subplots(rows, across, squeeze=False, **shared).flat)
+    for empty in axes[count:]:
+        empty.remove()
+    return axes[:count]
+
+
+def lettered(axes: Axes, note: str = "") -> str:
+    """Return the heading of a panel: the next letter of its figure, bold and in brackets, and an
+    optional note."""
+    figure: Any = axes.get_figure(root=True)
+    figure.letters = [*getattr(figure, "letters", ()), axes]
+    letter = look.letters(len(figure.letters))[-1]
+    return rf"$\bf{{({letter})}}$" + (rf"$\;$ {note}" if note else "")
+
+
+def heading(axes: Axes, note: str = "", room: float = np.inf) -> None:
     """Write a letter and a note above a panel, in lines at most `room` inches wide."""
-    text = look.wrapped(look.heading(which, note), room, look.HEADING)
+    text = look.wrapped(lettered(axes, note), room, look.HEADING)
     axes.set_title(text, loc="left", pad=5, fontsize=look.HEADING)
 
 
-def legend_above(axes: Axes, which: str, note: str = "", ncols: int = 2) -> None:
+def legend_above(axes: Axes, note: str = "", ncols: int = 2) -> None:
     """Write a letter, a note and a legend above a panel."""
     legend = axes.legend(
-        title=look.heading(which, note),
+        title=lettered(axes, note),
         title_fontsize=look.HEADING,
         alignment="left",
         loc="lower left",
@@ -76,11 +94,18 @@ def ticks_outside(axes: Axes) -> None:
 def logarithmic_if_wide(axes: Axes, values: np.ndarray) -> None:
     """Make the abscissa logarithmic if all values are positive and their ratio exceeds WIDE."""
     if values.min() > 0.0 and values.max() > WIDE * values.min():
-        axes.set_xscale("log")
-        logarithmic(axes.xaxis)
+        logarithmic(axes)
 
 
-def logarithmic(axis: Axis) -> None:
+def logarithmic(axes: Axes, limits: Sequence[float] | np.ndarray | None = None) -> None:
+    """Make the abscissa of a panel logarithmic. limits: its first and last value."""
+    axes.set(xscale="log")
+    if limits is not None:
+        axes.set_xlim(*limits)
+    logarithmic_ticks(axes.xaxis)
+
+
+def logarithmic_ticks(axis: Axis) -> None:
     """Label an axis at powers of ten, or at round numbers if it contains fewer than two powers."""
     low, high = np.sort(axis.get_view_interval())
     powers = np.floor(np.log10(high) + 1e-9) - np.ceil(np.log10(low) - 1e-9) + 1

@@ -42,25 +42,21 @@ def has_room(datasets: Sequence[xr.Dataset]) -> bool:
 def draw(name: str, *datasets: xr.Dataset) -> Figure:
     """Draw two panels for each dataset: contours at every ratio, and the change over all ratios.
 
-    Raises ValueError if the datasets do not fit, see `has_room`.
+    For the datasets that fit, see `has_room`.
     """
-    if not has_room(datasets):
-        allowed = f"up to {MOST} maps, each at two to {len(LOOKS)} Poisson's ratios"
-        raise ValueError(f"figure {name}: too many datasets; allowed: {allowed}")
     figure = look.new_figure(look.DOUBLE, 2.8 * len(datasets))
     grid = figure.subplots(len(datasets), 2, width_ratios=(1.0, 1.15), squeeze=False)
-    letters = iter(look.letters(2 * len(datasets)))
     for (left, right), dataset in zip(grid, datasets, strict=True):
         shown = dataset.isel(velocity=dataset["velocity"].values > 0)
         shown = shown.sortby("poisson").transpose("poisson", "amplitude", "velocity", ...)
-        _contours(left, shown, next(letters))
-        _change(right, shown, next(letters))
+        _contours(left, shown)
+        _change(right, shown)
         for axes in (left, right):
             _axes(axes, shown)
     return figure
 
 
-def _contours(axes: Axes, shown: xr.Dataset, letter: str) -> None:
+def _contours(axes: Axes, shown: xr.Dataset) -> None:
     """Draw contours at each Poisson's ratio. Contours at the smallest ratio have numbers."""
     for index, (color, ls) in enumerate(LOOKS[: shown.sizes["poisson"]]):
         one = shown.isel(poisson=index)
@@ -76,10 +72,10 @@ def _contours(axes: Axes, shown: xr.Dataset, letter: str) -> None:
         axes.plot([], [], color=color, ls=ls, label=label)
     key = "title" if "group" in shown.attrs else "motion"
     note = look.literal(shown.attrs.get(key, ""))
-    panels.legend_above(axes, letter, note, ncols=shown.sizes["poisson"])
+    panels.legend_above(axes, note, ncols=shown.sizes["poisson"])
 
 
-def _change(axes: Axes, shown: xr.Dataset, letter: str) -> None:
+def _change(axes: Axes, shown: xr.Dataset) -> None:
     """Draw the difference between the largest and the smallest Poisson's ratio.
 
     Differences within twice the tolerance are not significant and have the palest colour.
@@ -98,12 +94,12 @@ def _change(axes: Axes, shown: xr.Dataset, letter: str) -> None:
     first, at = (look.number(float(shown["poisson"][k])) for k in (0, -1))
     label = rf"{MU_MACRO.math} at $\nu = {at}$ less that at ${first}$"
     panels.colour_bar(filled, axes, label, aspect=24, ticks=ends)
-    panels.letter(axes, letter)
+    panels.heading(axes)
 
 
 def _axes(axes: Axes, shown: xr.Dataset) -> None:
     velocity, amplitude = columns(shown, "velocity", "amplitude")
-    axes.set(xscale="log", xlim=velocity[[0, -1]], ylim=amplitude[[0, -1]])
     axes.set(xlabel=axis_label(shown, "velocity"), ylabel=axis_label(shown, "amplitude"))
-    panels.logarithmic(axes.xaxis)
+    axes.set_ylim(*amplitude[[0, -1]])
+    panels.logarithmic(axes, velocity[[0, -1]])
     panels.ticks_outside(axes)

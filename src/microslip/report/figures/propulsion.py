@@ -22,14 +22,13 @@ def draw(name: str, dataset: xr.Dataset) -> Figure:
     names = [str(panel) for panel in dict.fromkeys(dataset["panel"].values)]
     figure = look.new_figure(max(WIDTH * len(names), look.SINGLE), HEIGHT)
     grid = figure.subplots(len(ROWS), len(names), sharex="col", squeeze=False)
-    letters = iter(look.letters(grid.size))
     for row, (variable, label) in zip(grid, ROWS.items(), strict=True):
         row[0].set_ylabel(label)
         for axes, panel in zip(row, names, strict=True):
             lines = dataset.isel(line=np.flatnonzero(dataset["panel"].values == panel))
             _lines(axes, lines, variable)
             note = look.literal(panel) if variable == "force" else ""
-            panels.letter(axes, next(letters), note, WIDTH - 0.5)
+            panels.heading(axes, note, WIDTH - 0.5)
     for axes in grid[-1]:
         axes.set_xlabel(VELOCITY)
         _legend(axes)

@@ -9,7 +9,7 @@ from matplotlib.figure import Figure
 from microslip.config.quantities import FORCE_FORWARD, TORQUE, VELOCITY
 from microslip.report.figures import panels
 from microslip.report.figures import style as look
-from microslip.report.figures.data import at_one_poisson, columns, curve, limit, require, sweep
+from microslip.report.figures.data import at_one_poisson, columns, curve, limit
 
 QUANTITIES = (
     ("force", "Eq 21", "forward", "mu_macro", "transient_force_forward", look.BLUE, look.SOLID),
@@ -29,8 +29,7 @@ STARTS = {
 
 def curves(name: str, dataset: xr.Dataset) -> Figure:
     """Draw Eqs 21 and 22, and the computed steady values."""
-    require(name, "continuous_bore", dataset, ("velocity",))
-    dataset, _ = sweep(dataset, ("velocity",))
+    dataset = at_one_poisson(dataset)
     velocity = dataset["velocity"].values
     figure = look.new_figure(look.SINGLE, 2.7)
     axes = figure.add_subplot()
@@ -44,8 +43,7 @@ def curves(name: str, dataset: xr.Dataset) -> Figure:
         panels.computed(axes, *points, label=f"{what}, computed", color=color, marker=marker)
     axes.set_xlim(velocity[0], velocity[-1])
     if velocity[0] > 0 and velocity[-1] >= 20 * velocity[0]:
-        axes.set_xscale("log")
-        panels.logarithmic(axes.xaxis)
+        panels.logarithmic(axes)
     axes.set(xlabel=look.axis(VELOCITY["continuous-bore"]), ylabel=LABEL)
     panels.unit_range(axes)
     panels.legend_of_figure(figure, axes.get_legend_handles_labels()[0], ncols=2)
@@ -54,7 +52,7 @@ def curves(name: str, dataset: xr.Dataset) -> Figure:
 
 def transients(name: str, dataset: xr.Dataset) -> Figure:
     """Draw force and torque against the forward travel, with a panel for each initial state."""
-    dataset, _ = at_one_poisson(dataset)
+    dataset = at_one_poisson(dataset)
     starts = [str(label) for label in dataset["start"].values]
     figure = look.new_figure(look.DOUBLE, 2.45)
     grid = figure.subplots(1, len(starts), sharex=True, sharey=True, squeeze=False)[0]
@@ -72,7 +70,7 @@ def transients(name: str, dataset: xr.Dataset) -> Figure:
             ink: look.Ink = {"color": color, "ls": look.DASHED, "lw": 1.0, "zorder": 1.5}
             ink |= {"gid": theory}
             axes.axhline(float(at[theory]), label=f"{what}, {equation}", **ink)
-        panels.letter(axes, look.letters(index + 1)[-1], STARTS.get(start, look.literal(start)))
+        panels.heading(axes, STARTS.get(start, look.literal(start)))
     grid[0].set(ylabel=LABEL, xlim=(0.0, float(dataset["transient_displacement"].max())))
     grid[len(starts) // 2].set_xlabel(r"forward travel  $v_0 t/u_\mathrm{lim}$")
     panels.unit_range(grid[0])

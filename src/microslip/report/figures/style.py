@@ -211,8 +211,3 @@ def letters(count: int) -> list[str]:
     """Return the letters of `count` panels: a, b, ..., z, aa, ab, ..."""
     alphabet = "abcdefghijklmnopqrstuvwxyz"
     return [(alphabet[i // 26 - 1] if i >= 26 else "") + alphabet[i % 26] for i in range(count)]
-
-
-def heading(which: str, note: str = "") -> str:
-    """Return the heading of a panel: the letter, bold and in brackets, and an optional note."""
-    return rf"$\bf{{({which})}}$" + (rf"$\;$ {note}" if note else "")

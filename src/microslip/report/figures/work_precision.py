@@ -106,33 +106,28 @@ def draw(name: str, dataset: xr.Dataset) -> Figure:
     """Draw the figure `name`: errors against seconds, or against effort."""
     cost, label = COSTS[name]
     points = [dataset.isel(point=index) for index in range(dataset["point"].size)]
-    if not points or not dataset["error"].size:
-        raise ValueError(f"figure {name}: the dataset holds no points or no trials")
     models = look.in_order(set(dataset["trial_model"].values.astype(str)) - {"auto"})
     others = bool(set(dataset["trial_method"].values.astype(str)) - {"shipped", "paper"})
     rows = -(-len(points) // COLUMNS)
     heights = ROW * rows + 0.35, LINE * (max(len(models), 7) + 2.0)
     figure = look.new_figure(look.DOUBLE, sum(heights))
     page, foot = figure.subfigures(2, 1, height_ratios=heights, squeeze=False).flat
-    grid = page.subplots(rows, COLUMNS, sharex=True, sharey=True, squeeze=False).ravel()
+    grid = panels.grid(page, len(points), COLUMNS, sharex=True, sharey=True)
     costs, errors = _scale_of_costs(dataset[cost].values), _scale_of_errors(dataset)
     of_point = dataset["trial_point"].values.astype(str)
-    letters = look.letters(len(points))
-    for index, (axes, letter, point) in enumerate(zip(grid, letters, points, strict=False)):
+    for index, (axes, point) in enumerate(zip(grid, points, strict=True)):
         axes.set(xscale="log", yscale="log")
         costs.on(axes, axes.xaxis)
         errors.on(axes, axes.yaxis)
         own = dataset.isel(trial=of_point == str(point["point"].item()))
         _panel(axes, own.sortby("trial_level"), cost, costs, errors)
         _reference(axes, float(point["reference_error"]))
-        _head(axes, letter, point)
+        _head(axes, point)
         if index + COLUMNS >= len(points):
             axes.tick_params(labelbottom=True)
             axes.set_xlabel(label)
         if index % COLUMNS == 0:
             axes.set_ylabel(f"error of {MU_MACRO.math}\n(dimensionless)")
-    for axes in grid[len(points) :]:
-        axes.remove()
     _legends(foot, models, others)
     return figure
 
@@ -161,7 +156,7 @@ def _scale_of_errors(dataset: xr.Dataset) -> Scale:
     return Scale(low, high, "below" * bool(below), "none" * bool(above))
 
 
-def _head(axes: Axes, letter: str, point: xr.Dataset) -> None:
+def _head(axes: Axes, point: xr.Dataset) -> None:
     """Write the letter of a panel, and the title and the parameters of its point."""
     motion = str(point["point_motion"].item())
     quantities = (table.get(motion) for table in (VELOCITY, AMPLITUDE))
@@ -169,7 +164,7 @@ def _head(axes: Axes, letter: str, point: xr.Dataset) -> None:
     values = (float(point[f"point_{n}"]) for n in ("velocity", "amplitude", "poisson"))
     pairs = zip((*symbols, r"\nu"), values, strict=True)
     numbers = look.conditions((symbol, value) for symbol, value in pairs if np.isfinite(value))
-    title = look.heading(letter, look.literal(point["point_title"].item()))
+    title = panels.lettered(axes, look.literal(point["point_title"].item()))
     head = f"{look.wrapped(title, WIDTH, look.HEADING)}\n{numbers}"
     axes.set_title(head, loc="left", pad=4, fontsize=look.HEADING, linespacing=1.15)
 

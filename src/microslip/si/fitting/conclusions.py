@@ -8,12 +8,12 @@ from collections.abc import Iterator, Sequence
 import numpy as np
 
 from microslip.foundation.errors import InputError
-from microslip.si.dimensionless import RealMotion
+from microslip.si.dimensionless import MovingContact, RealMotion
 from microslip.si.fitting import estimate
 from microslip.si.fitting.curves import curve_of
 from microslip.si.fitting.fitted import Fit
-from microslip.si.fitting.friction_models import FrictionModel
 from microslip.si.fitting.scales import Modulus, Scale
+from microslip.si.motions import MOTIONS
 from microslip.si.validity import broken_assumptions
 
 WIDEST_MU = 2.0
@@ -23,9 +23,7 @@ UNLIKELY = 0.01
 
 
 def concluded(
-    scale: Scale,
-    model: FrictionModel,
-    rows: estimate.Rows,
+    problem: estimate.LeastSquares,
     fits: Sequence[estimate.Best],
     *,
     motion: str,
@@ -36,12 +34,8 @@ def concluded(
 
     Parameters
     ----------
-    scale : Scale
-        The second unknown, with the measured rows.
-    model : FrictionModel
-        The model, corrected at the best fit.
-    rows : estimate.Rows
-        Rows of the least squares.
+    problem : estimate.LeastSquares
+        The rows and their model, corrected at the best fit.
     fits : sequence of estimate.Best
         The best fit, then the fits from other initial guesses.
     motion : str
@@ -51,28 +45,30 @@ def concluded(
     texts : dict of str
         Inputs as text.
     """
-    best = fits[0]
+    best, scale, model, rows = fits[0], problem.scale, problem.model, problem.rows
     mu, size = np.exp(best.theta)
-    points, measured = scale.points(mu, size), scale.rows
+    points = scale.points(mu, size)
     model_error = mu * rows.weight * model.errors(points)
     if not np.isfinite(model_error).all():
         where = int(np.flatnonzero(~np.isfinite(model_error))[0]) + 1
         raise InputError("map", motion, f"has no friction for row {where} at the best fit")
-    allowed = estimate.threshold(rows, best, confidence, model_error / rows.error)
-    ends = np.array([estimate.interval(rows, best, which, allowed) for which in (0, 1)])
+    allowed = estimate.threshold(problem, best, confidence, model_error / problem.error)
+    pairs = [(which, side) for which in (0, 1) for side in (-1.0, 1.0)]
+    ends = np.array([estimate.end(problem, best, *pair, allowed) for pair in pairs]).reshape(2, 2)
     determined = [which for which in (0, 1) if np.isfinite(ends[which]).all()]
-    shift = estimate.shifts(best, model_error / rows.error, determined)
+    shift = estimate.shifts(best, model_error / problem.error, determined)
     ends += np.outer(shift, (-1.0, 1.0))
     low, high = np.exp(ends[0])
     if not high < WIDEST_MU * low:
         fit = f"mu from {low:.3g} to {high:.3g} fits as well with another u_lim"
         hint = "add rows without vibration, or rows where vibration reduces friction more"
-        raise InputError("measured", None, f"the rows determine neither number: {fit}; {hint}")
+        message = f"the rows determine neither number: {fit}; {hint}"
+        raise InputError("measured", rows.name, message)
     fitted = mu * rows.weight * model.at(points)
     free = len(fitted) - 2
-    noise = rows.error if rows.absolute else rows.error * math.sqrt(best.squares / free)
+    noise = problem.error if rows.has_errors else problem.error * math.sqrt(best.squares / free)
     chance = None
-    if rows.absolute and free:
+    if rows.has_errors and free:
         from scipy.stats import chi2
 
         chance = float(chi2.sf(best.squares, free))
@@ -81,7 +77,7 @@ def concluded(
     name = scale.name.replace(" ", "_")
     return Fit(
         motion=motion,
-        quantity=measured.quantity,
+        quantity=rows.quantity,
         mu=float(mu),
         mu_low=float(low),
         mu_high=float(high),
@@ -90,24 +86,24 @@ def concluded(
         confidence=confidence,
         mu_model_share=float(np.expm1(shift[0])),
         scale_model_share=float(np.expm1(shift[1])),
-        standard_error=None if rows.absolute else float(noise[0]),
-        chi_square=best.squares if rows.absolute else None,
+        standard_error=None if rows.has_errors else float(noise[0]),
+        chi_square=best.squares if rows.has_errors else None,
         p_value=chance,
         degrees_of_freedom=free,
         told=("mu", name) if 1 in determined else ("mu",),
         reason="" if 1 in determined else _open(scale, np.exp(ends[1])),
         warnings=tuple(warnings),
         understood=texts,
-        labels=measured.labels,
-        left_out=measured.left_out,
-        speed_m_s=measured.speed,
-        amplitude_si=measured.amplitude,
-        frequency_Hz=measured.frequency,
-        row_load_N=measured.load,
+        labels=rows.labels,
+        left_out=rows.left_out,
+        speed_m_s=rows.speed,
+        amplitude_si=rows.amplitude,
+        frequency_Hz=rows.frequency,
+        row_load_N=rows.load,
         velocity=points.velocity,
         amplitude=points.amplitude,
-        measured=measured.value,
-        measured_error=measured.error,
+        measured=rows.value,
+        measured_error=rows.error,
         fitted=fitted,
         fitted_error=model_error,
         residual=np.divide(
@@ -183,5 +179,6 @@ def _warnings(
         widest = int(np.argmax(rows.amplitude))
         columns = (rows.speed, rows.amplitude, rows.frequency)
         speed, amplitude, frequency = (float(column[widest]) for column in columns)
-        real_motion = RealMotion(motion, speed, amplitude, frequency)
-        yield from broken_assumptions(scale.contact(mu, math.exp(best.theta[1])), real_motion)
+        real_motion = RealMotion(motion, MOTIONS[motion].unit, speed, amplitude, frequency)
+        contact = scale.contact(mu, math.exp(best.theta[1]))
+        yield from broken_assumptions(MovingContact(contact, real_motion))

@@ -10,10 +10,16 @@ interval may be infinite on one side.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
+
+from microslip.si.fitting.friction_models import FrictionModel
+from microslip.si.fitting.measured import Measured
+from microslip.si.fitting.scales import Points, Scale
+from microslip.si.inputs import LARGEST_MU
 
 SCANNED = 61
 """Number of values of the scale in the scan for initial guesses."""
@@ -32,37 +38,54 @@ DOUBLINGS = 12
 one."""
 
 
+SMALLEST_MU = 1e-5
+"""Smallest coefficient of friction of a fit."""
+
+
 @dataclass(frozen=True, eq=False)
-class Rows:
-    """Measured rows and their model: value = mu * weight * ratio + error.
+class LeastSquares:
+    """The least-squares problem of a fit: measured value = mu * weight * mu_macro + error.
 
     Attributes
     ----------
-    ratios : callable
-        Function ratios(thetas), from shape (k, 2) to shape (k, n).
-    value, weight : np.ndarray, shape (n,)
-        Measured values in any unit, and factors that convert mu to this unit.
-    error : np.ndarray, shape (n,)
-        Standard errors in the unit of the values.  If the errors are unknown, all are set to the
-        same arbitrary value.
-    absolute : bool
-        Whether the errors are known.
-    lower, upper : np.ndarray, shape (2,)
-        Bounds of theta.
+    scale : Scale
+        The second unknown, with the measured rows.
+    model : FrictionModel
+        The model of mu_macro.
     """
 
-    ratios: Callable
-    value: np.ndarray
-    weight: np.ndarray
-    error: np.ndarray
-    absolute: bool
-    lower: np.ndarray
-    upper: np.ndarray
+    scale: Scale
+    model: FrictionModel
+
+    @property
+    def rows(self) -> Measured:
+        return self.scale.rows
+
+    @cached_property
+    def error(self) -> np.ndarray:
+        """Standard errors in the unit of the values, shape (n,).  If the errors are unknown, all
+        are set to the same arbitrary value."""
+        value = self.rows.value
+        common = max(float(np.abs(value).max()), np.finfo(float).tiny)
+        return self.rows.error if self.rows.has_errors else np.full_like(value, common)
+
+    @cached_property
+    def bounds(self) -> tuple[np.ndarray, np.ndarray]:
+        """Lower and upper bounds of theta, shape (2,) each."""
+        low, high = self.scale.bounds
+        return np.log([SMALLEST_MU, low]), np.log([LARGEST_MU, high])
+
+    def ratios(self, thetas: np.ndarray) -> np.ndarray:
+        """mu_macro of all rows, from shape (k, 2) to shape (k, n).  A single call for all guesses
+        is faster with a map."""
+        parts = zip(*(self.scale.points(*np.exp(theta)) for theta in thetas), strict=True)
+        points = Points(*(np.concatenate(part) for part in parts))
+        return self.model.at(points).reshape(len(thetas), -1)
 
     def residuals(self, theta: np.ndarray) -> np.ndarray:
         """Measured value minus model, divided by the error, shape (n,)."""
         (ratio,) = self.ratios(theta[None])
-        return (self.value - np.exp(theta[0]) * self.weight * ratio) / self.error
+        return (self.rows.value - np.exp(theta[0]) * self.rows.weight * ratio) / self.error
 
 
 @dataclass(frozen=True, eq=False)
@@ -84,7 +107,7 @@ class Best:
     slopes: np.ndarray
 
 
-def best_near(rows: Rows, theta: np.ndarray, free: Sequence[int] = (0, 1)) -> Best:
+def best_near(problem: LeastSquares, theta: np.ndarray, free: Sequence[int] = (0, 1)) -> Best:
     """Minimise the sum of squares over some of the unknowns, from an initial guess.
 
     Parameters
@@ -102,9 +125,10 @@ def best_near(rows: Rows, theta: np.ndarray, free: Sequence[int] = (0, 1)) -> Be
     def residuals(values: np.ndarray) -> np.ndarray:
         point = theta.copy()
         point[free] = values
-        return rows.residuals(point)
+        return problem.residuals(point)
 
-    bounds = rows.lower[free], rows.upper[free]
+    low, high = problem.bounds
+    bounds = low[free], high[free]
     start = np.clip(theta[free], bounds[0] + STILL, bounds[1] - STILL)
     settings = {"xtol": STILL, "ftol": STILL, "gtol": STILL, "diff_step": 1e-5}
     solution = least_squares(residuals, start, bounds=bounds, **settings)
@@ -112,17 +136,17 @@ def best_near(rows: Rows, theta: np.ndarray, free: Sequence[int] = (0, 1)) -> Be
     return Best(theta, 2.0 * float(solution.cost), solution.jac)
 
 
-def starts(rows: Rows) -> list[np.ndarray]:
+def starts(problem: LeastSquares) -> list[np.ndarray]:
     """Initial guesses of theta, the best one first.  They come from a scan over the scale."""
-    thetas = np.empty((SCANNED, 2))
-    thetas[:, 0] = np.clip(np.log(GUESSED_MU), rows.lower[0], rows.upper[0])
-    thetas[:, 1] = np.linspace(rows.lower[1], rows.upper[1], SCANNED)
-    measured = rows.value / rows.error
+    low, high = problem.bounds
+    thetas = np.linspace(low, high, SCANNED)
+    thetas[:, 0] = np.clip(np.log(GUESSED_MU), low[0], high[0])
+    measured = problem.rows.value / problem.error
     for _ in range(PASSES):  # mu by linear least squares, with the ratios of the last mu
-        slopes = rows.weight / rows.error * rows.ratios(thetas)
+        slopes = problem.rows.weight / problem.error * problem.ratios(thetas)
         mu = slopes @ measured / np.maximum((slopes * slopes).sum(axis=1), np.finfo(float).tiny)
         mu = np.maximum(mu, np.finfo(float).tiny)
-        thetas[:, 0] = np.clip(np.log(mu), rows.lower[0], rows.upper[0])
+        thetas[:, 0] = np.clip(np.log(mu), low[0], high[0])
     squares = ((measured - np.exp(thetas[:, :1]) * slopes) ** 2).sum(axis=1)
     padded = np.pad(squares, 1, constant_values=np.inf)
     lowest = np.flatnonzero((squares <= padded[:-2]) & (squares <= padded[2:]))
@@ -130,7 +154,7 @@ def starts(rows: Rows) -> list[np.ndarray]:
     return [thetas[k] for k in order]
 
 
-def threshold(rows: Rows, best: Best, confidence: float, model: np.ndarray) -> float:
+def threshold(problem: LeastSquares, best: Best, confidence: float, model: np.ndarray) -> float:
     """Largest difference from the least sum of squares inside an interval.
 
     Parameters
@@ -141,29 +165,26 @@ def threshold(rows: Rows, best: Best, confidence: float, model: np.ndarray) -> f
     """
     from scipy.stats import chi2, f
 
-    if rows.absolute:
+    if problem.rows.has_errors:
         noise = float(chi2.ppf(confidence, 1))
     else:
-        free = len(rows.value) - 2
+        free = len(problem.rows.value) - 2
         noise = float(f.ppf(confidence, 1, free)) * best.squares / free
     return max(noise, float(np.mean(model**2)), np.finfo(float).tiny)
 
 
-def interval(rows: Rows, best: Best, which: int, allowed: float) -> tuple[float, float]:
-    """Both ends of the interval for one unknown.  An end is infinite if the rows do not determine
-    it.
+def end(problem: LeastSquares, best: Best, which: int, side: float, allowed: float) -> float:
+    """An end of the interval for one unknown.  It is infinite if the rows do not determine it.
 
     Parameters
     ----------
     which : int
         Index of the unknown: 0 for mu, 1 for the scale.
+    side : float
+        -1 for the lower end, 1 for the upper end.
     allowed : float
         The value of `threshold`.
     """
-    return _end(rows, best, which, allowed, -1.0), _end(rows, best, which, allowed, 1.0)
-
-
-def _end(rows: Rows, best: Best, which: int, allowed: float, side: float) -> float:
     from scipy.optimize import brentq
 
     last = best.theta
@@ -173,12 +194,12 @@ def _end(rows: Rows, best: Best, which: int, allowed: float, side: float) -> flo
         the interval."""
         nonlocal last
         start = np.where(np.arange(2) == which, value, last)
-        minimum = best_near(rows, start, free=[1 - which])
+        minimum = best_near(problem, start, free=[1 - which])
         last = minimum.theta
         return minimum.squares - best.squares - allowed
 
     start = float(best.theta[which])
-    bound = float((rows.lower if side < 0.0 else rows.upper)[which])
+    bound = float(problem.bounds[int(side > 0.0)][which])
     step, inner = _first_step(best, which, allowed), start
     for _ in range(DOUBLINGS):
         outer = start + side * step if step < abs(bound - start) else bound

@@ -11,20 +11,13 @@ from microslip.foundation.errors import InputError
 from microslip.si.fitting import estimate
 from microslip.si.fitting.conclusions import concluded
 from microslip.si.fitting.fitted import Fit
-from microslip.si.fitting.friction_models import (
-    LEAST,
-    MOST,
-    FrictionModel,
-    MapFriction,
-    SolvedFriction,
-)
-from microslip.si.fitting.measured import Measured, named, read_measured
-from microslip.si.fitting.scales import Displacement, Modulus, Points, Scale
-from microslip.si.inputs import LARGEST_MU
-from microslip.si.motions import UNIT_OF_AMPLITUDE
+from microslip.si.fitting.friction_models import FrictionModel, MapFriction, SolvedFriction
+from microslip.si.fitting.measured import Measured, read_measured
+from microslip.si.fitting.scales import Modulus, Scale
+from microslip.si.inputs import read_argument
+from microslip.si.motions import SINGLE
 from microslip.si.quantities import read
 
-SMALLEST_MU = 1e-5
 TOLERANCE, LARGEST_TOLERANCE = 1e-3, 0.02
 """Default and largest allowed tolerance of mu_macro in the solver."""
 CONFIDENCE = 0.95
@@ -100,53 +93,38 @@ def fit(
         If the table cannot be read, if it has too few rows or a single condition, or if the rows do
         not determine mu.
     """
-    if not isinstance(motion, str) or motion not in UNIT_OF_AMPLITUDE:
-        raise InputError("motion", motion, f"allowed is one of {', '.join(UNIT_OF_AMPLITUDE)}")
+    if not isinstance(motion, str) or motion not in SINGLE:
+        raise InputError("motion", motion, f"allowed is one of {', '.join(SINGLE)}")
     shared = {"speed": speed, "amplitude": amplitude, "frequency": frequency, "load": load}
     rows = read_measured(motion, measured, decimal=decimal, encoding=encoding, **shared)
-    _refuse_too_few(rows, measured)
+    _refuse_too_few(rows)
     scale, texts = _scale(motion, rows, nu, radius, counterbody)
     accepted = CONFIDENCE if confidence is None else read("confidence", confidence, "").si
     if accepted >= 1.0:
         allowed = "allowed is a number above 0 and below 1, such as 0.95 or '95 %'"
         raise InputError("confidence", confidence, allowed)
-    ends = scale.bounds(LEAST, MOST)
     if map is not None:
         model: FrictionModel = MapFriction(map, motion, None if nu is None else scale.poisson)
     else:
         limits: dict[str, Any] = {"low": SMALLEST_TOLERANCE, "high": LARGEST_TOLERANCE}
         accuracy = TOLERANCE if tolerance is None else tolerance
         allowed_error = read("tolerance", accuracy, "", low_open=False, **limits).si
-        extremes = [scale.points(0.3, end) for end in ends]
+        extremes = [scale.points(0.3, end) for end in scale.bounds]
         model = SolvedFriction(motion, scale.poisson, allowed_error, extremes)
-    rows_to_fit = _rows(rows, scale, model, ends)
-    fits = _fits(rows_to_fit, scale, model)
-    try:
-        return concluded(
-            scale,
-            model,
-            rows_to_fit,
-            fits,
-            motion=motion,
-            confidence=accepted,
-            texts=texts | rows.texts,
-        )
-    except InputError as error:
-        if error.argument != "measured":
-            raise
-        raise error.renamed("measured", named(measured)) from None
+    problem = estimate.LeastSquares(scale, model)
+    texts |= rows.texts
+    return concluded(problem, _fits(problem), motion=motion, confidence=accepted, texts=texts)
 
 
-def _refuse_too_few(rows: Measured, table: object) -> None:
-    least = 2 if rows.has_errors else 3
-    name, count = named(table), len(rows.value)
+def _refuse_too_few(rows: Measured) -> None:
+    least, count = 2 if rows.has_errors else 3, len(rows.value)
     if count < least:
         more = "" if rows.has_errors else ", or two with errors of their own"
         allowed = f"{count} row{'s' if count > 1 else ''}; two numbers take at least {least}{more}"
-        raise InputError("measured", name, allowed)
+        raise InputError("measured", rows.name, allowed)
     if rows.distinct < 2:
         allowed = "all rows are of one condition; allowed: two or more conditions"
-        raise InputError("measured", name, allowed)
+        raise InputError("measured", rows.name, allowed)
 
 
 def _scale(
@@ -154,7 +132,7 @@ def _scale(
 ) -> tuple[Scale, dict[str, str]]:
     """The second unknown, and its inputs as text."""
     texts = {"motion": motion}
-    ratio = None if nu is None else read("nu", nu, "", low_open=False, high=0.5)
+    ratio = None if nu is None else read_argument("nu", nu)
     if ratio is not None:
         texts["nu"] = ratio.text
     if radius is None:
@@ -162,47 +140,25 @@ def _scale(
             raise InputError("radius", None, "bore needs it: its amplitude is an angle")
         if counterbody is not None:
             raise InputError("counterbody", counterbody, "allowed with a radius")
-        return Displacement(rows, 0.0 if ratio is None else ratio.si), texts
+        return Scale(rows, 0.0 if ratio is None else ratio.si), texts
     if ratio is None:
         raise InputError("nu", None, "needed with a radius")
     if counterbody not in (None, "rigid", "same"):
         raise InputError("counterbody", counterbody, "allowed is rigid or same")
     texts["counterbody"] = "rigid (default)" if counterbody is None else counterbody
-    size = read("radius", radius, "m")
+    size = read_argument("radius", radius)
     texts["radius"] = size.text
     return Modulus(rows, ratio.si, motion == "bore", counterbody == "same", size.si), texts
 
 
-def _rows(
-    rows: Measured, scale: Scale, model: FrictionModel, ends: tuple[float, float]
-) -> estimate.Rows:
-    """The least-squares rows, with their weights, and the bounds of the unknowns."""
-
-    def ratios(thetas: np.ndarray) -> np.ndarray:
-        """Compute the ratios for all guesses in one call, which is faster with a map."""
-        parts = zip(*(scale.points(*np.exp(theta)) for theta in thetas), strict=True)
-        return model.at(Points(*(np.concatenate(part) for part in parts))).reshape(len(thetas), -1)
-
-    common = max(float(np.abs(rows.value).max()), np.finfo(float).tiny)
-    return estimate.Rows(
-        ratios=ratios,
-        value=rows.value,
-        weight=rows.weight,
-        error=rows.error if rows.has_errors else np.full_like(rows.value, common),
-        absolute=rows.has_errors,
-        lower=np.log([SMALLEST_MU, ends[0]]),
-        upper=np.log([LARGEST_MU, ends[1]]),
-    )
-
-
-def _fits(rows: estimate.Rows, scale: Scale, model: FrictionModel) -> list[estimate.Best]:
+def _fits(problem: estimate.LeastSquares) -> list[estimate.Best]:
     """The best fit, followed by the fits from other initial guesses.  The model is corrected at the
     best fit."""
-    fits = [estimate.best_near(rows, start) for start in estimate.starts(rows)]
+    fits = [estimate.best_near(problem, start) for start in estimate.starts(problem)]
     best, *others = sorted(fits, key=lambda one: one.squares)
     for _ in range(MOST_PASSES):
-        model.anchor(scale.points(*np.exp(best.theta)))
-        last, best = best, estimate.best_near(rows, best.theta)
+        problem.model.anchor(problem.scale.points(*np.exp(best.theta)))
+        last, best = best, estimate.best_near(problem, best.theta)
         if np.abs(best.theta - last.theta).max() <= SETTLED:
             break
     return [best, *others]

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from microslip.si.fitting.curves import Curve
-from microslip.si.prediction import unit_of
+from microslip.si.prediction import column_unit
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -145,10 +145,10 @@ class Fit:
                     variables[f"curve_{part}"] = (
                         "curve_point",
                         values,
-                        {"units": units.get(part, unit_of(part))},
+                        {"units": units.get(part, column_unit(part))},
                     )
             elif isinstance(value, np.ndarray):
-                variables[name] = ("row", value, {"units": units.get(name, unit_of(name))})
+                variables[name] = ("row", value, {"units": units.get(name, column_unit(name))})
             elif name == "labels":
                 variables |= {label: ("row", texts) for label, texts in value.items()}
             elif isinstance(value, dict):
@@ -159,5 +159,5 @@ class Fit:
                 attributes[name] = value
             else:
                 number = np.nan if value is None else value
-                variables[name] = ((), number, {"units": units.get(name, unit_of(name))})
+                variables[name] = ((), number, {"units": units.get(name, column_unit(name))})
         return xr.Dataset(variables, attrs=attributes)

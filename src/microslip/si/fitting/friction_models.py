@@ -9,6 +9,7 @@ end, the remaining error of the coarse map is of second order.
 from __future__ import annotations
 
 from collections.abc import Callable
+from functools import cache, cached_property, partial
 from typing import Any
 
 import numpy as np
@@ -16,12 +17,9 @@ import numpy as np
 from microslip.adaptive.point import solve
 from microslip.foundation.arguments import LARGEST
 from microslip.foundation.errors import InputError
-from microslip.si.fitting.scales import Points
+from microslip.si.fitting.scales import LEAST, MOST, Points
 from microslip.si.friction_map import FrictionMap
 
-LEAST, MOST = 0.03, 20.0
-"""Smallest and largest amplitude of the coarse map.  At smaller amplitudes, nearly the whole
-contact sticks.  At larger amplitudes, nearly the whole contact slides all the time."""
 SLOWEST, FASTEST = 1e-3, 20.0
 """Smallest and largest ratio of velocity to amplitude in the coarse map.  For a bore, smallest and
 largest velocity."""
@@ -36,30 +34,7 @@ MOST_SOLVED = 200
 """Largest number of rows for a fit without a map."""
 
 
-class FrictionModel:
-    """A model of mu_macro and its error estimate in each row, both of shape (n,)."""
-
-    def at(self, points: Points) -> np.ndarray:
-        """mu_macro of all rows for each guess.
-
-        Errors far from the best guess affect the iterations but not the result.
-        """
-        raise NotImplementedError
-
-    def rough(self, points: Points) -> np.ndarray:
-        """mu_macro at any points, without the corrections."""
-        return self.at(points)
-
-    def anchor(self, points: Points) -> None:
-        """Compute corrections at the points of the best guess so far."""
-
-    def errors(self, points: Points) -> np.ndarray:
-        """Error estimates of the friction that `at` returns, near the points of the last
-        correction."""
-        raise NotImplementedError
-
-
-class MapFriction(FrictionModel):
+class MapFriction:
     """Friction interpolated in the dataset of a sweep; see datasets.query.
 
     Parameters
@@ -82,12 +57,19 @@ class MapFriction(FrictionModel):
         self._proved = motion in PROVED and poisson == 0.0
 
     def at(self, points: Points) -> np.ndarray:
+        """mu_macro at any points, shape (n,)."""
         if not self._proved:  # guesses may lie outside the map
             parts = zip(points, self._ends, strict=True)
             points = Points(*(np.clip(part, *ends) for part, ends in parts))
         return self._answer(points)[0]
 
+    rough = at
+
+    def anchor(self, points: Points) -> None:
+        """Do nothing: a map needs no corrections."""
+
     def errors(self, points: Points) -> np.ndarray:
+        """Error estimates of the friction at the points, shape (n,)."""
         try:
             return self._answer(points)[1]
         except ValueError as error:
@@ -101,7 +83,7 @@ class MapFriction(FrictionModel):
         return self._map.at(velocity, amplitude, self._poisson)
 
 
-class SolvedFriction(FrictionModel):
+class SolvedFriction:
     """Friction from the solver and a coarse map.  The axes of the map are the logarithms of
     amplitude and ratio.
 
@@ -129,31 +111,35 @@ class SolvedFriction(FrictionModel):
         if count > MOST_SOLVED:
             allowed = f"rows; allowed are at most {MOST_SOLVED}, or any number with a map"
             raise InputError("measured", count, allowed)
-        self._motion, self._settings = motion, {"poisson": poisson, "tolerance": tolerance}
-        self._known: dict[tuple[float, float], tuple[float, float]] = {}
-        coordinates = [self._coordinates(points) for points in ends]
-        axes = [np.concatenate([each[k] for each in coordinates]) for k in (0, 1)]
-        self._axes = [
-            _axis(values, NODES_A_DECADE[name])
-            for values, name in zip(axes, ("amplitude", "ratio"), strict=True)
-        ]
-        self._map: Callable | None = None
+        self._motion = motion
+        # each point is solved once
+        self._solved = cache(partial(_solution, motion, poisson=poisson, tolerance=tolerance))
+        axes = np.concatenate([self._coordinates(points) for points in ends], axis=1)
+        nodes = NODES_A_DECADE["amplitude"], NODES_A_DECADE["ratio"]
+        self._axes = [_axis(*pair) for pair in zip(axes, nodes, strict=True)]
         self._off: np.ndarray | float = 0.0
         self._errors = np.full(count, np.inf)
 
     def at(self, points: Points) -> np.ndarray:
+        """mu_macro of all rows for each guess, with the corrections of the last `anchor`.
+
+        Errors far from the best guess affect the iterations but not the result.
+        """
         off = np.resize(self._off, len(points.amplitude))  # for each row of every guess
         return np.where(points.amplitude > 0.0, self._coarse(points) + off, 1.0)
 
     def anchor(self, points: Points) -> None:
+        """Compute the corrections at the points of the best guess so far."""
         answers = [self._solved(v, a) for v, a in zip(*points, strict=True)]
         values, self._errors = np.array(answers).T
         self._off = values - self._coarse(points)
 
     def errors(self, points: Points) -> np.ndarray:
+        """Error estimates of the friction at the points of the last correction, shape (n,)."""
         return self._errors
 
     def rough(self, points: Points) -> np.ndarray:
+        """mu_macro at any points, without the corrections."""
         return np.where(points.amplitude > 0.0, self._coarse(points), 1.0)
 
     def _coordinates(self, points: Points) -> tuple[np.ndarray, np.ndarray]:
@@ -166,31 +152,24 @@ class SolvedFriction(FrictionModel):
         return np.log(size), np.log(np.clip(ratio, SLOWEST, FASTEST))
 
     def _coarse(self, points: Points) -> np.ndarray:
-        if self._map is None:
-            self._map = self._coarse_map()
         return self._map(*self._coordinates(points), grid=False)
 
-    def _coarse_map(self) -> Callable:
+    @cached_property
+    def _map(self) -> Callable:
+        """The coarse map."""
         from scipy.interpolate import RectBivariateSpline
 
         sizes, ratios = (np.exp(axis) for axis in self._axes)
         over = np.ones_like(sizes) if self._motion == "bore" else sizes
         values = [
-            [_solution(self._motion, ratio * unit, size, COARSE)[0] for ratio in ratios]
+            [_solution(self._motion, ratio * unit, size, **COARSE)[0] for ratio in ratios]
             for size, unit in zip(sizes, over, strict=True)
         ]
         return RectBivariateSpline(*self._axes, np.array(values), s=0)
 
-    def _solved(self, velocity: float, amplitude: float) -> tuple[float, float]:
-        """mu_macro and its error estimate from the solver.  Each point is solved once."""
-        point = float(velocity), float(amplitude)
-        if point not in self._known:
-            self._known[point] = _solution(self._motion, *point, self._settings)
-        return self._known[point]
-
 
 def _solution(
-    motion: str, velocity: float, amplitude: float, settings: dict[str, Any]
+    motion: str, velocity: float, amplitude: float, **settings: Any
 ) -> tuple[float, float]:
     """mu_macro and its error estimate from the solver."""
     if amplitude == 0.0:
@@ -209,3 +188,7 @@ def _axis(values: np.ndarray, a_decade: float) -> np.ndarray:
     low, high = values.min() - 0.1, values.max() + 0.1
     count = max(4, 1 + int(np.ceil((high - low) / np.log(10.0) * a_decade)))
     return np.linspace(low, high, count)
+
+
+FrictionModel = MapFriction | SolvedFriction
+"""A model of mu_macro and its error estimate in each row."""

@@ -15,8 +15,7 @@ from typing import Any
 import numpy as np
 
 from microslip.foundation.errors import InputError
-from microslip.si.inputs import QUANTITIES, Range
-from microslip.si.motions import UNIT_OF_AMPLITUDE
+from microslip.si.inputs import QUANTITIES, Range, read_argument, unit_of
 from microslip.si.quantities import read
 from microslip.si.tables import LABELS, Table, table_of
 
@@ -51,6 +50,8 @@ class Measured:
         Text columns, by name.
     left_out : tuple of str
         Unreadable lines, with the reasons.
+    name : str or list
+        Name of the table for messages; see `named`.
     """
 
     speed: np.ndarray
@@ -63,6 +64,7 @@ class Measured:
     texts: dict
     labels: dict = field(default_factory=dict)
     left_out: tuple = ()
+    name: str | list = ""
 
     @property
     def has_errors(self) -> bool:
@@ -92,7 +94,7 @@ def read_measured(
     Parameters
     ----------
     motion : str
-        One of motions.UNIT_OF_AMPLITUDE.
+        One of motions.SINGLE.
     source : path, mapping or pandas DataFrame
         The file, or columns by name.  A heading can have a unit, as in "speed [mm/s]".  A column
         without one is in SI units.
@@ -102,10 +104,11 @@ def read_measured(
         Values of speed, amplitude, frequency and load that replace columns.
     """
     units = {name: column.unit for name, column in COLUMNS.items()}
-    units["amplitude"] = UNIT_OF_AMPLITUDE[motion]
+    units["amplitude"] = unit_of("amplitude", motion)
     needed = {name: bool(unit) for name, unit in units.items()}
     table = table_of("measured", source, needed, decimal=decimal, encoding=encoding)
-    columns, labels, left_out = _numbers(table, source, units)
+    title = named(source)
+    columns, labels, left_out = _numbers(table, title, units)
     count = len(next(iter(columns.values())))
     texts: dict[str, str] = {}
     conditions: dict[str, Any] = {}
@@ -117,13 +120,12 @@ def read_measured(
         if name in columns:
             conditions[name] = columns[name]
         else:
-            low_open = name in ("amplitude", "frequency", "load")
-            one = read(name, shared[name], units[name], low_open=low_open)
+            one = read_argument(name, shared[name], motion)
             conditions[name], texts[name] = np.full(count, one.si), one.text
     if not (conditions["amplitude"] > 0.0).any():
         allowed = "no row with an amplitude above 0, so that nothing vibrates"
-        raise InputError("measured", named(source), allowed)
-    quantity = _quantity(columns, source)
+        raise InputError("measured", title, allowed)
+    quantity = _quantity(columns, title)
     return Measured(
         **conditions,
         value=columns[quantity],
@@ -132,11 +134,12 @@ def read_measured(
         texts=texts,
         labels=labels,
         left_out=left_out,
+        name=title,
     )
 
 
 def _numbers(
-    table: Table, source: object, units: Mapping[str, str]
+    table: Table, title: str | list, units: Mapping[str, str]
 ) -> tuple[dict[str, np.ndarray], dict[str, list], tuple[str, ...]]:
     """Numeric columns in SI units, label columns, and messages about the unreadable lines of a
     file.
@@ -149,9 +152,9 @@ def _numbers(
     if unknown or not names:
         which = repr(unknown[0]) if unknown else "nothing"
         allowed = f"a column {which}; allowed are some of {', '.join(COLUMNS)}"
-        raise InputError("measured", named(source), allowed)
+        raise InputError("measured", title, allowed)
     if len({len(column) for column in table.columns.values()}) > 1:
-        raise InputError("measured", named(source), "columns of several lengths; allowed is one")
+        raise InputError("measured", title, "columns of several lengths; allowed is one")
     rows, indices, left_out = [], [], []
     for index, row in enumerate(zip(*(table.columns[name] for name in names), strict=True)):
         if index in table.errors:
@@ -168,7 +171,7 @@ def _numbers(
                 left_out.append(f"line {table.lines[index]}: {problem}")
     if not rows:
         problem = left_out[0] if left_out else "no rows; allowed is a row for each measurement"
-        raise InputError("measured", named(source), problem)
+        raise InputError("measured", title, problem)
     if len(rows) > MOST_ROWS:
         raise InputError("measured", len(rows), f"allowed are at most {MOST_ROWS} rows")
     columns = dict(zip(names, np.array(rows).T, strict=True))
@@ -181,19 +184,18 @@ def _number(name: str, value: object, units: Mapping[str, str]) -> float:
     if value is None:
         allowed = "empty; allowed: a number in every row; leave out the row, or fill the cell"
         raise InputError(name, None, allowed)
-    column = COLUMNS[name]
-    return read(name, value, units[name], low=column.low, low_open=column.low_open).si
+    return read(name, value, **COLUMNS[name]._replace(unit=units[name])._asdict()).si
 
 
-def _quantity(table: Mapping[str, np.ndarray], source: object) -> str:
+def _quantity(table: Mapping[str, np.ndarray], title: str | list) -> str:
     """The measured quantity, friction or mu."""
     columns = [name for name in ("friction", "mu") if name in table]
     if len(columns) != 1:
         many = "both friction and mu" if columns else "neither friction nor mu"
-        raise InputError("measured", named(source), f"has {many}; allowed is one of them")
+        raise InputError("measured", title, f"has {many}; allowed is one of them")
     for name in ("friction", "mu"):
         if f"{name}_error" in table and name not in columns:
-            raise InputError("measured", named(source), f"has {name}_error without {name}")
+            raise InputError("measured", title, f"has {name}_error without {name}")
     return columns[0]
 
 

@@ -17,6 +17,10 @@ from microslip.si.fitting.measured import Measured
 from microslip.si.materials import RIGID, Material
 from microslip.theory import hertz
 
+LEAST, MOST = 0.03, 20.0
+"""Smallest and largest dimensionless amplitude that a fit resolves.  At smaller amplitudes, nearly
+the whole contact sticks.  At larger amplitudes, nearly the whole contact slides all the time."""
+
 
 class Points(NamedTuple):
     """Dimensionless points for microslip.solve: velocity and amplitude, shape (n,) each."""
@@ -27,7 +31,7 @@ class Points(NamedTuple):
 
 @dataclass(frozen=True, eq=False)
 class Scale:
-    """The second unknown of a fit.
+    """The second unknown of a fit: u_lim at the mean load, m, for motions along a line.
 
     Attributes
     ----------
@@ -42,8 +46,8 @@ class Scale:
 
     rows: Measured
     poisson: float
-    unit: ClassVar[str]
-    name: ClassVar[str]
+    unit: ClassVar[str] = "m"
+    name: ClassVar[str] = "u_lim"
 
     @property
     def mean_load(self) -> float:
@@ -52,38 +56,24 @@ class Scale:
 
     def u_lim(self, mu: float, scale: float) -> float:
         """u_lim at the mean load, m."""
-        raise NotImplementedError
+        return scale
 
-    def bounds(self, least: float, most: float) -> tuple[float, float]:
-        """Range of the second unknown, for amplitudes between `least` and `most`."""
-        raise NotImplementedError
+    @property
+    def bounds(self) -> tuple[float, float]:
+        """Smallest and largest value of the second unknown.
+
+        For the largest u_lim, no amplitude exceeds LEAST.  For the smallest one, all positive
+        amplitudes are at least MOST.
+        """
+        sizes = self.points(1.0, 1.0).amplitude
+        sizes = sizes[sizes > 0.0]
+        return float(sizes.min()) / MOST, float(sizes.max()) / LEAST
 
     def points(self, mu: float, scale: float, rows: Measured | None = None) -> Points:
         """Velocity and amplitude of each row.  By default, the rows are those of the fit."""
         rows = self.rows if rows is None else rows
         u_lim = self.u_lim(mu, scale) * (rows.load / self.mean_load) ** (2.0 / 3.0)
         return Points(rows.speed / (rows.omega * u_lim), rows.amplitude / u_lim)
-
-
-@dataclass(frozen=True, eq=False)
-class Displacement(Scale):
-    """Fit of u_lim at the mean load, m, for motions along a line."""
-
-    unit, name = "m", "u_lim"
-
-    def u_lim(self, mu: float, scale: float) -> float:
-        """u_lim at the mean load, m."""
-        return scale
-
-    def bounds(self, least: float, most: float) -> tuple[float, float]:
-        """Range of u_lim for amplitudes between `least` and `most`.
-
-        At one end of the range, no amplitude exceeds `least`.  At the other end, all positive
-        amplitudes are at least `most`.
-        """
-        sizes = self.points(1.0, 1.0).amplitude
-        sizes = sizes[sizes > 0.0]
-        return float(sizes.min()) / most, float(sizes.max()) / least
 
 
 @dataclass(frozen=True, eq=False)
@@ -105,7 +95,8 @@ class Modulus(Scale):
     spin: bool
     alike: bool
     radius: float
-    unit, name = "Pa", "shear modulus"
+    unit = "Pa"
+    name = "shear modulus"
 
     def contact(self, mu: float, scale: float) -> TwoBodies:
         """The contact at the mean load."""
@@ -125,8 +116,9 @@ class Modulus(Scale):
         size = arc / (contact.u_lim * share ** (2.0 / 3.0))
         return Points(velocity, np.asarray(hertz.bore_amplitude(size, self.poisson)))
 
-    def bounds(self, least: float, most: float) -> tuple[float, float]:
-        """Smallest and largest shear modulus of solids.  They do not depend on the amplitudes."""
+    @property
+    def bounds(self) -> tuple[float, float]:
+        """Smallest and largest shear modulus of solids."""
         return SOFTEST, HARDEST
 
     def u_lim(self, mu: float, scale: float) -> float:

@@ -17,7 +17,7 @@ from microslip.config.settings import Accuracy
 from microslip.solver.method_names import SHIPPED
 from microslip.studies import requests
 from microslip.studies.ladders import ladder, models_for
-from microslip.studies.requests import Point
+from microslip.studies.requests import AnyPoint, Point
 
 CHOICE_TOLERANCES = (1e-2, 1e-3, 1e-4)
 MAP_MOTIONS = ("transverse", "bore")
@@ -41,15 +41,7 @@ SIZES_PER_JOB = 4
 """This many of the smallest sizes share one job. Each larger size has its own job."""
 
 
-def points(study: Accuracy) -> dict[str, Point]:
-    """Return the points of the trials, by name."""
-    return {
-        name: Point(point.motion, point.velocity, point.amplitude, point.poisson)
-        for name, point in study.points.items()
-    }
-
-
-def trials(study: Accuracy, point: Point) -> Iterator[tuple[int, dict]]:
+def trials(study: Accuracy, point: AnyPoint) -> Iterator[tuple[int, dict]]:
     """Yield (level, request) for the trials of one point, then for its solves at a tolerance.
 
     The level of a solve is the index of its tolerance in CHOICE_TOLERANCES.
@@ -63,7 +55,7 @@ def trials(study: Accuracy, point: Point) -> Iterator[tuple[int, dict]]:
             yield k, requests.choice(point, tolerance, study.repeats)
 
 
-def truth(point: Point) -> dict | None:
+def truth(point: AnyPoint) -> dict | None:
     """Return the request for the reference of a point, or None if Eq 21 is exact there."""
     return requests.reference(point) if point.amplitude is not None else None
 
@@ -101,7 +93,7 @@ def scaling(study: Accuracy, model: str) -> list[dict]:
 
 def pieces(study: Accuracy) -> tuple[list, list]:
     """Return the slow jobs and the fast jobs as two lists. A job is a list of requests."""
-    places = list(points(study).values())
+    places = study.points.values()
     long = [[request] for request in map(truth, places) if request is not None]
     for model in SCALING_SIZES:
         sizes = scaling(study, model)

@@ -15,7 +15,7 @@ from microslip.studies.accuracy import accuracy_cost as study
 from microslip.studies.accuracy import profiles
 from microslip.studies.accuracy.fronts import cheapest, confirmed, exponent, on_front
 from microslip.studies.ladders import exact_model
-from microslip.studies.requests import Point
+from microslip.studies.requests import AnyPoint, Point
 from microslip.studies.tables import Answers, finished, table, value_of
 from microslip.theory import paper
 
@@ -44,17 +44,17 @@ GROUPS["profile"] = (
 
 POINT_COLUMNS: dict[str, tuple] = {
     "point": (lambda name, *_: name, "name of the point", str),
-    "point_title": (lambda name, title, *_: title or name, "title of the point", str),
-    "point_motion": (lambda *row: row[2].motion, "motion", str),
-    "point_velocity": (lambda *row: row[2].velocity, "forward velocity of the point"),
-    "point_amplitude": (lambda *row: value_of(row[2]._asdict(), "amplitude"), "amplitude"),
-    "point_poisson": (lambda *row: row[2].poisson, "Poisson's ratio of the point"),
-    "reference": (lambda *row: row[3][0], "mu_macro that trials are compared with"),
-    "reference_error": (lambda *row: row[3][1], "error estimate of the reference"),
-    "reference_source": (lambda *row: row[3][2], "source of the reference", str),
+    "point_title": (lambda name, point, _: point.title or name, "title of the point", str),
+    "point_motion": (lambda _, point, __: point.motion, "motion", str),
+    "point_velocity": (lambda _, point, __: point.velocity, "forward velocity of the point"),
+    "point_amplitude": (lambda _, point, __: point.amplitude, "amplitude"),
+    "point_poisson": (lambda _, point, __: point.poisson, "Poisson's ratio of the point"),
+    "reference": (lambda _, __, reference: reference[0], "mu_macro that trials are compared with"),
+    "reference_error": (lambda _, __, reference: reference[1], "error estimate of the reference"),
+    "reference_source": (lambda _, __, reference: reference[2], "source of the reference", str),
 }
-"""Columns of the table of points: (function, long_name, type). The arguments of the function are
-the name, the title, the Point and the reference."""
+"""Columns of the table of points: (function of the name, the point and its reference, long_name,
+type)."""
 TRIAL_COLUMNS: dict[str, tuple] = {
     name: (itemgetter(name), *about)
     for name, about in {
@@ -92,7 +92,7 @@ def build(settings: Accuracy, answer: Callable) -> xr.Dataset:
     answer: function that returns the record of a request, such as batches.answer with a store.
     """
     answers = Answers(answer)
-    points = study.points(settings)
+    points = settings.points
     references = {name: _reference(point, answers) for name, point in points.items()}
     trials = [
         row
@@ -100,8 +100,7 @@ def build(settings: Accuracy, answer: Callable) -> xr.Dataset:
         for row in _trials(settings, name, point, references[name], answers)
     ]
     tolerances = settings.map.tolerance[::-1]  # from loose to tight
-    titles = [setting.title for setting in settings.points.values()]
-    about_points = zip(points, titles, points.values(), references.values(), strict=True)
+    about_points = zip(points, points.values(), references.values(), strict=True)
     variables = table("point", about_points, POINT_COLUMNS)
     variables |= table("trial", ((row,) for row in trials), TRIAL_COLUMNS)
     variables |= profiles.variables(trials, list(points), tolerances)
@@ -139,7 +138,7 @@ def report(dataset: xr.Dataset) -> Iterator[str]:
 # Trials
 
 
-def _reference(point: Point, answers: Answers) -> tuple[float, float, str]:
+def _reference(point: AnyPoint, answers: Answers) -> tuple[float, float, str]:
     """Return (mu_macro, error, source) of the reference of a point."""
     request = study.truth(point)
     if request is None:
@@ -154,7 +153,7 @@ def _reference(point: Point, answers: Answers) -> tuple[float, float, str]:
 def _trials(
     settings: Accuracy,
     name: str,
-    point: Point,
+    point: AnyPoint,
     reference: tuple[float, float, str],
     answers: Answers,
 ) -> list[dict]:

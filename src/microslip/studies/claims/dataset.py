@@ -74,15 +74,10 @@ def _claims(checks: dict[str, list[Check]]) -> dict:
     checks: a list of Check for each part, by name.
     """
     numbers = list(STATEMENTS)
+    parts = {n: [part.name for part in PARTS if part.claim == n and part.counts] for n in numbers}
     judged = [
-        verdicts.of_claim(
-            [
-                verdicts.of_part(checks[part.name])
-                for part in PARTS
-                if part.claim == n and part.counts
-            ]
-        )
-        for n in numbers
+        verdicts.of_claim([verdicts.of_part(checks[name]) for name in names])
+        for names in parts.values()
     ]
     return {
         "claim": variable("claim", numbers, "number of the statement", np.int32),

@@ -61,10 +61,12 @@ def command(request: dict) -> str:
         return " ".join(words)
     place = [repr(motion), request["velocity"]]
     place += [request["amplitude"]] if request.get("amplitude") else []
-    names, call = _CALLS[kind]
-    pairs = [(name, request.get(name)) for name in names]
-    arguments = [f"{name}={_literal(value)}" for name, value in pairs if value is not None]
-    module, _, function = call.partition(" ")
+    arguments = [
+        f"{name}={_literal(value)}"
+        for name, value in request.items()
+        if value is not None and name not in ("kind", "motion", "velocity", "amplitude")
+    ]
+    module, _, function = _CALLS[kind].partition(" ")
     return (
         f'python -c "from {module} import {function.partition("(")[0]}; '
         f'print({function.replace("...", ", ".join([*place, *arguments]))})"'
@@ -72,18 +74,12 @@ def command(request: dict) -> str:
 
 
 _CALLS = {
-    "history": (("start", "travel", "cells"), "microslip history(...).force_forward[-1]"),
-    "field": (("cells",), "microslip traction_field(...)"),
-    "patches": (
-        ("poisson", "cells", "angles", "steps"),
-        "microslip.adaptive.stick_area patches(...)['least_stick']",
-    ),
-    "run": (
-        ("poisson", "model", "method", "cells", "angles", "steps", "tolerance"),
-        "microslip.adaptive.single_run run_trial(...)['mu_macro']",
-    ),
+    "history": "microslip history(...).force_forward[-1]",
+    "field": "microslip traction_field(...)",
+    "patches": "microslip.adaptive.stick_area patches(...)['least_stick']",
+    "run": "microslip.adaptive.single_run run_trial(...)['mu_macro']",
 }
-"""For each kind of request: names of the arguments, and the function call that they belong to."""
+"""For each kind of request: the module, and the function call."""
 
 
 def _literal(value: str | float) -> str:

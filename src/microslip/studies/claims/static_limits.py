@@ -141,69 +141,50 @@ def _shares(motion: str) -> dict:
     }
 
 
-SPLIT = {
-    "limit": "static friction, exact limit",
-    "limit_error": "error of the limit, from the limit on rings",
-    "limit_squares": "static limit on the paper's squares",
-    "march": "mu_macro at the smallest velocity of this study",
-    "march_error": "error of mu_macro at the smallest velocity",
-    "slow": "mu_macro at the paper's smallest velocity",
-    "slow_error": "error of mu_macro at the paper's smallest velocity",
-    "paper": "mu_macro of the paper's own run at its smallest velocity",
-    "paper_shift": "difference of the paper's run from the limit",
-    "from_velocity": "part of this difference that is due to the velocity",
-    "from_velocity_error": "error of this part",
-    "from_resolution": "part of the difference that is due to squares, steps and tolerance",
-    "from_resolution_error": "error of this part",
-    "squares_shift": "difference of the limit on squares from the limit",
-}
-"""Variables with a value for each amplitude of a motion: name -> long_name."""
-
-
 def _split(study: Claims, runs: Runs, motion: str) -> dict:
     """Return the difference between the paper's run and the static limit.
 
     The difference is split into a part due to the velocity and a part due to the resolution.
     """
-    amplitudes = claims.limited(study, motion)
-    rows = [_row(study, runs, motion, amplitude) for amplitude in amplitudes]
+    amplitudes, slowest = claims.limited(study, motion), claims.velocities(study)[0]
+    rows = [
+        (
+            *limit(study, runs, motion, amplitude)[:2],
+            *friction(runs(claims.point(study, motion, slowest, amplitude))),
+            *friction(runs(claims.point(study, motion, claims.PAPER_VELOCITY, amplitude))),
+            value_of(runs(claims.paper_run(motion, amplitude)).result, "mu_macro"),
+            value_of(runs(claims.limit_on_squares(study, motion, amplitude)).result, "mu_macro"),
+        )
+        for amplitude in amplitudes
+    ]
+    exact, exact_error, march, march_error, slow, slow_error, paper, squares = np.array(rows).T
+    columns: dict[str, tuple[np.ndarray, str]] = {
+        "limit": (exact, "static friction, exact limit"),
+        "limit_error": (exact_error, "error of the limit, from the limit on rings"),
+        "limit_squares": (squares, "static limit on the paper's squares"),
+        "march": (march, "mu_macro at the smallest velocity of this study"),
+        "march_error": (march_error, "error of mu_macro at the smallest velocity"),
+        "slow": (slow, "mu_macro at the paper's smallest velocity"),
+        "slow_error": (slow_error, "error of mu_macro at the paper's smallest velocity"),
+        "paper": (paper, "mu_macro of the paper's own run at its smallest velocity"),
+        "paper_shift": (paper - exact, "difference of the paper's run from the limit"),
+        "from_velocity": (slow - exact, "part of this difference that is due to the velocity"),
+        "from_velocity_error": (slow_error + exact_error, "error of this part"),
+        "from_resolution": (
+            paper - slow,
+            "part of the difference that is due to squares, steps and tolerance",
+        ),
+        "from_resolution_error": (slow_error, "error of this part"),
+        "squares_shift": (squares - exact, "difference of the limit on squares from the limit"),
+    }
+    for name, (formula, long_name) in FORMULAS[motion].items():
+        columns[name] = FORMS[motion][formula].function(np.array(amplitudes)), long_name
+    zone = columns["zone"][0]
+    with np.errstate(invalid="ignore", divide="ignore"):
+        lost = np.where(zone > 0.0, 1.0 - exact / zone, np.nan)
+    columns["lost"] = lost, "fraction of the bound inside the stick zone that the oscillation uses"
     dim = f"{motion}_amplitude"
     entries = {dim: variable(dim, amplitudes, f"amplitude, motion {motion}")}
-    for name, long_name in SPLIT.items():
-        values = [row[name] for row in rows]
-        entries[f"{motion}_{name}"] = variable(dim, values, long_name)
-    for name, (formula, long_name) in FORMULAS[motion].items():
-        values = [float(FORMS[motion][formula].function(amplitude)) for amplitude in amplitudes]
-        entries[f"{motion}_{name}"] = variable(dim, values, long_name)
-    zone = np.array(entries[f"{motion}_zone"][1], float)
-    with np.errstate(invalid="ignore", divide="ignore"):
-        lost = 1.0 - np.array([row["limit"] for row in rows]) / zone
-    about = "fraction of the bound inside the stick zone that the oscillation uses"
-    entries[f"{motion}_lost"] = variable(dim, np.where(zone > 0.0, lost, np.nan), about)
-    return entries
-
-
-def _row(study: Claims, runs: Runs, motion: str, amplitude: float) -> dict[str, float]:
-    """Return the values of the SPLIT variables at an amplitude."""
-    exact, exact_error, _ = limit(study, runs, motion, amplitude)
-    slowest = claims.point(study, motion, claims.velocities(study)[0], amplitude)
-    march, march_error = friction(runs(slowest))
-    slow, slow_error = friction(runs(claims.point(study, motion, claims.PAPER_VELOCITY, amplitude)))
-    paper = value_of(runs(claims.paper_run(motion, amplitude)).result, "mu_macro")
-    squares = value_of(runs(claims.limit_on_squares(study, motion, amplitude)).result, "mu_macro")
-    return {
-        "limit": exact,
-        "limit_error": exact_error,
-        "limit_squares": squares,
-        "march": march,
-        "march_error": march_error,
-        "slow": slow,
-        "slow_error": slow_error,
-        "paper": paper,
-        "paper_shift": paper - exact,
-        "from_velocity": slow - exact,
-        "from_velocity_error": slow_error + exact_error,
-        "from_resolution": paper - slow,
-        "from_resolution_error": slow_error,
-        "squares_shift": squares - exact,
+    return entries | {
+        f"{motion}_{name}": variable(dim, values, text) for name, (values, text) in columns.items()
     }
