@@ -315,9 +315,33 @@ GOLDEN = 0.5 * (5.0**0.5 - 1.0)
 """The fractional parts of the multiples of this number fill the interval from 0 to 1 evenly."""
 
 
+ELLIPSES = tuple(
+    f"ellipse:ratio={ratio},across={across}"
+    for ratio in (0.9, 0.7, 0.5, 0.3, 0.2, 0.1, 0.05)
+    for across in (0, 1)
+)
+ELLIPTIC_SEED = 9
+ELLIPTIC = tuple(
+    Stratum(
+        f"elliptic contacts, {kind}",
+        0.5,
+        motions,
+        ELLIPSES,
+        poisson=(0.0, 0.3, 0.5),
+        tolerances=(1e-2, 5e-3),
+        **NEAR,
+    )
+    for kind, motions in (
+        ("translations", ("transverse", "longitudinal", "elliptic:forward=0.5,phase=60")),
+        ("rotations", ("bore", "bore", "transverse-bore")),
+    )
+)
+"""Ellipses of all proportions, forward and sideways."""
+
+
 def strata_of(seed: int) -> tuple[Stratum, ...]:
     """Strata of a seed's sample."""
-    return CALIBRATION if seed == CALIBRATION_SEED else VALIDATION
+    return {CALIBRATION_SEED: CALIBRATION, ELLIPTIC_SEED: ELLIPTIC}.get(seed, VALIDATION)
 
 
 def point(seed: int, k: int) -> dict:

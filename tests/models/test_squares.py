@@ -16,6 +16,7 @@ from microslip.models.squares.contact import CartesianContact
 from microslip.models.squares.convolution import convolve, influence, square_convolution, workspace
 from microslip.motions.bore import Bore
 from microslip.motions.transverse import Transverse
+from microslip.theory.hertz import G_STAR
 
 NUS = [0.0, 0.4]
 
@@ -57,6 +58,27 @@ def direct_sum(cells, nu, state):
     return np.stack([out.imag, out.real])
 
 
+@pytest.mark.parametrize("half_widths", [(1.0, 1.0), (1.0, 0.1), (0.4, 1.0)])
+def test_influence_is_the_integral_of_cerrutis_solution(half_widths):
+    nu, cells = 0.3, 4
+    direct, cross = influence(cells, 2 * cells, nu, half_widths=half_widths)
+    a, b = (2.0 * half / cells for half in half_widths)
+
+    def integral(of, i, j):
+        """Integral over the cell with the forward offset i and the lateral offset j."""
+        sides = ((i - 0.5) * a, (i + 0.5) * a, (j - 0.5) * b, (j + 0.5) * b)
+        return dblquad(lambda y, x: of(x, y) / np.hypot(x, y) ** 3, *sides)[0] / (np.pi * G_STAR)
+
+    for i, j in [(1, 0), (0, -1), (2, 1), (-1, 3)]:
+        parts = (
+            integral(lambda x, y: x * x + y * y, i, j),
+            nu / (2.0 - nu) * integral(lambda x, y: y * y - x * x, i, j),
+            nu / (2.0 - nu) * integral(lambda x, y: 2.0 * x * y, i, j),
+        )
+        found = direct[i, j], cross[i, j].real, cross[i, j].imag
+        assert found == pytest.approx(parts, abs=1e-9)
+
+
 @pytest.mark.parametrize("nu", NUS)
 @pytest.mark.parametrize("cells", [2, 3, 4, 5, 7, 9, 12, 14, 16])
 def test_convolution_is_linear_and_equal_to_the_direct_sum(cells, nu, rng):
@@ -71,7 +93,7 @@ def test_convolution_is_linear_and_equal_to_the_direct_sum(cells, nu, rng):
 @pytest.mark.parametrize("cells", [3, 4, 7])
 def test_loads_of_cells_are_integrals_of_the_bound(cells):
     contact = CartesianContact(cells)
-    half, load = contact.size / 2, contact.weight * contact.bound
+    half, load = contact.widths[0] / 2, contact.weight * contact.bound
     assert load.sum() == pytest.approx(1.0, abs=1e-14)
     for i, j in [(0, 0), (0, 1), (0, cells // 2), (1, 1)]:
         y, x = contact.forward_position[i, j], contact.lateral_position[i, j]
@@ -148,7 +170,7 @@ def test_steps_are_solved_down_to_rounding(size, nu, rng):
     q, slip, residual, iterations = solved(contact, b, before, 1e-12)
     assert residual <= 1e-12
     assert iterations < 250
-    row, scale = np.full(16, contact.size**2), contact.compliance[0]
+    row, scale = np.full(16, contact.widths.prod()), contact.compliance[0]
     rows = [(q[:, i : i + 1], slip[:, i : i + 1], contact.bound[i]) for i in range(16)]
     total = sum(coulomb_residual(*map(np.ascontiguousarray, r), row, scale) for r in rows)
     assert total == pytest.approx(residual, abs=1e-14)

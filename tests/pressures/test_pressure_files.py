@@ -104,10 +104,9 @@ def test_samples_are_bilinear_between_the_points_and_end_there():
 def test_oblong_cells_and_grids_keep_their_shape():
     """The grid is half as wide as long; a is half the longer side."""
     forward, lateral = np.arange(4) * 0.5, np.arange(8) * 0.125
-    loads = Measured.on_grid("oblong", forward, lateral, np.ones((4, 8))).cell_loads(8)
-    expected = np.zeros((8, 8))
-    expected[:, 2:6] = 1.0 / 32.0
-    assert loads == pytest.approx(expected, abs=1e-14)
+    oblong = Measured.on_grid("oblong", forward, lateral, np.ones((4, 8)))
+    assert oblong.half_widths == pytest.approx((1.0, 0.5), abs=1e-14)
+    assert oblong.cell_loads(8) == pytest.approx(np.full((8, 8), 1.0 / 64.0), abs=1e-14)
 
 
 @pytest.mark.slow

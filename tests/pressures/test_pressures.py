@@ -77,7 +77,8 @@ def test_squares_carry_the_load_and_the_torque(name, cells):
     pressure = pressure_named(name)
     loads = pressure.cell_loads(cells)
     centres = (np.arange(cells) + 0.5) * 2.0 / cells - 1.0
-    lever = np.hypot(centres[:, None], centres)
+    forward, lateral = (half * centres for half in pressure.half_widths)
+    lever = np.hypot(forward[:, None], lateral)
     assert loads.shape == (cells, cells)
     assert loads.min() >= 0.0
     assert loads.sum() == pytest.approx(1.0, abs=1e-12)
@@ -95,12 +96,14 @@ def test_thin_rings_give_the_loads_of_squares_in_closed_form():
 @pytest.mark.parametrize("name", [*ROUND, *PLANAR])
 def test_u_lim_is_the_largest_displacement_under_full_slip(name):
     """Displacements are sums over a fine grid, with a closed form for the influence of a cell on
-    itself."""
+    itself (Love 1929)."""
     pressure = pressure_named(name)
     result = []
     for n in (81, 161):
-        distance = np.hypot(*np.meshgrid(*2 * [np.arange(1 - n, n) * 2.0 / n]))
-        own = 4.0 * np.arcsinh(1.0) / (2.0 / n)
+        a, b = (2.0 / n * half for half in pressure.half_widths)
+        offsets = np.arange(1 - n, n)
+        distance = np.hypot(a * offsets[:, None], b * offsets)
+        own = 2.0 * (a * np.arcsinh(b / a) + b * np.arcsinh(a / b)) / (a * b)
         kernel = np.where(distance > 0.0, 1.0 / np.where(distance > 0.0, distance, 1.0), own)
         loads = pressure.cell_loads(n)
         field = fftconvolve(loads, kernel)[n - 1 : 2 * n - 1, n - 1 : 2 * n - 1]

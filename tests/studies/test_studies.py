@@ -411,7 +411,7 @@ def test_the_papers_run_is_under_the_pressure_that_is_asked_for(monkeypatch):
         pass
 
     def march(contact, path, state, tolerance):
-        raise Seen(contact.bound * contact.size**2)
+        raise Seen(contact.bound * contact.widths.prod())
 
     monkeypatch.setattr("microslip.models.squares.contact.CartesianContact.march", march)
     for name in ("hertz", CONE):

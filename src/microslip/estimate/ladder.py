@@ -124,10 +124,10 @@ ROTATION = TRANSLATION._replace(steps=1)
 WHOLE_DISC = ROTATION._replace(start=LOOP.start)
 """Rotations combined with a lateral motion.  Their slip fronts differ between the halves of a
 period."""
+SQUARES = WHOLE_DISC
+"""Cells along both axes of a contact.  They are not graded towards the slip front."""
 LOAD = Kind(start=24, steps=4)
 """Oscillating normal loads, under which the edge of the contact moves across the rings."""
-SQUARES = ROTATION._replace(start=LOAD.start)
-"""Squares across the diameter.  They are not graded towards the slip front."""
 STATIC = Kind(start=32, steps=0)
 """Static limits, computed at turning points.  There, slip fronts cut through the cells."""
 COUPLED = LOAD._replace(start=STATIC.start)

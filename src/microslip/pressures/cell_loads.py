@@ -1,4 +1,4 @@
-"""Load of a pressure on each square cell of a grid over [-1, 1]^2."""
+"""Load of a pressure on each cell of a regular grid over the contact."""
 
 from __future__ import annotations
 

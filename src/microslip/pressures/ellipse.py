@@ -78,23 +78,24 @@ class Ellipse(Pressure):
     def largest(self) -> float:
         return 1.5 / (np.pi * self.ratio)
 
+    @property
+    def half_widths(self) -> tuple[float, float]:
+        return (self.ratio, 1.0) if self.across else (1.0, self.ratio)
+
     def cell_loads(self, cells: int) -> np.ndarray:
-        """Compute the load on each square, (cells, cells)."""
-        return ellipse_loads(cells, (self.ratio, 1.0) if self.across else (1.0, self.ratio))
+        """Compute the load on each cell, (cells, cells)."""
+        return hertz_loads(cells)
 
     def loading(self, displacement: np.ndarray | float) -> np.ndarray | float:
         """Tangential force after a displacement from rest.  It is the same as for a sphere."""
         return hertz.mindlin_force(displacement)
 
 
-def ellipse_loads(cells: int, axes: tuple[float, float] = (1.0, 1.0)) -> np.ndarray:
-    """Compute the load of Hertz pressure on each square, (cells, cells).
-
-    axes: forward and lateral semi-axis.
-    """
+def hertz_loads(cells: int) -> np.ndarray:
+    """Compute the load of Hertz pressure on each cell of the rectangle around the ellipse, (cells,
+    cells).  It does not depend on the ratio of the semi-axes."""
     edges = np.arange(cells + 1) * 2.0 / cells - 1.0
-    x, y = (np.clip(edges / axis, -1.0, 1.0) for axis in axes)
-    x, y = x[:, None], y[None, :]
+    x, y = edges[:, None], edges[None, :]
     # load of the rectangle from the centre to (x, y), odd in both coordinates; the root is zero
     # outside the disc, as the pressure is
     root = np.sqrt(np.maximum(1.0 - x * x - y * y, 0.0))

@@ -199,15 +199,20 @@ class Grid:
         return [0.5 * (side.low + side.high) for side in (self.forward, self.lateral)]
 
     @property
+    def half_widths(self) -> list[float]:
+        """Half of the forward and the lateral width of the rectangle."""
+        return [0.5 * (side.high - side.low) for side in (self.forward, self.lateral)]
+
+    @property
     def half(self) -> float:
         """Half the longer side of the rectangle, which is the unit of length a."""
-        return 0.5 * max(side.high - side.low for side in (self.forward, self.lateral))
+        return max(self.half_widths)
 
     def cell_loads(self, cells: int) -> np.ndarray:
-        """Load on each of cells x cells squares over [-1, 1]^2; the sum is 1."""
-        edges = self.half * (np.arange(cells + 1) * 2.0 / cells - 1.0)
-        along, across = (middle + edges for middle in self.middles)
-        return of_loads(self.loads(along, across))
+        """Load on each of cells x cells cells of the rectangle; the sum is 1."""
+        edges = np.arange(cells + 1) * 2.0 / cells - 1.0
+        sides = zip(self.middles, self.half_widths, strict=True)
+        return of_loads(self.loads(*(middle + half * edges for middle, half in sides)))
 
     @property
     def area(self) -> float:
@@ -218,7 +223,8 @@ class Grid:
     def reduced_modulus(self) -> float:
         """G* in working units.  It equals the largest displacement under full slip for G* = 1."""
         fine = min(max(FINE, *self.values.shape), FINEST)
-        return _largest_displacement(self.cell_loads(fine))
+        forward, lateral = (width / self.half for width in self.half_widths)
+        return _largest_displacement(self.cell_loads(fine), forward, lateral)
 
     def largest(self) -> float:
         """Largest pressure divided by F_z / a^2."""
@@ -277,17 +283,18 @@ def _distances(x: np.ndarray, y: np.ndarray) -> np.ndarray:
     return np.diff(np.diff(corner / 6.0, axis=0), axis=1)
 
 
-def _largest_displacement(loads: np.ndarray) -> float:
-    """Largest displacement at the centre of a square under full slip, for G* = 1.
+def _largest_displacement(loads: np.ndarray, forward: float, lateral: float) -> float:
+    """Largest displacement at the centre of a cell under full slip, for G* = 1.
 
-    loads: load of each square, (n, n), spread evenly over the square.
+    loads: load of each cell, (n, n), spread evenly over the cell.  forward, lateral: half of the
+    widths of the rectangle.
     """
     n = len(loads)
     edges = (np.arange(1 - n, n + 1) - 0.5) * 2.0 / n
-    u, v = edges[:, None], edges[None, :]
+    u, v = forward * edges[:, None], lateral * edges[None, :]
     # Integral of 1/distance over the rectangle from the centre to (u, v)
     to_corner = u * np.arcsinh(v / np.abs(u)) + v * np.arcsinh(u / np.abs(v))
-    kernel = np.diff(np.diff(to_corner, axis=0), axis=1) / (2.0 / n) ** 2
+    kernel = np.diff(np.diff(to_corner, axis=0), axis=1) / (forward * lateral * (2.0 / n) ** 2)
     padded = (3 * n, 3 * n)  # at least 3 n - 2, so that nothing wraps around
     spectrum = np.fft.rfft2(loads, padded) * np.fft.rfft2(kernel, padded)
     displacement = np.fft.irfft2(spectrum, padded)[n - 1 : 2 * n - 1, n - 1 : 2 * n - 1]

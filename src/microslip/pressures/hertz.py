@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from microslip.pressures.ellipse import ellipse_loads
+from microslip.pressures.ellipse import hertz_loads
 from microslip.pressures.pressure import Pressure
 from microslip.theory import hertz
 
@@ -23,7 +23,7 @@ class Hertz(Pressure):
 
     def cell_loads(self, cells: int) -> np.ndarray:
         """Compute the load on each square, (cells, cells)."""
-        return ellipse_loads(cells)
+        return hertz_loads(cells)
 
     def ring_means(self, psi: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Mean friction bound and lever arm of the rings with the edges r = sin(psi)."""

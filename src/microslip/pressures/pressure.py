@@ -69,6 +69,12 @@ class Pressure:
         """Contact area divided by a^2."""
         return np.pi
 
+    @property
+    def half_widths(self) -> tuple[float, float]:
+        """Half of the forward and the lateral width of the rectangle around the contact, divided by
+        a."""
+        return (1.0, 1.0)
+
     # For pressures that depend on the radius alone:
     ring_means: ClassVar[Any] = None
     """ring_means(psi) -> (bound, lever): mean friction bound of the rings with the edges r =
@@ -166,8 +172,8 @@ class Pressure:
         raise NotImplementedError
 
     def cell_loads(self, cells: int) -> np.ndarray:
-        """Load on each of cells x cells squares over [-1, 1]^2, (forward, lateral); the sum is
-        1."""
+        """Load on each of cells x cells cells of the rectangle around the contact, (forward,
+        lateral); the sum is 1."""
         raise NotImplementedError
 
     @property
@@ -326,3 +332,8 @@ class Measured(Pressure):
     def cell_loads(self, cells: int) -> np.ndarray:
         """Compute the load on each square, (cells, cells)."""
         return self.grid.cell_loads(cells)
+
+    @property
+    def half_widths(self) -> tuple[float, float]:
+        forward, lateral = (width / self.grid.half for width in self.grid.half_widths)
+        return forward, lateral

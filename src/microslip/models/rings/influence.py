@@ -113,12 +113,13 @@ def _weight(psi: float) -> float:
 @kernel
 def _all_pairs(averaging: Averaging, near: np.ndarray, far: np.ndarray) -> None:
     """Fill the arrays `near` and `far`, (n_modes, rings, rings), which must be zero on entry."""
-    width = np.diff(averaging.psi)
+    width = averaging.psi[1:] - averaging.psi[:-1]
     for one in range(len(width)):
         for other in range(one + 1):
             i, j = (one, other) if width[one] < width[other] else (other, one)
             _add_pair(averaging, i, j, near, far)
-            near[:, j, i] = near[:, i, j]
+            for m in range(len(near)):  # an assignment of arrays would take a second to compile
+                near[m, j, i] = near[m, i, j]
 
 
 @lru_cache

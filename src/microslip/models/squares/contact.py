@@ -1,8 +1,10 @@
-"""Contact of square cells with FFT convolution, for any nu and any outline.
+"""Contact of equal rectangular cells with FFT convolution, for any nu and any outline.
 
-This model uses the paper's discretisation and is the reference for the other models.  Tractions
-have the symmetries that the rigid displacement, the pressure and the influence operator have in
-common.  Of all cells related by these symmetries, only one is resolved (see `_images`).
+The cells cover the rectangle around the contact, with the same number along both axes.  For a round
+contact they are squares, as in the paper, and this model is the reference for the other models.
+
+Tractions have the symmetries that the rigid displacement, the pressure and the influence operator
+have in common.  Of all cells related by these symmetries, only one is resolved (see `_images`).
 """
 
 from __future__ import annotations
@@ -19,12 +21,12 @@ from microslip.pressures.pressure import Pressure
 
 ROUNDED = 1e-10
 """Two loads count as equal if their difference divided by the largest load is below this value.
-For a sphere on 192 x 192 squares, loads differ from their images by less than 1/20 of this
+For a sphere on 192 x 192 cells, loads differ from their images by less than 1/20 of this
 value."""
 
 
 class CartesianContact(SystemContact):
-    """Contact of squares over the circumscribed square (see models.contact.Contact).
+    """Contact of equal cells over the rectangle around the contact (see models.contact.Contact).
 
     States have the shape (2, cells, cells), with the forward coordinate along axis 1 and the
     lateral one along axis 2.  With symmetry, axis 1 or both axes have half the length.  A cell cut
@@ -45,10 +47,12 @@ class CartesianContact(SystemContact):
 
     Attributes
     ----------
+    widths : np.ndarray, shape (2,)
+        Forward and lateral width of a cell.
     images : int
-        Number of squares of the whole contact for each resolved square: 4 if only squares with
-        positive coordinates are resolved, 2 if only squares with a positive forward coordinate are
-        resolved, otherwise 1.
+        Number of cells of the whole contact for each resolved cell: 4 if only cells with positive
+        coordinates are resolved, 2 if only cells with a positive forward coordinate are resolved,
+        otherwise 1.
 
     Raises
     ------
@@ -67,19 +71,23 @@ class CartesianContact(SystemContact):
     ):
         if cells < 2:
             raise ValueError(f"cells = {cells}: allowed is a whole number of at least 2")
-        self.size = 2.0 / cells
-        centres = (np.arange(cells) + 0.5) * self.size - 1.0
-        self.bound = pressure.cell_loads(cells) / self.size**2
+        half_widths = np.array(pressure.half_widths)
+        self.widths = 2.0 * half_widths / cells
+        centres = (np.arange(cells) + 0.5) * (2.0 / cells) - 1.0
+        area = float(self.widths.prod())
+        self.bound = pressure.cell_loads(cells) / area
         self.images = _images(self.bound, symmetry, poisson)
         rows = centres[cells // 2 :] if self.images > 1 else centres
         columns = centres[cells // 2 :] if self.images == 4 else centres
         self.bound = _mean_of_images(self.bound, self.images, symmetry)
-        self.forward_position, self.lateral_position = np.meshgrid(rows, columns, indexing="ij")
-        self.area = self.images * self.size**2
+        self.forward_position, self.lateral_position = np.meshgrid(
+            half_widths[0] * rows, half_widths[1] * columns, indexing="ij"
+        )
+        self.area = self.images * area
         self.weight = np.full(self.bound.shape, self.area)
         self.stiffness = pressure.stiffness
         convolution, self.scale, self.largest = square_convolution(
-            cells, poisson, pressure.G_star, self.images, symmetry
+            cells, poisson, pressure.G_star, self.images, symmetry, pressure.half_widths
         )
         self.compliance = np.full(self.bound.shape, self.scale)
         rows, columns = self.bound.shape
@@ -89,7 +97,7 @@ class CartesianContact(SystemContact):
         self.mirror = mirror
         self.operators = convolved(convolution, rows, columns)
         self.resultants = np.ones(3)
-        if self.images > 1:  # the images of the squares cancel this force
+        if self.images > 1:  # the images of the cells cancel this force
             self.resultants[contact.LATERAL if symmetry == half.MIRROR else contact.TORQUE] = 0.0
 
     def solver(self, weight: np.ndarray) -> Descent:
@@ -99,7 +107,7 @@ class CartesianContact(SystemContact):
 
 
 def _images(loads: np.ndarray, symmetry: str, poisson: float) -> int:
-    """Number of squares of the whole contact for each resolved square: 1, 2 or 4.
+    """Number of cells of the whole contact for each resolved cell: 1, 2 or 4.
 
     Displacements of a translation are symmetric under a half turn, and those of a rotation under a
     reflection across the lateral axis.  For translations at nu = 0, forward and lateral
@@ -121,7 +129,7 @@ def _is_like(loads: np.ndarray, image: np.ndarray) -> bool:
 
 
 def _mean_of_images(loads: np.ndarray, images: int, symmetry: str) -> np.ndarray:
-    """Loads of the resolved squares, averaged over their images to remove rounding errors."""
+    """Loads of the resolved cells, averaged over their images to remove rounding errors."""
     if images == 1:
         return loads
     ahead = len(loads) // 2

@@ -1,4 +1,4 @@
-"""Surface displacement of square cells under tractions, by a compiled FFT convolution.
+"""Surface displacement of rectangular cells under tractions, by a compiled FFT convolution.
 
 Zero-padding of each side to at least twice as many cells makes the convolution linear.  The output
 of a transform is in digit-reversed order.  The transformed influence coefficients and the input of
@@ -29,7 +29,7 @@ class Convolution(NamedTuple):
     """Tables of the compiled convolution.
 
     P is the padded number of cells along a side of the resolved part.  H is the number of lateral
-    frequencies.  H equals P, or is smaller if half of the squares are resolved.
+    frequencies.  H equals P, or is smaller if half of the cells are resolved.
 
     Attributes
     ----------
@@ -38,22 +38,22 @@ class Convolution(NamedTuple):
     roots : np.ndarray, shape (2, P)
         cos and sin of 2 pi k / P.
     kernel : np.ndarray, shape (P, H)
-        Transform of the influence coefficients, which is real; for a quarter of the squares, see
+        Transform of the influence coefficients, which is real; for a quarter of the cells, see
         quarter.folded_filter.
     cross : np.ndarray, shape (2, P, H)
         Transform of the influence coefficients for the conjugate traction, used only if `coupled`;
-        for half of the squares, see half.halved_filter.
+        for half of the cells, see half.halved_filter.
     coupled : bool
         Whether nu > 0.
     opposite : np.ndarray, shape (P,)
         For each row, the row with the opposite frequency.
     images : int
-        Number of squares for each resolved square: 1 if all are resolved, 2 for a half, 4 for a
+        Number of cells for each resolved cell: 1 if all are resolved, 2 for a half, 4 for a
         quarter.
     folding : quarter.Folding
-        Tables for the convolution of a quarter of the squares.
+        Tables for the convolution of a quarter of the cells.
     halving : half.Halving
-        Tables for the convolution of a half of the squares.
+        Tables for the convolution of a half of the cells.
     """
 
     radices: np.ndarray
@@ -74,8 +74,9 @@ def square_convolution(
     modulus: float = G_STAR,
     images: int = 1,
     symmetry: str = half.TURN,
+    half_widths: tuple[float, float] = (1.0, 1.0),
 ) -> tuple[Convolution, float, float]:
-    """Create the convolution on cells x cells squares over [-1, 1]^2.
+    """Create the convolution on cells x cells equal cells of a rectangle.
 
     Parameters
     ----------
@@ -86,16 +87,18 @@ def square_convolution(
     images : int
         See Convolution.  If it is 4, fields at nu = 0 are even along both axes, and only squares
         with positive coordinates are resolved.  If it is 2, fields have a symmetry of half.py, and
-        only squares with a positive forward coordinate are resolved.
+        only cells with a positive forward coordinate are resolved.
     symmetry : str
         Symmetry of the fields if `images` is 2: half.TURN or half.MIRROR.
+    half_widths : tuple of float
+        Half of the forward and the lateral width of the rectangle.
 
     Returns
     -------
     convolution : Convolution
         Tables of the compiled convolution.
     scale : float
-        Displacement of a square under a unit traction on the same square, in u_lim.
+        Displacement of a cell under a unit traction on the same cell, in u_lim.
     largest : float
         Upper bound on the eigenvalues of the convolution, in u_lim per unit of traction.
     """
@@ -104,7 +107,8 @@ def square_convolution(
     turns = 2.0 * np.pi * np.arange(padded) / padded
     order = _order(list(radices))
     opposite = np.argsort(order)[-order % padded]
-    coefficients = influence(cells, 2 * padded if images == 4 else padded, poisson, modulus)
+    whole = 2 * padded if images == 4 else padded
+    coefficients = influence(cells, whole, poisson, modulus, half_widths)
     if images == 2 and padded % 2 == 0:
         # the largest offset is its own negative and is never used; 0 keeps the kernel even
         coefficients[1][padded // 2], coefficients[1][:, padded // 2] = 0.0, 0.0
@@ -132,22 +136,26 @@ def square_convolution(
 
 
 def influence(
-    cells: int, padded: int, poisson: float, modulus: float = G_STAR
+    cells: int,
+    padded: int,
+    poisson: float,
+    modulus: float = G_STAR,
+    half_widths: tuple[float, float] = (1.0, 1.0),
 ) -> tuple[np.ndarray, np.ndarray]:
     """Compute the influence coefficients for the traction and for its complex conjugate, (P, P)
     each.
 
-    The kernels of rings/influence.py are integrated over a square in closed form, and evaluated at
+    The kernels of rings/influence.py are integrated over a cell in closed form, and evaluated at
     the centres of cells.  Units are u_lim per unit of traction.  The first axis is the forward
     offset, and the second axis is the lateral offset.  Negative offsets are wrapped around.
     """
-    size = 2.0 / cells
-    offsets = np.fft.fftfreq(padded, 1.0 / padded) * size
-    y, x = np.meshgrid(offsets, offsets, indexing="ij")
+    forward, lateral = (2.0 * half_width / cells for half_width in half_widths)
+    offsets = np.fft.fftfreq(padded, 1.0 / padded)
+    y, x = np.meshgrid(forward * offsets, lateral * offsets, indexing="ij")
     single, squares, product = np.zeros((3, *x.shape))
     for sx in (1, -1):
         for sy in (1, -1):
-            u, v = x + sx * size / 2, y + sy * size / 2
+            u, v = x + sx * lateral / 2, y + sy * forward / 2
             r = np.hypot(u, v)
             log_u, log_v = np.arcsinh(u / np.abs(v)), np.arcsinh(v / np.abs(u))
             # sign(v) v arcsinh(u/|v|) equals v ln(u + r), except for terms that cancel in the sum

@@ -65,7 +65,7 @@ def halving(order: np.ndarray, opposite: np.ndarray, cells: int, symmetry: str) 
 def halved_filter(
     transforms: Sequence[np.ndarray], order: np.ndarray, rows: np.ndarray, cells: int, symmetry: str
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Compute the two factors for the convolution of half of the squares, shape (P, H) each.
+    """Compute the two factors for the convolution of half of the cells, shape (P, H) each.
 
     The first factor multiplies the transform.  The second factor multiplies the conjugate of the
     transform for TURN, and the opposite row of the transform for MIRROR.  transforms: transforms of
