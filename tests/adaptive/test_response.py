@@ -7,6 +7,7 @@ import reference_march
 from microslip.adaptive.response import response
 from microslip.foundation.errors import InputError
 from microslip.pressures.hertz import HERTZ
+from microslip.pressures.pressure import Pressure
 from microslip.theory import hertz
 
 PEAK = 0.9
@@ -125,6 +126,19 @@ def test_random_planar_paths_with_varying_load(seed):
     difference = np.abs(np.stack([answer.force_forward, answer.force_lateral], axis=1) - other)
     assert answer.converged
     assert np.all(difference <= answer.force_error[:, :2] + np.abs(fine - coarse))
+
+
+def test_the_resolution_of_a_pressure_on_a_grid_is_part_of_the_error():
+    place = np.linspace(-1.25, 1.25, 5)
+    squares = place[:, None] ** 2 + place**2
+    values = np.sqrt(np.clip(1.0 - squares, 0.0, None))
+    sphere = Pressure.from_array(place, place, values, grid="samples")
+    path = [0.0, 0.3, 0.6, 0.2]
+    coarse, exact = response(path, pressure=sphere, tolerance=1e-2), response(path)
+    off = np.abs(coarse.force_forward - exact.force_forward)
+    assert off.max() > 1e-2
+    assert np.all(off <= coarse.force_error[:, 0] + exact.force_error[:, 0])
+    assert not coarse.converged and "resolution leaves" in coarse.reason
 
 
 @pytest.mark.parametrize(

@@ -18,7 +18,7 @@ from microslip.adaptive.history import STARTS, tractions_at_start
 from microslip.adaptive.period import ON_BOUND
 from microslip.contacts.coulomb import project
 from microslip.estimate.ladder import LOAD, ladder_for
-from microslip.estimate.refine import SMALLEST_SHARE
+from microslip.estimate.refine import READING_SAFETY, SMALLEST_SHARE
 from microslip.estimate.richardson import WEIGHTS, extrapolate
 from microslip.foundation.arguments import SMALLEST_TOLERANCE, real
 from microslip.foundation.errors import InputError
@@ -54,7 +54,8 @@ class Response:
     torque : np.ndarray, shape (rows,)
         Torque divided by its value at full slip under the reference load.
     force_error : np.ndarray, shape (rows, 3)
-        Estimated errors of the forward force, the lateral force and the torque.
+        Estimated errors of the forward force, the lateral force and the torque, with that of the
+        resolution of a pressure on a grid.
     dissipated_energy, dissipated_energy_error : np.ndarray, shape (rows,)
         Energy dissipated by friction since the first row and its estimated error, both divided by
         mu F_z u_lim.
@@ -289,6 +290,12 @@ def _refined(marches: _Marches, first: int) -> Response:
             break
     else:
         reason = f"the error is still {largest:.1e} with {level} cells"
+    for reading in marches.problem.readings:
+        other = _Marches(reading, marches.start, tolerance, marches.progress).at(level)
+        apart = READING_SAFETY * np.abs(_from_row(other, first) - three[-1])[:, :4]
+        error = error + apart
+        if not reason and error[:, :3].max() > tolerance:
+            reason = f"the file's own resolution leaves {apart[:, :3].max():.1e} open"
     finest = marches.ladder.resolution(level)
     forward, lateral, torque = limit.value[:, :3].T
     return Response(
