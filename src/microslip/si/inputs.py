@@ -162,6 +162,12 @@ class Inputs:
         """A quantity in its SI unit; None if it is missing."""
         return self.quantities[name].si if name in self.quantities else None
 
+    def needed(self, name: str) -> float:
+        """A required quantity in its SI unit.  Raises InputError if it is missing."""
+        if name not in self.quantities:
+            raise InputError(name, None, "needed")
+        return self.quantities[name].si
+
     def error(self, name: str, allowed: str) -> InputError:
         """The InputError for an argument."""
         return InputError(name, self.arguments[name], allowed)
@@ -302,16 +308,9 @@ def contact_of(inputs: Inputs, load: float | None = None, contacts: int = 1) -> 
         _check_without_radii(arguments)
     elif arguments["radius"] is None:
         raise InputError("radius", None, "needed, or a contact_radius")
-    for name in ("mu", "load"):
-        if name not in inputs.quantities and (name == "mu" or load is None):
-            raise InputError(name, None, "needed")
-    if body.rigid and counterbody.rigid:
-        allowed = "allowed is an elastic body where the counterbody is rigid"
-        raise InputError("material", "rigid", allowed)
+    load, mu = inputs.needed("load") if load is None else load, inputs.needed("mu")
     radii = () if sized else _radii(inputs)
     radius = 1.0 / sum(1.0 / one for one in radii) if radii else 1.0
-    load = inputs.quantities["load"].si if load is None else load
-    mu = inputs.quantities["mu"].si
     plain = TwoBodies(body, counterbody, radius, load / contacts, mu, radii)
     if sized:
         return _of_size(inputs, plain)

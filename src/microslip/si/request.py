@@ -213,8 +213,6 @@ def request_of(motion: str, arguments: Mapping[str, Any]) -> Request:
         if name not in ("counterbody", "map") and _is_sequence(value):
             allowed = "allowed is one value; predict_table takes a sequence, with many contacts"
             raise InputError(name, value, allowed)
-    if arguments["mu"] is None:
-        raise InputError("mu", None, "needed")
     sought = _sought(motion, arguments)
     check_motion_and_drive(motion, arguments, sought)
     inputs = read_inputs(arguments, motion)
@@ -262,8 +260,6 @@ def _sought(motion: str, arguments: Mapping[str, Any]) -> str | None:
     """
     kind, reduction = kind_of(motion), arguments["reduction"]
     if reduction is None:
-        if arguments["load"] is None:
-            raise InputError("load", None, "needed")
         return None
     missing = [name for name in SOUGHT if arguments[name] is None]
     if "speed" in missing and arguments["force"] is not None:
