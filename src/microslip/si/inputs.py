@@ -10,7 +10,6 @@ from functools import partial
 from typing import Any, NamedTuple
 
 from microslip.foundation.errors import InputError
-from microslip.foundation.named_files import speaks_of_file
 from microslip.si.bodies import TwoBodies
 from microslip.si.dimensionless import RealDrive, RealMotion
 from microslip.si.hardness import read_hardness
@@ -18,7 +17,6 @@ from microslip.si.materials import RIGID, Material, material_named
 from microslip.si.motions import PARTS, kind_of
 from microslip.si.quantities import Quantity, read
 from microslip.si.shapes import elliptic, of_size
-from microslip.si.strokes import read_stroke
 from microslip.si.validity import SENSELESS
 
 LARGEST_MU = 10.0
@@ -405,7 +403,9 @@ def _check_hertzian(contact: TwoBodies, second: str, inputs: Inputs) -> None:
 def with_stroke(motion: str, arguments: Mapping[str, Any]) -> dict[str, Any]:
     """Fill in a missing amplitude, frequency or load for a motion from a file.  Raises InputError
     if a frequency is specified although the file has a column `time`."""
-    stroke = read_stroke(motion)
+    stroke = kind_of(motion).stroke
+    if stroke is None:
+        return dict(arguments)
     if stroke.frequency is not None and arguments["frequency"] is not None:
         allowed = "allowed only without a column time, which contains the frequency"
         raise InputError("frequency", arguments["frequency"], allowed)
@@ -449,13 +449,12 @@ def check_motion_and_drive(motion: str, arguments: Mapping[str, Any], sought: st
 def motion_of(motion: str, inputs: Inputs) -> RealMotion:
     """The motion; raises InputError."""
     kind = kind_of(motion)
-    stroke = read_stroke(motion) if speaks_of_file(motion) else None
-    if kind.several and stroke is None and not any(map(inputs.si, PARTS)):
+    if kind.several and kind.stroke is None and not any(map(inputs.si, PARTS)):
         allowed = "allowed is above 0 where no other amplitude is"
         raise inputs.error(kind.needed[0], allowed)
     values: dict[str, Any] = {name: inputs.si(name) for name in ("speed", *MOTION_ARGUMENTS)}
-    name = motion if stroke is None else stroke.name
-    return RealMotion(name, kind.unit, **values, stroke=stroke)
+    name = motion if kind.stroke is None else kind.stroke.name
+    return RealMotion(name, kind.unit, **values, stroke=kind.stroke)
 
 
 def drive_of(motion: str, inputs: Inputs) -> RealDrive:
