@@ -301,12 +301,12 @@ def contact_of(inputs: Inputs, load: float | None = None, contacts: int = 1) -> 
         contact.
     """
     arguments, (body, counterbody) = inputs.arguments, (one.material for one in inputs.bodies)
+    mu, load = inputs.needed("mu"), inputs.needed("load") if load is None else load
     sized = arguments["pressure"] is not None or arguments["contact_radius"] is not None
     if sized:
         _check_without_radii(arguments)
     elif arguments["radius"] is None:
         raise InputError("radius", None, "needed, or a contact_radius")
-    load, mu = inputs.needed("load") if load is None else load, inputs.needed("mu")
     radii = () if sized else _radii(inputs)
     radius = 1.0 / sum(1.0 / one for one in radii) if radii else 1.0
     plain = TwoBodies(body, counterbody, radius, load / contacts, mu, radii)
@@ -397,7 +397,8 @@ def _check_hertzian(contact: TwoBodies, second: str, inputs: Inputs) -> None:
     except ArithmeticError:
         good = False
     if not good:
-        raise inputs.error("load", f"with these bodies and radii, {OUT_OF_RANGE}")
+        load = inputs.arguments["load"] or contact.load  # that of a search
+        raise InputError("load", load, f"with these bodies and radii, {OUT_OF_RANGE}")
 
 
 def with_stroke(motion: str, arguments: Mapping[str, Any]) -> dict[str, Any]:
@@ -424,7 +425,8 @@ def check_motion_and_drive(motion: str, arguments: Mapping[str, Any], sought: st
         for name in MOTION_ARGUMENTS
         if name not in (*kind.needed, *kind.optional)
     }
-    missing = dict.fromkeys(kind.needed, f"{motion} needs it")
+    missing = dict.fromkeys(("mu", "load"), "needed")
+    missing |= dict.fromkeys(kind.needed, f"{motion} needs it")
     if arguments["force"] is None:
         missing["speed"] = "needed, or a force"
     elif arguments["speed"] is not None:
