@@ -162,7 +162,7 @@ STILL = f"{VIBRATED} --load '10 N' --speed '1 mm/s'"
         ("iwan --pressure ring", ("--pressure = 'ring'", "axisymmetric")),
         ("iwan --elements 2.5", ("--elements = '2.5'", "whole number")),
         ("iwan --elements 2 --tolerance 1e-2", ("--elements", "without")),
-        ("iwan --material steel", ("--radius", "needed")),
+        ("iwan --material steel", ("--mu", "needed")),
         ("iwan --nu 0.7", ("--poisson", "0.5")),
         (
             f"iwan {STEEL} --load '1 N' --radius-across '8 mm'",

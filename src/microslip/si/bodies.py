@@ -52,8 +52,8 @@ class TwoBodies:
         for name in ("radius", "load", "mu"):
             checked(name, getattr(self, name), low_open=True)
         if self.first.rigid and self.second.rigid:
-            allowed = "allowed is an elastic counterbody for a rigid body"
-            raise InputError("counterbody", "rigid", allowed)
+            allowed = "allowed is an elastic body where the counterbody is rigid"
+            raise InputError("material", "rigid", allowed)
 
     def with_load(self, load: float) -> TwoBodies:
         """A copy of the contact under another load, N."""

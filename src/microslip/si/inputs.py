@@ -10,7 +10,6 @@ from functools import partial
 from typing import Any, NamedTuple
 
 from microslip.foundation.errors import InputError
-from microslip.foundation.named_files import speaks_of_file
 from microslip.si.bodies import TwoBodies
 from microslip.si.dimensionless import RealDrive, RealMotion
 from microslip.si.hardness import read_hardness
@@ -18,7 +17,6 @@ from microslip.si.materials import RIGID, Material, material_named
 from microslip.si.motions import PARTS, kind_of
 from microslip.si.quantities import Quantity, read
 from microslip.si.shapes import elliptic, of_size
-from microslip.si.strokes import read_stroke
 from microslip.si.validity import SENSELESS
 
 LARGEST_MU = 10.0
@@ -162,6 +160,12 @@ class Inputs:
         """A quantity in its SI unit; None if it is missing."""
         return self.quantities[name].si if name in self.quantities else None
 
+    def needed(self, name: str) -> float:
+        """A required quantity in its SI unit.  Raises InputError if it is missing."""
+        if name not in self.quantities:
+            raise InputError(name, None, "needed")
+        return self.quantities[name].si
+
     def error(self, name: str, allowed: str) -> InputError:
         """The InputError for an argument."""
         return InputError(name, self.arguments[name], allowed)
@@ -297,21 +301,14 @@ def contact_of(inputs: Inputs, load: float | None = None, contacts: int = 1) -> 
         contact.
     """
     arguments, (body, counterbody) = inputs.arguments, (one.material for one in inputs.bodies)
+    mu, load = inputs.needed("mu"), inputs.needed("load") if load is None else load
     sized = arguments["pressure"] is not None or arguments["contact_radius"] is not None
     if sized:
         _check_without_radii(arguments)
     elif arguments["radius"] is None:
         raise InputError("radius", None, "needed, or a contact_radius")
-    for name in ("mu", "load"):
-        if name not in inputs.quantities and (name == "mu" or load is None):
-            raise InputError(name, None, "needed")
-    if body.rigid and counterbody.rigid:
-        allowed = "allowed is an elastic body where the counterbody is rigid"
-        raise InputError("material", "rigid", allowed)
     radii = () if sized else _radii(inputs)
     radius = 1.0 / sum(1.0 / one for one in radii) if radii else 1.0
-    load = inputs.quantities["load"].si if load is None else load
-    mu = inputs.quantities["mu"].si
     plain = TwoBodies(body, counterbody, radius, load / contacts, mu, radii)
     if sized:
         return _of_size(inputs, plain)
@@ -400,13 +397,16 @@ def _check_hertzian(contact: TwoBodies, second: str, inputs: Inputs) -> None:
     except ArithmeticError:
         good = False
     if not good:
-        raise inputs.error("load", f"with these bodies and radii, {OUT_OF_RANGE}")
+        load = inputs.arguments["load"] or contact.load  # that of a search
+        raise InputError("load", load, f"with these bodies and radii, {OUT_OF_RANGE}")
 
 
 def with_stroke(motion: str, arguments: Mapping[str, Any]) -> dict[str, Any]:
     """Fill in a missing amplitude, frequency or load for a motion from a file.  Raises InputError
     if a frequency is specified although the file has a column `time`."""
-    stroke = read_stroke(motion)
+    stroke = kind_of(motion).stroke
+    if stroke is None:
+        return dict(arguments)
     if stroke.frequency is not None and arguments["frequency"] is not None:
         allowed = "allowed only without a column time, which contains the frequency"
         raise InputError("frequency", arguments["frequency"], allowed)
@@ -425,7 +425,8 @@ def check_motion_and_drive(motion: str, arguments: Mapping[str, Any], sought: st
         for name in MOTION_ARGUMENTS
         if name not in (*kind.needed, *kind.optional)
     }
-    missing = dict.fromkeys(kind.needed, f"{motion} needs it")
+    missing = dict.fromkeys(("mu", "load"), "needed")
+    missing |= dict.fromkeys(kind.needed, f"{motion} needs it")
     if arguments["force"] is None:
         missing["speed"] = "needed, or a force"
     elif arguments["speed"] is not None:
@@ -450,13 +451,12 @@ def check_motion_and_drive(motion: str, arguments: Mapping[str, Any], sought: st
 def motion_of(motion: str, inputs: Inputs) -> RealMotion:
     """The motion; raises InputError."""
     kind = kind_of(motion)
-    stroke = read_stroke(motion) if speaks_of_file(motion) else None
-    if kind.several and stroke is None and not any(map(inputs.si, PARTS)):
+    if kind.several and kind.stroke is None and not any(map(inputs.si, PARTS)):
         allowed = "allowed is above 0 where no other amplitude is"
         raise inputs.error(kind.needed[0], allowed)
     values: dict[str, Any] = {name: inputs.si(name) for name in ("speed", *MOTION_ARGUMENTS)}
-    name = motion if stroke is None else stroke.name
-    return RealMotion(name, kind.unit, **values, stroke=stroke)
+    name = motion if kind.stroke is None else kind.stroke.name
+    return RealMotion(name, kind.unit, **values, stroke=kind.stroke)
 
 
 def drive_of(motion: str, inputs: Inputs) -> RealDrive:

@@ -8,12 +8,15 @@ pure rotation.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from microslip.foundation.errors import InputError
 from microslip.foundation.named_files import speaks_of_file
+
+if TYPE_CHECKING:
+    from microslip.si.strokes import Stroke
 
 PARTS = {
     "amplitude": "lateral",
@@ -42,6 +45,8 @@ class RealMotionKind:
         Required and optional arguments.
     along_the_drive : bool
         True if the vibration may have a component along the drive, or if the load oscillates.
+    stroke : Stroke or None
+        One period of the motion, if it is read from a file.
     """
 
     description: str
@@ -49,6 +54,7 @@ class RealMotionKind:
     needed: tuple[str, ...] = ("amplitude", "frequency")
     optional: tuple[str, ...] = ()
     along_the_drive: bool = False
+    stroke: Stroke | None = None
 
     @property
     def steady(self) -> bool:
@@ -104,11 +110,11 @@ def kind_of(motion: Any) -> RealMotionKind:
     from microslip.si.strokes import read_stroke
 
     if speaks_of_file(motion):
-        columns = read_stroke(motion).columns
-        rows = len(next(iter(columns.values())))
-        text = f"slides forward and follows {rows} samples of its {' and '.join(columns)}"
-        along = not {"forward", "load", "indentation"}.isdisjoint(columns)
-        return RealMotionKind(text, "", along_the_drive=along)
+        stroke = read_stroke(motion)
+        rows, names = len(next(iter(stroke.columns.values()))), list(stroke.columns)
+        text = f"slides forward and follows {rows} samples of its {' and '.join(names)}"
+        along = not {"forward", "load", "indentation"}.isdisjoint(names)
+        return RealMotionKind(text, "", along_the_drive=along, stroke=stroke)
     if isinstance(motion, str) and motion in MOTIONS:
         return MOTIONS[motion]
     record = motion_named(motion)

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
 from typing import Any
 
 from microslip.foundation.number_text import ROUNDING, interval_text, number_text
@@ -77,81 +76,23 @@ move otherwise."""
 OUTCOMES = {
     "moves": "it moves, cycle by cycle",
     "stays": "it stays: the force is below the threshold",
-    "runs away": "{runs_away}",
     "undecided": "undecided within the error: it moves by at most {fastest}",
 }
-"""Sentences that describe the outcomes."""
+"""Sentences that describe the outcomes, except for a contact that runs away."""
+ENDS = ("_m_s", "_N_m", "_m", "_N", "_W", "_J", "_Pa", "_s")
+"""Column-name suffixes that state the unit."""
 
 
 def prediction_text(record: Any) -> str:
     """The printed text of a Prediction."""
-    show, forced = _Texts(record).show, record.force_N is not None
-    lines = [
+    understood = [
         line(name.replace("_", " "), record.understood[name])
         for name in UNDERSTOOD
         if name in record.understood
     ]
-    pressure = "{largest_pressure_Pa}" + (" under {load_N}" if record.load_amplitude_N else "")
-    lines += ["", *show("contact radius", "{contact_radius_m}")]
-    lines += show("indentation", "{indentation_m}", not math.isnan(record.indentation_m))
-    lines += show("u_lim", "{u_lim_m}") + show("largest pressure", pressure)
-    several = kind_of(record.motion).several
-    lines += show("amplitude", "{size}, dimensionless {amplitude}", not several)
-    lines += show("amplitude", "the largest is dimensionless {amplitude}", several)
-    lines += show("velocity", "dimensionless {velocity}", not forced)
-    sentence = "{sought} {sought_text}, {least} with a reduction of {understood[reduction]}"
-    lines += show("found", sentence + "; all other lines are for {sought_exact}")
-    for name in ("force", "stiffness", "mass", "damping"):
-        lines += show(name, f"dimensionless {{{name}}}")
-    lines += show("groups", REFERENCE_LOADS, bool(record.load_amplitude_N and record.regime))
-    lines += show("regime", "{regime_text}")
-    lines += show(
-        "natural frequency", "{natural_frequency_Hz}, of the mass on a contact that sticks"
-    )
-    lines += _outcome(record, show) if forced else _friction(record, show)
-    lines += _spread(record, show)
-    lines += show("torque", "{torque_N_m}")
-    lines += show("power", "{vibration_power_W} for the {added}")
-    lines += show("", "{drag_power_W} for the drag", record.dissipated_power_W is not None)
-    lines += show("energy", "{energy_per_cycle_J} of heat a cycle")
-    lines += show("wear", "{wear_depth_per_cycle_m} a cycle, mean depth over the contact")
-    lines += not_converged(record)
-    lines += [f"warning: {text}" for text in record.warnings]
-    return "\n".join(lines + [f"not checked: {text}" for text in record.not_checked])
-
-
-def _friction(record: Any, show: Show) -> list[str]:
-    """Lines about the friction at a prescribed speed."""
-    lines = show("mu_macro", "{mu_macro}: ratio of friction with {added} to friction without")
-    coefficient = "coefficient of friction with {added}, instead of {understood[mu]}"
-    lines += show("mu_apparent", f"{{mu_apparent}}: {coefficient}")
-    force = "{friction_force_N} instead of {friction_force_still_N}: {reduction} less"
-    lines += show("friction force", force)
-    static = "{mu_static_apparent}: coefficient of friction at vanishing speed"
-    lines += show("static friction", static) + show("", "{mu_static_apparent_interval}")
-    if record.mu_static is not None:
-        threshold, along = record.force_threshold_N, kind_of(record.motion).along_the_drive
-        lines += show("", UNKNOWN_THRESHOLD, threshold is None and along)
-        apart = threshold is not None and not _moves_at_static_friction(record)
-        lines += show("", ALONG_THE_DRIVE, apart)
-    return lines + _threshold(record, show)
-
-
-def _threshold(record: Any, show: Show) -> list[str]:
-    """Lines about the force threshold; empty if the threshold is unknown."""
-    value, error = record.force_threshold_N, record.force_threshold_error_N
-    if value is None or error is None:
-        return []
-    rounding = ROUNDING * record.load_N  # as for static friction, multiplied by the load
-    if value > max(error, rounding):
-        sentence = "{force_threshold_N}: no smaller constant force moves the contact"
-    elif value <= error <= rounding:
-        sentence = "{zero_N}: any constant force moves the contact"
-    else:
-        sentence = "{zero_threshold_N}: any larger constant force moves the contact"
-    positive = value > max(error, rounding) or bool(record.force_threshold_high_N)
-    lines = show("force threshold", sentence)
-    return lines + show("", "{force_threshold_interval_N}", positive)
+    remarks = [f"warning: {text}" for text in record.warnings]
+    remarks += [f"not checked: {text}" for text in record.not_checked]
+    return "\n".join([*understood, "", *_Texts(record).lines(), *not_converged(record), *remarks])
 
 
 def _moves_at_static_friction(record: Any) -> bool:
@@ -160,59 +101,6 @@ def _moves_at_static_friction(record: Any) -> bool:
     if static is None or threshold is None:
         return False
     return math.isclose(threshold, record.friction_force_still_N * static, abs_tol=0.0)
-
-
-def _outcome(record: Any, show: Show) -> list[str]:
-    """Lines about a contact under a force: its threshold, outcome and displacement."""
-    lines, factor, columns = _threshold(record, show), record.safety_factor, record.uncertainty
-    safe = factor is not None and (factor > record.safety_factor_error or record.safety_factor_high)
-    lines += show("safety factor", "{safety_factor}: threshold over force", bool(safe))
-    lines += show("", "{safety_factor_interval}", bool(safe))
-    if record.outcome is not None:
-        central = "with the central values " if "probability_error" in columns else ""
-        lines += show("outcome", central + OUTCOMES[record.outcome])
-    shares = [
-        f"{probability_text(columns[name], columns['probability_error'])} that it {words}"
-        for name, words in PROBABILITIES.items()
-        if name in columns
-    ]
-    if shares and "probability_stays" not in columns:
-        shares.append("not computed for staying and moving")
-    lines += show("probability", ", ".join(shares), bool(shares))
-    if record.outcome == "moves":
-        lines += show("speed", "{speed_m_s}")
-        lines += show("displacement", "{displacement_per_cycle_m} a cycle")
-        way = "{time_to_1_mm_s}, the contact radius of {contact_radius_m} in"
-        lines += show("travel", f"1 mm in {way} {{time_to_contact_radius_s}}")
-    if record.outcome == "stays":
-        most = "the vibration adds nothing"
-        if record.cycles_to_rest:
-            cycles = f"about {record.cycles_to_rest:.2g} cycles"
-            most = f"nine tenths of the part by the vibration within {cycles}"
-        lines += show("displacement", f"{{displacement_m}} forward, then no further: {most}")
-        unknown = record.displacement_m is None
-        lines += show("displacement", "unknown: {displacement_reason}", unknown)
-    return lines
-
-
-def _spread(record: Any, show: Show) -> list[str]:
-    """The line with the standard uncertainties that result from uncertain inputs."""
-    if not record.uncertainty:
-        return []
-    parts = ["{mu_apparent_spread} of mu_apparent", "{friction_force_spread_N} of the force"]
-    if record.force_N is not None:
-        spread, moves = record.speed_spread_m_s, record.probability_moves or 0.0
-        if math.isinf(spread):
-            return show("spread", NO_SPREAD_OF_SPEED)
-        if spread == 0.0 and moves > EXCLUDED:
-            return show("spread", STAYS_WITHIN_SPREADS)
-        parts = ["{speed_spread_m_s} of the speed"]
-    text = "standard uncertainties from the uncertain inputs"
-    if record.sought is not None:
-        parts.insert(0, "{sought_spread_text} of the {sought}")
-    if record.dissipated_power_W is not None:
-        text += "; not computed for torque, power and energy"
-    return show("spread", f"{', '.join(parts)}: {text}")
 
 
 class _Texts(dict[str, Any]):
@@ -227,7 +115,6 @@ class _Texts(dict[str, Any]):
         pressure = prefixed(record.largest_pressure_Pa, "Pa")
         self.units = {"_m_s": speed, "_m": length, "_N": force, "_W": watts, "_Pa": pressure}
         super().__init__(understood=record.understood, added=ADDED.get(record.motion, "vibration"))
-        self["zero_N"] = in_unit(0.0, 0.0, force)
         less = 100.0 * record.force_reduction, 100.0 * record.mu_macro_error
         self["reduction"] = number_text(*less, "%")
         if math.isinf(record.largest_pressure_Pa):
@@ -240,18 +127,127 @@ class _Texts(dict[str, Any]):
             self["size"] = in_unit(record.amplitude_si, 0.0, turned)
         if record.sought is not None:
             self._seek({"amplitude": turned, "speed": speed, "load": force_unit(record.load_N)})
-        if record.force_threshold_N is not None:
-            most = record.force_threshold_N + (record.force_threshold_error_N or 0.0)
-            self["zero_threshold_N"] = in_unit(0.0, most, force)
         if record.force_N is not None:
             self["fastest"] = in_unit(record.speed_m_s + record.speed_error_m_s, 0.0, speed)
-            if record.outcome == "runs away":
-                self["runs_away"] = runs_away(record)
-        if record.regime is not None:
-            self["regime_text"] = REGIMES[record.regime]
         if record.natural_frequency is not None:
             frequency = record.natural_frequency * record.frequency_Hz
             self["natural_frequency_Hz"] = in_unit(frequency, 0.0, prefixed(frequency, "Hz"))
+
+    def lines(self) -> list[str]:
+        """The lines about the answer."""
+        record, show, forced = self.record, self.show, self.record.force_N is not None
+        pressure = "{largest_pressure_Pa}" + (" under {load_N}" if record.load_amplitude_N else "")
+        lines = show("contact radius", "{contact_radius_m}")
+        lines += show("indentation", "{indentation_m}", not math.isnan(record.indentation_m))
+        lines += show("u_lim", "{u_lim_m}") + show("largest pressure", pressure)
+        several = kind_of(record.motion).several
+        lines += show("amplitude", "{size}, dimensionless {amplitude}", not several)
+        lines += show("amplitude", "the largest is dimensionless {amplitude}", several)
+        lines += show("velocity", "dimensionless {velocity}", not forced)
+        sentence = "{sought} {sought_text}, {least} with a reduction of {understood[reduction]}"
+        lines += show("found", sentence + "; all other lines are for {sought_exact}")
+        for name in ("force", "stiffness", "mass", "damping"):
+            lines += show(name, f"dimensionless {{{name}}}")
+        lines += show("groups", REFERENCE_LOADS, bool(record.load_amplitude_N and record.regime))
+        lines += show("regime", REGIMES.get(record.regime, ""), record.regime is not None)
+        mass = "{natural_frequency_Hz}, of the mass on a contact that sticks"
+        lines += show("natural frequency", mass)
+        lines += self._outcome() if forced else self._friction()
+        lines += self._spread()
+        lines += show("torque", "{torque_N_m}")
+        lines += show("power", "{vibration_power_W} for the {added}")
+        lines += show("", "{drag_power_W} for the drag", record.dissipated_power_W is not None)
+        lines += show("energy", "{energy_per_cycle_J} of heat a cycle")
+        return lines + show("wear", "{wear_depth_per_cycle_m} a cycle, mean depth over the contact")
+
+    def _friction(self) -> list[str]:
+        """Lines about the friction at a prescribed speed."""
+        record, show = self.record, self.show
+        lines = show("mu_macro", "{mu_macro}: ratio of friction with {added} to friction without")
+        coefficient = "coefficient of friction with {added}, instead of {understood[mu]}"
+        lines += show("mu_apparent", f"{{mu_apparent}}: {coefficient}")
+        force = "{friction_force_N} instead of {friction_force_still_N}: {reduction} less"
+        lines += show("friction force", force)
+        static = "{mu_static_apparent}: coefficient of friction at vanishing speed"
+        lines += show("static friction", static) + show("", "{mu_static_apparent_interval}")
+        if record.mu_static is not None:
+            threshold, along = record.force_threshold_N, kind_of(record.motion).along_the_drive
+            lines += show("", UNKNOWN_THRESHOLD, threshold is None and along)
+            apart = threshold is not None and not _moves_at_static_friction(record)
+            lines += show("", ALONG_THE_DRIVE, apart)
+        return lines + self._threshold()
+
+    def _threshold(self) -> list[str]:
+        """Lines about the force threshold; empty if the threshold is unknown."""
+        record, unit = self.record, self.units["_N"]
+        value, error = record.force_threshold_N, record.force_threshold_error_N
+        if value is None or error is None:
+            return []
+        rounding = ROUNDING * record.load_N  # as for static friction, multiplied by the load
+        if value > max(error, rounding):
+            sentence = "{force_threshold_N}: no smaller constant force moves the contact"
+        elif value <= error <= rounding:
+            sentence = f"{in_unit(0.0, 0.0, unit)}: any constant force moves the contact"
+        else:
+            zero = in_unit(0.0, value + error, unit)
+            sentence = f"{zero}: any larger constant force moves the contact"
+        positive = value > max(error, rounding) or bool(record.force_threshold_high_N)
+        lines = self.show("force threshold", sentence)
+        return lines + self.show("", "{force_threshold_interval_N}", positive)
+
+    def _outcome(self) -> list[str]:
+        """Lines about a contact under a force: its threshold, outcome and displacement."""
+        record, show, lines = self.record, self.show, self._threshold()
+        columns, factor = record.uncertainty, record.safety_factor or 0.0
+        safe = factor > (record.safety_factor_error or 0.0) or record.safety_factor_high
+        lines += show("safety factor", "{safety_factor}: threshold over force", bool(safe))
+        lines += show("", "{safety_factor_interval}", bool(safe))
+        central = "with the central values " if "probability_error" in columns else ""
+        away = record.outcome == "runs away"
+        text = runs_away(record) if away else OUTCOMES.get(record.outcome, "")
+        lines += show("outcome", central + text, record.outcome is not None)
+        shares = [
+            f"{probability_text(columns[name], columns['probability_error'])} that it {words}"
+            for name, words in PROBABILITIES.items()
+            if name in columns
+        ]
+        if shares and "probability_stays" not in columns:
+            shares.append("not computed for staying and moving")
+        lines += show("probability", ", ".join(shares), bool(shares))
+        if record.outcome == "moves":
+            lines += show("speed", "{speed_m_s}")
+            lines += show("displacement", "{displacement_per_cycle_m} a cycle")
+            way = "{time_to_1_mm_s}, the contact radius of {contact_radius_m} in"
+            lines += show("travel", f"1 mm in {way} {{time_to_contact_radius_s}}")
+        if record.outcome == "stays":
+            most = "the vibration adds nothing"
+            if record.cycles_to_rest:
+                cycles = f"about {record.cycles_to_rest:.2g} cycles"
+                most = f"nine tenths of the part by the vibration within {cycles}"
+            lines += show("displacement", f"{{displacement_m}} forward, then no further: {most}")
+            unknown = record.displacement_m is None
+            lines += show("displacement", "unknown: {displacement_reason}", unknown)
+        return lines
+
+    def _spread(self) -> list[str]:
+        """The line with the standard uncertainties that result from uncertain inputs."""
+        record, show = self.record, self.show
+        if not record.uncertainty:
+            return []
+        parts = ["{mu_apparent_spread} of mu_apparent", "{friction_force_spread_N} of the force"]
+        if record.force_N is not None:
+            spread, moves = record.speed_spread_m_s, record.probability_moves or 0.0
+            if math.isinf(spread):
+                return show("spread", NO_SPREAD_OF_SPEED)
+            if spread == 0.0 and moves > EXCLUDED:
+                return show("spread", STAYS_WITHIN_SPREADS)
+            parts = ["{speed_spread_m_s} of the speed"]
+        text = "standard uncertainties from the uncertain inputs"
+        if record.sought is not None:
+            parts.insert(0, "{sought_spread_text} of the {sought}")
+        if record.dissipated_power_W is not None:
+            text += "; not computed for torque, power and energy"
+        return show("spread", f"{', '.join(parts)}: {text}")
 
     def _seek(self, units: dict[str, tuple[str, float]]) -> None:
         """Add the texts for the result of a search."""
@@ -300,9 +296,3 @@ class _Texts(dict[str, Any]):
         first_order = of_static and columns.get("interval_method") == FIRST_ORDER
         origin = FROM_LINEAR_MODEL if first_order else FROM_INPUTS
         return f"95 % interval {interval_text(low, high, name, error=error)}, {origin}"
-
-
-ENDS = ("_m_s", "_N_m", "_m", "_N", "_W", "_J", "_Pa", "_s")
-"""Column-name suffixes that state the unit."""
-Show = Callable[..., list[str]]
-"""Function show(title, template, when) -> lines."""

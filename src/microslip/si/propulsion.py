@@ -152,11 +152,8 @@ def predict_propulsion(
         If an argument is missing, out of range or not allowed.
     """
     arguments = dict(locals())
-    for name in ("amplitude", "frequency"):
-        if arguments[name] is None:
-            raise InputError(name, None, "needed")
     inputs = read_inputs(arguments)
-    size, rate = (inputs.quantities[name].si for name in ("amplitude", "frequency"))
+    size, rate = inputs.needed("amplitude"), inputs.needed("frequency")
     accepted = read("tolerance", tolerance, "", low_open=False)
     contact = contact_of(inputs)
     group = size / contact.u_lim

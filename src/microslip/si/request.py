@@ -12,7 +12,6 @@ from microslip.adaptive.checks import checked_driven_problem
 from microslip.adaptive.point import Result, solve
 from microslip.foundation.arguments import LARGEST, SMALLEST_TOLERANCE
 from microslip.foundation.errors import InputError, shown
-from microslip.foundation.named_files import speaks_of_file
 from microslip.motions.problem import Problem
 from microslip.si.dimensionless import MovingContact, RealDrive
 from microslip.si.friction_map import REFUSED, FrictionMap
@@ -207,14 +206,11 @@ class Request(MovingContact):
 
 def request_of(motion: str, arguments: Mapping[str, Any]) -> Request:
     """The Request for a mapping of all arguments of `predict`.  Raises InputError."""
-    if speaks_of_file(motion):
-        arguments = with_stroke(motion, arguments)
+    arguments = with_stroke(motion, arguments)
     for name, value in arguments.items():
         if name not in ("counterbody", "map") and _is_sequence(value):
             allowed = "allowed is one value; predict_table takes a sequence, with many contacts"
             raise InputError(name, value, allowed)
-    if arguments["mu"] is None:
-        raise InputError("mu", None, "needed")
     sought = _sought(motion, arguments)
     check_motion_and_drive(motion, arguments, sought)
     inputs = read_inputs(arguments, motion)
@@ -262,8 +258,6 @@ def _sought(motion: str, arguments: Mapping[str, Any]) -> str | None:
     """
     kind, reduction = kind_of(motion), arguments["reduction"]
     if reduction is None:
-        if arguments["load"] is None:
-            raise InputError("load", None, "needed")
         return None
     missing = [name for name in SOUGHT if arguments[name] is None]
     if "speed" in missing and arguments["force"] is not None:

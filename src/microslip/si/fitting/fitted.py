@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field, fields
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -123,8 +123,7 @@ class Fit:
                 return value.tolist()
             return list(value) if isinstance(value, tuple) else value
 
-        names = (each.name for each in fields(self) if each.name != "curve")
-        return {name: plain(getattr(self, name)) for name in names}
+        return {name: plain(one) for name, one in vars(self).items() if name != "curve"}
 
     def to_xarray(self) -> xr.Dataset:
         """Convert the fit to a dataset.  Row data have the dimension `row`, numbers have no
@@ -139,16 +138,16 @@ class Fit:
         units["amplitude_si"] = "rad" if self.motion == "bore" else "m"
         variables: dict[str, tuple] = {}
         attributes: dict[str, str] = {}
-        for name, value in ((each.name, getattr(self, each.name)) for each in fields(self)):
+
+        def about(name: str) -> dict[str, str]:
+            return {"units": units.get(name, column_unit(name))}
+
+        for name, value in vars(self).items():
             if isinstance(value, Curve):
                 for part, values in value._asdict().items():
-                    variables[f"curve_{part}"] = (
-                        "curve_point",
-                        values,
-                        {"units": units.get(part, column_unit(part))},
-                    )
+                    variables[f"curve_{part}"] = ("curve_point", values, about(part))
             elif isinstance(value, np.ndarray):
-                variables[name] = ("row", value, {"units": units.get(name, column_unit(name))})
+                variables[name] = ("row", value, about(name))
             elif name == "labels":
                 variables |= {label: ("row", texts) for label, texts in value.items()}
             elif isinstance(value, dict):
@@ -158,6 +157,5 @@ class Fit:
             elif isinstance(value, str):
                 attributes[name] = value
             else:
-                number = np.nan if value is None else value
-                variables[name] = ((), number, {"units": units.get(name, column_unit(name))})
+                variables[name] = ((), np.nan if value is None else value, about(name))
         return xr.Dataset(variables, attrs=attributes)
