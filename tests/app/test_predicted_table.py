@@ -220,10 +220,7 @@ def test_a_point_of_a_range_without_a_prediction_is_named(folder, capsys):
         (["--table", "contacts.csv"], "--amplitude = '0..0.4 um, 3': a range; allowed without"),
         (["--propulsion"], "--amplitude = '0..0.4 um, 3': allowed without --propulsion"),
         (["--figure", "a.jpg"], "--figure = 'a.jpg': allowed is a name that ends in .png or .pdf"),
-        (
-            ["--figure", "nowhere/a.png"],
-            "--figure = 'nowhere/a.png': allowed is a file in a",
-        ),
+        (["--figure", "nowhere/a.png"], "--figure = 'nowhere/a.png': allowed is a file in a"),
         (["--output", "nowhere/a.nc"], "--output = 'nowhere/a.nc': allowed is a file in a folder"),
         (["--output", "a.txt"], "--output = 'a.txt': allowed is a name that ends in .csv or .nc"),
         (["--phase", "0..1 deg", "--figure", "a.png"], "allowed with one range, or with a second"),

@@ -98,10 +98,7 @@ def test_an_answer_that_is_no_number_says_why(monkeypatch, capsys):
         )
 
     monkeypatch.setattr("microslip.si.request.solve", lost)
-    for motion, name in (
-        ({"amplitude": "1 um"}, "mu_macro"),
-        ({"reduction": "50 %"}, "amplitude"),
-    ):
+    for motion, name in (({"amplitude": "1 um"}, "mu_macro"), ({"reduction": "50 %"}, "amplitude")):
         words = options(**BALL, **motion, material="steel", frequency="20 kHz")
         assert cli.main(["predict", "transverse", *words, "--json"]) == 1
         message = json.loads(capsys.readouterr().out)
