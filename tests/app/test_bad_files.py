@@ -17,17 +17,8 @@ from microslip.sweeps import batches, evaluate
 from microslip.sweeps.store import Store
 
 POINT = ["point", "continuous-bore", "--velocity", "2"]
-REQUEST = {
-    "kind": "point",
-    "motion": "continuous-bore",
-    "velocity": "2",
-    "amplitude": None,
-    "poisson": "0",
-    "model": "auto",
-    "tolerance": "0.001",
-    "cells": None,
-    "steps": None,
-}
+REQUEST = {"kind": "point", "motion": "continuous-bore", "velocity": "2", "poisson": "0"}
+REQUEST |= {"model": "auto", "tolerance": "0.001", "amplitude": None, "cells": None, "steps": None}
 
 
 def one_line(error):

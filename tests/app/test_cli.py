@@ -56,7 +56,6 @@ def test_text_says_what_was_found():
     assert "closed-form" in process.stdout and "NOT CONVERGED" not in process.stdout
 
 
-@pytest.mark.slow
 def test_drive_says_what_the_function_does():
     words = ("propulsion", "elliptic:forward_cycles=2,phase=0", "--amplitude", "1")
     words += ("--points", "3", "--tolerance", "1e-2")

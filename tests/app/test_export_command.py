@@ -164,10 +164,7 @@ STILL = f"{VIBRATED} --load '10 N' --speed '1 mm/s'"
         ("iwan --elements 2 --tolerance 1e-2", ("--elements", "without")),
         ("iwan --material steel", ("--mu", "needed")),
         ("iwan --nu 0.7", ("--poisson", "0.5")),
-        (
-            f"iwan {STEEL} --load '1 N' --radius-across '8 mm'",
-            ("--radius-across", "nu = 0"),
-        ),
+        (f"iwan {STEEL} --load '1 N' --radius-across '8 mm'", ("--radius-across", "nu = 0")),
         ("iwan --output a.txt", ("--output = 'a.txt'", ".csv")),
         (f"table transverse {STILL}", ("--amplitude", "range")),
         (f"table transverse {VIBRATED} {GRID} --output a.nc", ("--output = 'a.nc'", ".txt")),

@@ -46,7 +46,6 @@ def test_no_product_depends_on_the_size_of_jobs():
     assert changed(plan(), plan(points_per_job=1)) == set()
 
 
-@pytest.mark.slow
 def test_what_a_product_is_made_of_changes_with_its_own_settings_alone():
     sweeps = {**TINY["sweeps"], "transverse": {**AXES, "amplitude": [0, 0.5, 1]}}
     pages = {"pages/explorer", "pages/explorer_all"}

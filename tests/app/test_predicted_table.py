@@ -87,7 +87,6 @@ def test_a_line_that_nothing_answers_does_not_take_the_others_with_it(folder, ca
     assert spread / load == pytest.approx(1.5 * 0.1, rel=0.05)
 
 
-@pytest.mark.slow
 def test_a_line_that_cannot_be_leaves_the_others_their_answers_and_labels(folder, capsys):
     text = "label;load [N];amplitude [um];speed\nfirst;10;0,3;10 mm/s\nsecond;20;-0,1;1 cm/s\n"
     text += "third;20;0,1;\nfourth;20;0,1\n;;;\n"
@@ -116,7 +115,6 @@ def test_a_line_that_cannot_be_leaves_the_others_their_answers_and_labels(folder
     ]
 
 
-@pytest.mark.slow
 def test_under_a_force_each_line_has_its_outcome_threshold_and_probabilities(folder, capsys):
     """Without vibration the threshold is mu times the load: 0.15 * 800 N = 120 N.
 
@@ -204,7 +202,6 @@ def test_ranges_give_a_table_a_file_and_a_figure(folder, capsys):
     assert [point["speed_m_s"] for point in points[:2]] == [0.005, 0.02]
 
 
-@pytest.mark.slow
 def test_a_point_of_a_range_without_a_prediction_is_named(folder, capsys):
     words = [word if word != "0..0.4 um, 3" else "0..10 m, 2" for word in RANGED]
     assert cli.main(words) == 1
@@ -220,10 +217,7 @@ def test_a_point_of_a_range_without_a_prediction_is_named(folder, capsys):
         (["--table", "contacts.csv"], "--amplitude = '0..0.4 um, 3': a range; allowed without"),
         (["--propulsion"], "--amplitude = '0..0.4 um, 3': allowed without --propulsion"),
         (["--figure", "a.jpg"], "--figure = 'a.jpg': allowed is a name that ends in .png or .pdf"),
-        (
-            ["--figure", "nowhere/a.png"],
-            "--figure = 'nowhere/a.png': allowed is a file in a",
-        ),
+        (["--figure", "nowhere/a.png"], "--figure = 'nowhere/a.png': allowed is a file in a"),
         (["--output", "nowhere/a.nc"], "--output = 'nowhere/a.nc': allowed is a file in a folder"),
         (["--output", "a.txt"], "--output = 'a.txt': allowed is a name that ends in .csv or .nc"),
         (["--phase", "0..1 deg", "--figure", "a.png"], "allowed with one range, or with a second"),

@@ -11,6 +11,7 @@ SPRUNG = {"drive_stiffness": "1 N/um"}
 SIZED = {"radius": None, "contact_radius": "1 mm"}
 STEADY = {"amplitude": None, "frequency": None, "rotation": "1 Hz"}
 ELASTIC = {"material": None, "young": "210 GPa", "nu": "0.3"}
+PRESSED = {"motion": "normal", "amplitude": None}
 SEARCH = {"amplitude": None, "reduction": "50 %"}
 MOTIONS = [
     ({"motion": "Transverse"}, "MOTION = 'Transverse': did you mean transverse?"),
@@ -26,14 +27,8 @@ MOTIONS = [
     ({"rotation": "10 rpm"}, "--rotation = '10 rpm': transverse has none"),
     ({"forward_amplitude": "1 um"}, "--forward-amplitude = '1 um': transverse has none"),
     ({"motion": "elliptic"}, "--forward-amplitude: elliptic needs it"),
-    (
-        {"motion": "elliptic", "amplitude": "0 m", "forward_amplitude": "0 m"},
-        "--amplitude = '0 m': allowed is above 0 where no other amplitude is",
-    ),
-    (
-        {"motion": "normal", "amplitude": None, "load_amplitude": "1e10 N"},
-        "--load-amplitude = '1e10 N': allowed is at most 1e",
-    ),
+    ({"motion": "elliptic", "amplitude": "0 m", "forward_amplitude": "0 m"}, "--amplitude = '0 m'"),
+    ({"motion": "normal", "amplitude": None, "load_amplitude": "1e10 N"}, "allowed is at most 1e"),
 ]
 CONTACTS = [
     ({"load": None}, "--load: needed"),
@@ -65,13 +60,7 @@ CONTACTS = [
     ({"contacts": "load=2;load=1", "radius_across": "7 mm"}, "allowed are equal loads"),
     ({"contacts": "phase=0"} | SEARCH, "--reduction = '50 %': allowed only without contacts"),
     ({"motion": "continuous-bore", "contacts": "phase=0"} | STEADY, "does not oscillate"),
-    (
-        {
-            **{"motion": "normal", "amplitude": None, "load_amplitude": "6 N"},
-            "contacts": "load=1;load=1",
-        },
-        "--load-amplitude = '6 N': allowed is at most the load",
-    ),
+    (PRESSED | {"load_amplitude": "6 N", "contacts": "load=1;load=1"}, "at most the load"),
 ]
 BODIES = [
     ({"material": None}, "--young: needed, or a material"),
@@ -95,10 +84,7 @@ BODIES = [
 DRIVES = [
     ({"speed": None}, "--speed: needed, or a force"),
     ({"speed": "1 mm"}, "--speed = '1 mm': the unit is millimeter"),
-    (
-        {"speed": "1e300 m/s", "frequency": "1e-300 Hz"},
-        "--speed = '1e300 m/s': divided by that of the",
-    ),
+    ({"speed": "1e300 m/s", "frequency": "1e-300 Hz"}, "--speed = '1e300 m/s': divided by"),
     ({"force": "1 N"}, "--force = '1 N': allowed is a force or a speed, not both"),
     (FORCED | {"force": "0 N"}, "--force = '0 N': allowed is a finite value above 0 N"),
     (FORCED | SPRUNG, "--drive-stiffness = '1 N/um': allowed only without a force"),
@@ -106,20 +92,14 @@ DRIVES = [
     ({"mass": "20 g"}, "--mass = '20 g': allowed only with a force or --drive-stiffness"),
     ({"damping": "1 N*s/m"}, "--damping = '1 N*s/m': allowed only with --drive-stiffness"),
     (SPRUNG | {"mass": "-20 g"}, "--mass = '-20 g': allowed is a finite value"),
-    (
-        SPRUNG | {"mass": "1e308 kg"},
-        "--mass = '1e308 kg': divided by that of the contact is beyond",
-    ),
+    (SPRUNG | {"mass": "1e308 kg"}, "--mass = '1e308 kg': divided by that of the contact"),
     (SPRUNG | {"motion": "longitudinal", "speed": "0 m/s"}, "allowed is a speed above 0 for a"),
     (SPRUNG | {"motion": "continuous-bore"} | STEADY, "continuous-bore is steady"),
     ({"tolerance": "none"}, "--tolerance = 'none'"),
     ({"tolerance": "1e-9"}, "at least 1e-06 and at most 0.1"),
 ]
 REDUCTIONS = [
-    (
-        {"reduction": "50 %"},
-        "--reduction = '50 %': allowed only without the amplitude",
-    ),
+    ({"reduction": "50 %"}, "--reduction = '50 %': allowed only without the amplitude"),
     (SEARCH | {"load": None}, "it determines one quantity, but amplitude and load are missing"),
     (SEARCH | {"reduction": "150 %"}, "--reduction = '150 %': allowed is a finite value above 0"),
     (SEARCH | {"reduction": "5 %"}, "allowed is at least the tolerance, 0.1"),
@@ -153,9 +133,6 @@ PROPULSIONS = [
     (PROPELLED | {"amplitude": "1 m"}, "times u_lim; allowed is at most"),
     (PROPELLED | {"points": "1"}, "allowed is a whole number"),
     (PROPELLED | {"load": "40 N +- 1 N"}, "read 'N' and stopped at '+- 1 N'"),
-    (
-        PROPELLED | {"motion": "normal:forward=1,angle=1,phase=90"},
-        "allowed is a motion without a rotation",
-    ),
+    (PROPELLED | {"motion": "normal:forward=1,angle=1,phase=90"}, "without a rotation"),
 ]
 """Bad options of `microslip predict --propulsion`, in the form of PREDICTIONS."""

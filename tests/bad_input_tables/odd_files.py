@@ -38,6 +38,7 @@ VELOCITIES = [
 ]
 
 # Other keys, as YAML at the top level, and words of the message; None: valid.
+LINE = "motion: zigzag, velocity: [1], amplitude: [1]"
 KEYS = [
     ("results: ~/here", ("~/here", "~ in front")),
     ("results: '~'", ('"~"', "~ in front")),
@@ -57,15 +58,8 @@ KEYS = [
         ("accuracy.points: null is not allowed", "can be written"),
     ),
     (f"extended: {{{'x' * 250}: {{}}}}", ("extended", "up to 100 small letters")),
-    (
-        f"extended: {{x: {{motion: zigzag, velocity: [1], amplitude: [1], group: {'g' * 250}}}}}",
-        ("extended.x.group", "up to 100 small letters"),
-    ),
-    (
-        "extended: {x: {motion: zigzag, velocity: [1], amplitude: [1], group: g, "
-        "pressure: 'file:~/x.csv'}}",
-        ("extended.x.pressure", "~/x.csv", "looked for"),
-    ),
+    (f"extended: {{x: {{{LINE}, group: {'g' * 250}}}}}", ("extended.x.group", "small letters")),
+    (f"extended: {{x: {{{LINE}, group: g, pressure: 'file:~/x.csv'}}}}", ("~/x.csv", "looked for")),
     (
         "extended: {x: {motion: 'elliptic:phase=30 deg', velocity: [1], amplitude: [1], group: g}}",
         ("extended.x.motion", "elliptic:key=0.5"),

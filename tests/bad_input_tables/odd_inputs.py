@@ -29,11 +29,7 @@ CALLS += [
     ("solve", {"tolerance": list(range(10**5))}, "allowed is a number"),
     ("solve", {"motion": "eliptic:forward=0.5"}, "motion = 'eliptic:forward=0.5': did you mean"),
     ("solve", {"motion": "elliptic:forward=0.5;phase=90"}, "elliptic:key=0.5"),
-    (
-        "solve",
-        {"motion": "elliptic:lateral=0,forward=0"},
-        "motion = 'elliptic:lateral=0,forward=0'",
-    ),
+    ("solve", {"motion": "elliptic:lateral=0,forward=0"}, "'elliptic:lateral=0,forward=0'"),
     ("solve", {"motion": "transverse:amplitude=1"}, "unknown number amplitude"),
     ("solve", {"pressure": "powr:exponent=2"}, "pressure = 'powr:exponent=2': did you mean power?"),
     ("solve", {"pressure": "power:exponent=1e300"}, "pressure = 'power:exponent=1e300'"),

@@ -29,10 +29,7 @@ LENGTHS = [
     (".5 mm", 5e-4),
     ("1e\u22126 m", 1e-6),  # Unicode minus
     ("\u22126 mm", -6e-3),
-    (
-        "\uff15 mm",
-        "where a number was expected, since numbers have the digits 0 to 9",
-    ),  # full-width five
+    ("\uff15 mm", "since numbers have the digits 0 to 9"),  # full-width five
     ("1 \u00b5m", 1e-6),  # micro sign
     ("5 mm\u00b2/mm", 5e-3),
     ("0", 0.0),  # the same in all units

@@ -84,7 +84,6 @@ def written(tmp_path, name, settings):
     return path
 
 
-@pytest.mark.slow
 def test_a_dataset_under_forces_holds_velocities(tmp_path):
     with xr.open_dataset(written(tmp_path, "weights", WEIGHTS | {"amplitude": [0.5]})) as data:
         assert data.velocity.dims == data.mu_macro.dims == ("amplitude", "force")
@@ -104,7 +103,6 @@ def test_a_dataset_under_forces_holds_velocities(tmp_path):
             accessor.Friction(data)
 
 
-@pytest.mark.slow
 def test_a_dataset_over_springs_has_their_axis(tmp_path):
     with xr.open_dataset(written(tmp_path, "springs", SPRINGS | {"mass": 2})) as data:
         assert data.mu_macro.dims == ("stiffness", "amplitude", "velocity")
@@ -115,7 +113,6 @@ def test_a_dataset_over_springs_has_their_axis(tmp_path):
         assert data.stiffness.attrs["formula"] == "k u_lim / (mu F_z)"
 
 
-@pytest.mark.slow
 def test_a_point_that_is_pulled_is_stored_and_found_again(tmp_path):
     place = {"amplitude": 1.0, "tolerance": 1e-2}
     pull = {"velocity": 0.1, "stiffness": 0.5, "damping": 0.1}

@@ -90,7 +90,6 @@ def test_static_friction_of_popov_under_an_oscillating_force_is_that_of_the_page
     assert all(row in text for row in rows)
 
 
-@pytest.mark.slow
 def test_a_fit_to_luo_explains_the_size_of_the_reduction_but_not_the_reduction_at_rest():
     u_lim, comparisons = numbers.luo()
     assert 0.4e-6 < u_lim < 0.6e-6

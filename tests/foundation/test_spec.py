@@ -14,12 +14,7 @@ def test_what_is_written_as_0_is_0(text):
 
 
 @pytest.mark.parametrize(
-    ("text", "number"),
-    [
-        ("5e-324", math.ulp(0.0)),
-        ("1.7e308", 1.7e308),
-        ("-Infinity", -math.inf),
-    ],
+    ("text", "number"), [("5e-324", math.ulp(0.0)), ("1.7e308", 1.7e308), ("-Infinity", -math.inf)]
 )
 def test_the_ends_of_the_range_are_read(text, number):
     assert spec.read("size", text) == number

@@ -30,7 +30,6 @@ def test_a_steady_spin_takes_a_torque():
     assert result.energy_per_cycle_J == pytest.approx(both * 2.0 * math.pi / 100.0)
 
 
-@pytest.mark.slow
 def test_energy_is_in_joules():
     result = microslip.predict("transverse", **SHAKEN)
     point = result.velocity, result.amplitude

@@ -55,7 +55,6 @@ def test_each_point_is_its_prediction(tmp_path):
     grid.to_netcdf(tmp_path / "grid.nc", engine="netcdf4")
 
 
-@pytest.mark.slow
 def test_sequences_are_axes_and_other_points_survive_a_bad_one():
     grid = microslip.predict_grid(
         "transverse", load=["10 N", 20.0], amplitude=["0.1 um", "1 m"], speed=0.01, **CONTACT

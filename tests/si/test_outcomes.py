@@ -11,6 +11,7 @@ from microslip.theory import paper
 
 STEEL = {"young": "210 GPa", "nu": 0.0}
 JOINT = STEEL | {"radius": "200 mm", "load": "1 kN", "mu": 0.15, "frequency": "50 Hz"}
+JOINT |= {"tolerance": 0.01}
 SHAKEN = JOINT | {"amplitude": "0.25 um", "force": "90 N"}
 BALL = STEEL | {"radius": "5 mm", "load": "10 N", "mu": 0.3, "frequency": "20 kHz"}
 SPIN = BALL | {"amplitude": "0.5 deg", "speed": "1 mm/s", "frequency": "50 Hz"}

@@ -19,7 +19,7 @@ def text_of(motion="transverse", **settings):
 
 
 @pytest.fixture(scope="module")
-def slow():
+def slow_text():
     """Text of a vibration with static friction."""
     return text_of(**SLOW)
 
@@ -28,22 +28,22 @@ def words(**settings):
     return [word for name, value in settings.items() for word in (f"--{name}", str(value))]
 
 
-def test_the_command_line_prints_the_text(slow, capsys):
+def test_the_command_line_prints_the_text(slow_text, capsys):
     assert cli.main(["predict", "transverse", *words(**BALL | SLOW)]) == 0
-    assert capsys.readouterr().out == f"{slow}\n"
+    assert capsys.readouterr().out == f"{slow_text}\n"
 
 
-def test_every_computed_number_has_its_error(slow):
+def test_every_computed_number_has_its_error(slow_text):
     number = r"\d[\d.]* \+- \d[\d.]*"
     for title in ("mu_macro", "mu_apparent", "friction force", "static friction"):
-        assert re.search(rf"^{title} +{number}( N)?[: ]", slow, re.MULTILINE), title
-    assert re.search(rf"^force threshold +{number} N: no smaller", slow, re.MULTILINE)
+        assert re.search(rf"^{title} +{number}( N)?[: ]", slow_text, re.MULTILINE), title
+    assert re.search(rf"^force threshold +{number} N: no smaller", slow_text, re.MULTILINE)
     text = text_of(amplitude="0.1 um", force="1 N", tolerance=0.1)
     assert re.search(rf"^safety factor +{number}: ", text, re.MULTILINE)
 
 
-def test_lengths_of_one_answer_have_one_unit(slow):
-    answer = slow.split("\n\n")[1]
+def test_lengths_of_one_answer_have_one_unit(slow_text):
+    answer = slow_text.split("\n\n")[1]
     lengths = re.findall(
         r"^(?:contact radius|indentation|u_lim|amplitude) +\S+ (\S+?),?$",
         re.sub(r" dimensionless.*", "", answer),
@@ -81,7 +81,7 @@ def test_an_exact_number_has_no_error():
     assert "e-17" not in text and re.search(r"^mu_macro +0\.\d+: ratio", text, re.MULTILINE)
 
 
-def test_a_threshold_that_differs_from_static_friction_is_explained(slow):
+def test_a_threshold_that_differs_from_static_friction_is_explained(slow_text):
     along = SLOW | {"amplitude": "1 um"}
     text = text_of("longitudinal", **along)
     assert re.search(r"^static friction +0 \+- ", text, re.MULTILINE)
@@ -90,7 +90,7 @@ def test_a_threshold_that_differs_from_static_friction_is_explained(slow):
     text = text_of("elliptic", **along | {"forward_amplitude": "0.1 um", "tolerance": 0.1})
     assert "static friction" in text and "force threshold  " not in text
     assert "it is not the force threshold, because part of the vibration is along the drive" in text
-    assert "not the force threshold" not in slow
+    assert "not the force threshold" not in slow_text
 
 
 def failed(motion, velocity, *changes, **settings):

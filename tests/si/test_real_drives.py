@@ -104,10 +104,7 @@ def test_answers_know_no_units(pulls):
 @pytest.mark.slow
 @pytest.mark.parametrize(
     ("amplitude", "force", "velocity", "digits"),
-    [
-        (0.5, 0.75, 0.0244, 3e-4),
-        (3.0, 0.30, 0.438, 4e-3),
-    ],
+    [(0.5, 0.75, 0.0244, 3e-4), (3.0, 0.30, 0.438, 4e-3)],
 )
 def test_drift_under_a_force_is_that_of_a_second_program(amplitude, force, velocity, digits):
     """The references are coarse: a prototype with about twenty rings and backward Euler."""

@@ -59,7 +59,6 @@ def words(motion, **more):
     return ["predict", motion, "--propulsion", *named]
 
 
-@pytest.mark.slow
 def test_the_command_line_says_the_same(capsys):
     assert cli.main([*words(EIGHT, points="3"), "--json"]) == 0
     message = json.loads(capsys.readouterr().out)

@@ -222,7 +222,6 @@ def test_u_lim_of_a_cone_is_that_of_its_depth():
     assert contact.u_lim == pytest.approx(expected, rel=1e-6)
 
 
-@pytest.mark.slow
 def test_a_prediction_under_another_pressure_is_what_the_solver_says():
     pressure = "power:exponent=4"
     shape = {"contact_radius": "0.1 mm", "pressure": pressure}
@@ -261,7 +260,6 @@ def test_amplitudes_are_shares_of_the_largest(label, sizes, expected, largest):
     assert velocity == pytest.approx(1e-3 / (2e3 * math.pi * BALL.u_lim))
 
 
-@pytest.mark.slow
 def test_a_motion_in_several_ways_of_which_one_is_nothing_is_the_other():
     plain = microslip.predict("transverse", **SPHERE)
     for motion, other in (
@@ -325,7 +323,6 @@ def test_a_motion_of_ones_own_has_the_units_of_its_kind(own, capsys):
     assert json.loads(capsys.readouterr().out)["mu_macro"] == result.mu_macro
 
 
-@pytest.mark.slow
 def test_numbers_after_the_name_of_a_family_are_taken_as_by_solve():
     """An ellipse without a forward oscillation is the transverse motion."""
     line = microslip.predict("elliptic:forward=0,phase=0", **SPHERE)

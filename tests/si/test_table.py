@@ -48,7 +48,6 @@ def test_a_table_that_is_none_is_refused(cases, message):
         microslip.predict_table("transverse", cases, **SHARED)
 
 
-@pytest.mark.slow
 def test_pandas_tables_and_files_are_cases(tmp_path):
     """A DataFrame of pandas.read_csv and its file give equal datasets."""
     text = "label;load [N];speed [mm/s];amplitude [um];reduction\na;10;1,5;1;\nb;20;2,5;0,3;\n"

@@ -13,7 +13,6 @@ BALL = {"material": "steel", "counterbody": "steel", "radius": "5 mm", "load": "
 SPIN = BALL | {"speed": "1 mm/s", "rotation": "10 rad/s"}
 
 
-@pytest.mark.slow
 def test_a_spread_of_mu_alone_is_a_share_of_the_force():
     """The friction of a steady spin is independent of u_lim and proportional to mu."""
     result = microslip.predict("continuous-bore", **SPIN | {"mu": "0.3 +- 0.03"})

@@ -58,9 +58,7 @@ def pulled():
         ),
         "drive_spring": dataset(dims, both, one | {"stiffness": stiffness, "velocity": velocity}),
         "drive_body": dataset(
-            ("mass", *dims),
-            body,
-            one | {"mass": mass, "stiffness": stiffness, "velocity": [0.1]},
+            ("mass", *dims), body, one | {"mass": mass, "stiffness": stiffness, "velocity": [0.1]}
         ),
     }
 
