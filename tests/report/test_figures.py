@@ -95,6 +95,8 @@ def test_points_that_are_not_converged_are_hatched_and_hollow(datasets):
     np.testing.assert_array_equal(points.get_xdata(), bad["amplitude"][2:4])
     assert points.get_markerfacecolor() == "white" and artists(figure, "error-band")
     assert "4 of 81" in words(figure)
+    bad["converged"][:], bad["mu_macro"][:], bad["mu_macro_error"][:] = 0, np.nan, np.inf
+    assert "81 of 81" in words(drawing.draw("fig6_bore_map", {"bore": bad}))
 
 
 def test_all_of_poissons_ratios_are_drawn_up_to_six(datasets):
