@@ -12,6 +12,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from stubs import in_process
 
 import microslip
 from microslip import motions
@@ -183,17 +184,17 @@ def broken(tmp_path):
 
 
 @pytest.mark.parametrize("file", BROKEN)
-def test_a_broken_file_is_an_error_of_its_motion_alone(broken, capsys, file):
+def test_a_broken_file_is_an_error_of_its_motion_alone(broken, file):
     name, cause = file.removesuffix(".py").replace("_", "-"), BROKEN[file][1]
     with pytest.raises(microslip.InputError) as caught:
         microslip.solve(name, 0.1, 0.5)
     assert caught.value.argument == "motion"
     assert str(broken / file) in str(caught.value) and cause in str(caught.value)
     arguments = ["--velocity", "0.1", "--amplitude", "0.5", "--json"]
-    assert main(["point", name, *arguments]) == 2
-    (line,) = capsys.readouterr().err.splitlines()
-    assert str(broken / file) in line and cause in line
-    assert main(["point", "longitudinal", *arguments]) == 0
+    refused = in_process.run("point", name, *arguments)
+    (line,) = refused.stderr.splitlines()
+    assert refused.returncode == 2 and str(broken / file) in line and cause in line
+    assert in_process.run("point", "longitudinal", *arguments).returncode == 0
 
 
 def test_a_name_of_two_files_is_an_error_of_its_motion_alone(tmp_path, monkeypatch):

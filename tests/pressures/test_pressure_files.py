@@ -577,24 +577,3 @@ def test_names_that_name_no_file_are_refused(tmp_path):
     assert "grid occurs twice" in refusal("file:p.csv,grid=cells,grid=cells")
     assert "grid=cells or grid=samples" in refusal("file:p.csv,gird=cells")
     assert "no file with this content is known here" in refusal("file:sha256=0000000000000000")
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize("motion", ["transverse", pytest.param("bore", marks=pytest.mark.long)])
-def test_friction_of_a_uniform_square_does_not_depend_on_its_grid(tmp_path, motion):
-    result = []
-    for count in (2, 41):
-        axis = np.linspace(-1.0, 1.0, count)
-        axis *= 1.0 - 1.0 / count  # centres of the cells of one square
-        name = csv(tmp_path / f"{count}.csv", axis, axis, np.ones((count, count)))
-        result.append(microslip.solve(motion, 0.5, 0.5, pressure=name, tolerance=1e-2))
-    one, other = result
-    assert one.converged and other.converged
-    # the grid itself changes nothing: what differs is what the iterations leave
-    left = max(
-        each.friction.by_source["periodicity"] + each.friction.by_source["solver"]
-        for each in result
-    )
-    assert left < 1e-3
-    assert max(one.friction.by_source["model"], other.friction.by_source["model"]) < left
-    assert one.mu_macro == pytest.approx(other.mu_macro, abs=left)

@@ -95,6 +95,8 @@ def test_points_that_are_not_converged_are_hatched_and_hollow(datasets):
     np.testing.assert_array_equal(points.get_xdata(), bad["amplitude"][2:4])
     assert points.get_markerfacecolor() == "white" and artists(figure, "error-band")
     assert "4 of 81" in words(figure)
+    bad["converged"][:], bad["mu_macro"][:], bad["mu_macro_error"][:] = 0, np.nan, np.inf
+    assert "81 of 81" in words(drawing.draw("fig6_bore_map", {"bore": bad}))
 
 
 def test_all_of_poissons_ratios_are_drawn_up_to_six(datasets):
@@ -146,8 +148,6 @@ def test_a_file_contains_its_provenance(datasets, tmp_path):
         assert image.size[0] == pytest.approx(300 * figure.get_size_inches()[0], abs=1)
     assert provenance["source_digest"] == "f00d" and "author" not in provenance
     assert b"f00d" in drawing.save(figure, tmp_path / "figure.pdf").read_bytes()
-    with pytest.raises(ValueError, match=r"\.png or \.pdf"):
-        drawing.save(figure, tmp_path / "figure.svg")
 
 
 def test_a_failed_save_leaves_the_old_file(datasets, tmp_path, monkeypatch):

@@ -324,7 +324,7 @@ def test_probes_hand_on_the_method_and_the_resolution(monkeypatch):
     monkeypatch.setattr("microslip.solve", solve)
     study = configured(stability={"axes": ["steps"]}).stability
     result = evaluate.computed(stability.probe(study, "euler", *stability.cases(study)[2]))
-    assert solve.call_args.kwargs == {
+    settings = {
         "poisson": 0.0,
         "model": "auto",
         "method": "euler",
@@ -333,6 +333,7 @@ def test_probes_hand_on_the_method_and_the_resolution(monkeypatch):
         "steps": 32,
         "most_work": study_requests.MOST_WORK,
     }
+    assert solve.call_args.kwargs.items() >= settings.items()
     assert result == {"applies": True, "mu_macro": None}
 
 

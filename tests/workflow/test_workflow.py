@@ -84,26 +84,3 @@ def test_a_figure_is_a_target_by_its_number_and_by_its_name(project, target):
         "Error in tiny.yaml: fig2_transverse_map needs the sweep transverse, "
         "which the configuration does not have"
     )
-
-
-STALLING = """
-
-from dataclasses import replace
-from microslip.estimate.estimate import Estimate
-_solve = solve
-
-def solve(motion, velocity, amplitude=None, **settings):
-    result = _solve(motion, velocity, amplitude, **settings)
-    return replace(result, friction=Estimate(float("nan")), converged=False, reason="stalled")
-"""
-
-
-@pytest.mark.long
-def test_points_that_do_not_converge_are_listed_and_drawn(project):
-    target = "results/figures/fig2_transverse_map.png"
-    project.append("src/microslip/adaptive/point.py", STALLING)
-    axes = {**AXES, "amplitude": [1, 2]}
-    project.configure({**TINY, "sweeps": {"transverse": axes}})
-    message = project.run(target)
-    assert "transverse: 4 points, 4 not converged" in message
-    assert "not converged: amplitude 1, velocity 0.5: stalled" in message
