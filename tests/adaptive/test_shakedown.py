@@ -143,7 +143,7 @@ def test_bad_input_gets_one_line(changed, message):
 
 
 def test_few_samples_of_a_sharp_motion_have_a_larger_error():
-    """The interpolation between samples is a source of the error of its own."""
+    """The interpolation between samples is a separate source of error."""
     zigzag = 2.0 / np.pi * np.arcsin(np.sin(np.linspace(0.0, 2.0 * np.pi, 64, endpoint=False)))
     exact = microslip.shakedown("zigzag", 0.7, 0.3)
     motion = microslip.Sampled.of_columns({"lateral": zigzag[::8]})

@@ -69,7 +69,7 @@ BODIES = [
     (ELASTIC | {"young": "inf GPa"}, "it is not finite"),
     ({"nu": "30 %"}, "--material = 'steel': allowed only without young and nu"),
     ({"material": "Steel"}, "(did you mean steel?)"),
-    ({"material": "rigid"}, "allowed is an elastic body where the counterbody is rigid"),
+    ({"material": "rigid"}, "allowed is an elastic body if the counterbody is rigid"),
     ({"counterbody": "wood"}, "or E and nu as in '70 GPa, 0.22'"),
     ({"counterbody": "0.22, 70 GPa"}, "its Young's modulus '0.22'"),
     ({"counterbody": "70 GPa, 0.9"}, "its Poisson's ratio '0.9': allowed is a finite value at"),

@@ -89,7 +89,7 @@ def requests_of(**changes):
 
 
 def test_a_plain_point_mentions_no_pressure_and_no_drive():
-    """Requests name their results by hashes."""
+    """The name of a result is the hash of its request."""
     plain = load.from_mapping({"sweeps": {"bore": {"velocity": [1], "amplitude": [1]}}})
     (expected,) = sweep.points_of(plain.sweeps["bore"]).requests
     names = {"kind", "motion", "model", "tolerance", "cells", "steps"}

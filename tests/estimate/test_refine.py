@@ -26,7 +26,7 @@ LADDER = Ladder(start=8, angles=0.5, steps=2)
 
 
 def refine(run, ladder, tolerance, readings=(), **energy):
-    """Refine runs in place of problems; `readings` are those of other interpolations."""
+    """Refine with functions in place of problems; `readings` replace other interpolations."""
     levels = Levels(lambda run, *place: run(*place), ladder, run, *readings)
     return refinement.refine(levels, tolerance, **energy)
 

@@ -1,4 +1,4 @@
-"""The command line in this process, which saves the start of Python, and in another process."""
+"""Run the command line in this process, which saves the start of Python, or in another process."""
 
 import io
 import os

@@ -24,7 +24,7 @@ def without_time(result):
 
 @pytest.fixture
 def solve(monkeypatch):
-    """microslip.solve, which counts its calls."""
+    """microslip.solve with a counter of its calls."""
     counted = Mock(wraps=microslip.solve)
     monkeypatch.setattr(microslip, "solve", counted)
     return counted

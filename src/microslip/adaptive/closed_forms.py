@@ -81,7 +81,7 @@ def _within(value: float, error: float) -> Estimate:
 
 
 def _of_drag(problem: Problem, friction: Estimate, drag: Estimate) -> Exact:
-    """Closed form of a contact that dissipates the work of the force `drag` over its drift."""
+    """Closed form in which the dissipated energy is the work of the mean force `drag`."""
     work = 2.0 * math.pi * problem.mean_load * problem.drift
     return Exact(friction, dissipation=work * drag)
 

@@ -310,8 +310,10 @@ def _moving(contact: _Contact, points: int) -> PropulsionLine:
 def _record(
     contact: _Contact, stall: Answer, fastest: Answer, velocity: np.ndarray
 ) -> PropulsionLine:
-    """The PropulsionLine at some velocities.  stall, fastest: friction at velocity 0, and no-load
-    velocity."""
+    """The PropulsionLine at these velocities.
+
+    stall, fastest: friction at velocity 0, and no-load velocity.
+    """
     request, sign = contact.request, contact.sign
     problem = request.problem
     friction = [contact.friction(v) for v in velocity]
@@ -374,7 +376,7 @@ def no_load(friction: Callable, first: float) -> Answer:
             return Answer(math.nan, math.inf, reason)
     below = _certain(friction, velocity, -1.0, slope)
     above = _certain(friction, velocity, 1.0, slope)
-    reason = "" if math.isfinite(above) else "no velocity is known at which it resists for certain"
+    reason = "" if math.isfinite(above) else "no velocity was found at which it certainly resists"
     return Answer(velocity, max(above - velocity, velocity - below), reason)
 
 

@@ -78,7 +78,7 @@ class Shakedown:
         Reason why the result is not converged, otherwise empty.
     error_resolution, error_periodicity, error_solver, error_model : float
         Parts of the error by source.  The part `error_periodicity` bounds the displacement after
-        the last period.  The part `error_model` is that of a file.
+        the last period.  The part `error_model` is due to the resolution of a file.
     cells, angles, steps_per_period : int
         Numbers of cells, of angles and of steps per period in the finest run.
     periods : float
@@ -243,6 +243,6 @@ def _certified(request: Request, force: float) -> dict[str, Any]:
     solved = [level for number, level in levels.runs if number == 0]
     if solved:
         finest = levels.at(max(solved))
-        assert isinstance(finest, ShakedownRun)  # returned by run
+        assert isinstance(finest, ShakedownRun)  # the type that `run` returns
         result |= {"pushed": finest.pushed, "most_after": finest.most_after}
     return result

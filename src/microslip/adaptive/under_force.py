@@ -135,7 +135,7 @@ def refuse_drive(problem: Problem, model: str) -> None:
             refuse_steady(problem)
         refuse_nearly_full(problem)
     elif motion.periodic and problem.velocity == 0.0 and not is_even(problem):
-        allowed = f"allowed is a number above 0 where a spring pulls {motion.name}"
+        allowed = f"allowed is a number above 0 for {motion.name} with a spring"
         raise InputError("velocity", 0.0, allowed)
 
 

@@ -86,8 +86,10 @@ class OneLineParser(argparse.ArgumentParser):
 
 
 def _hint(name: str, candidates: Sequence[str]) -> str:
-    """Return 'did you mean NAME? ' with the option of the same meaning or with the most similar
-    candidate, or ''."""
+    """Return 'did you mean NAME? ', or '' if nothing is similar.
+
+    NAME is the option with the same meaning, or else the most similar candidate.
+    """
     synonym = SYNONYMS.get(name)
     return f"did you mean {synonym}? " if synonym in candidates else near_miss(name, candidates)
 

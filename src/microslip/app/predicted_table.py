@@ -253,8 +253,9 @@ def _numbers(
 ) -> list[Column]:
     """Return columns with a value, its error estimate and its standard uncertainty.
 
-    names: these fields of a prediction; headings: headings of the first ones, which are printed;
-    sought: name of the quantity, if it is the result of a search.
+    names: fields of a prediction that contain the three numbers; headings: headings of the numbers
+    that are printed, in the same order; sought: name of the quantity, if it is the result of a
+    search.
     """
     return [
         (heading, partial(_number, names=names, place=place, sought=sought))

@@ -92,7 +92,7 @@ def typed_options(
     """Return the values of the options on the command line, by argument name.
 
     The options in `reals` and `wholes` are converted to numbers, and the dataset of --map is
-    opened.  The options FILES are left out.  Raises InputError for a text that is not a
+    opened.  The options in FILES are left out.  Raises InputError for a text that is not a
     number, and InputError and CacheError for a map that cannot be opened.
     """
     words = {name: word for name, word in options.spellings.items() if name not in FILES}

@@ -32,7 +32,7 @@ if TYPE_CHECKING:
     from microslip.si.response import RealResponse
 
 OUTPUT = {
-    "output": ("FILE", "write all columns to a .csv or .nc file in place of printing them"),
+    "output": ("FILE", "write all columns to a .csv or .nc file instead of printing them"),
     "tolerance": (
         "T",
         "largest error of a force divided by mu times the load, and of the torque divided by its "

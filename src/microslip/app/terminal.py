@@ -147,7 +147,7 @@ def _end(number: int, frame: object) -> NoReturn:
     signal.signal(number, signal.SIG_IGN)
     try:
         files.remove_partial()
-        own_line = "\n" if sys.stderr.isatty() else ""  # after ^C, or a line of progress
+        own_line = "\n" if sys.stderr.isatty() else ""  # after ^C, or after a progress line
         os.write(2, f"{own_line}microslip: {STOPPED_BY[signal.Signals(number).name]}\n".encode())
     finally:
         os._exit(OF_SIGNAL + number)

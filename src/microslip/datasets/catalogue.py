@@ -96,7 +96,7 @@ FORMS = {
         ClosedForm(
             *("mu_static_stick_zone", paper.static_bore, _AMPLITUDE),
             *("Eq 33", "Eq 33, corrected", "whole stick zone (Eq 33, squared)"),
-            f"{_WHOLE} (Eq 33 with the square that Eq 10 demands)",
+            f"{_WHOLE} (Eq 33 with the square that Eq 10 requires)",
             exact=False,
             any_poisson=True,
         ),

@@ -83,9 +83,9 @@ def _encoding(name: Hashable, kind: str) -> dict:
     if kind == "f":
         return {"_FillValue": None}
     if kind in "OUT":
-        # Texts are arrays of characters.  HDF5 loses the type of variable-length strings if a file
-        # is opened again while it is open, and Python then crashes.  Each text has its
-        # own dimension of characters, so that a selection can be saved.
+        # Strings are stored as arrays of characters.  If a file that is open is opened again, HDF5
+        # loses the type of variable-length strings, and Python crashes.  Each variable has its own
+        # dimension of characters, so that a selection can be saved.
         return {"dtype": "S1", "char_dim_name": f"characters_of_{name}"}
     return {}
 

@@ -65,7 +65,7 @@ def to_xarray(record: Any) -> xr.Dataset:
     axes = AXES[kind]
     variables: dict[str, tuple] = {}
     about = {"record": kind.__name__}
-    plain = vars(record) if axes else record.to_dict()  # the lists of a dict have lost their axes
+    plain = vars(record) if axes else record.to_dict()  # lists in a dict have no axes
     for name, value in plain.items():
         if isinstance(value, np.ndarray):
             variables[name] = _axes_of(name, value, axes), value

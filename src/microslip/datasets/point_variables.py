@@ -140,6 +140,6 @@ def _shortened(text: str) -> str:
 
 
 def _more(name: str) -> dict[str, str]:
-    """Attributes of a variable beside its long_name and units."""
+    """Attributes of a variable besides its long_name and units."""
     flags = {"flag_meanings": "not_converged converged"} if name == "converged" else {}
     return flags | ({"description": DESCRIPTIONS[name]} if name in DESCRIPTIONS else {})

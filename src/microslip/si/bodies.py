@@ -52,7 +52,7 @@ class TwoBodies:
         for name in ("radius", "load", "mu"):
             checked(name, getattr(self, name), low_open=True)
         if self.first.rigid and self.second.rigid:
-            allowed = "allowed is an elastic body where the counterbody is rigid"
+            allowed = "allowed is an elastic body if the counterbody is rigid"
             raise InputError("material", "rigid", allowed)
 
     def with_load(self, load: float) -> TwoBodies:

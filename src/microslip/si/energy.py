@@ -53,8 +53,8 @@ def energy_fields(request: Request, answer: Result) -> dict[str, Any]:
 def _power_of_oscillation(request: Request, answer: Result) -> tuple[Estimate, float]:
     """Power of the oscillation, and the error of the dissipated power, W.
 
-    The drag is that at the velocity of the answer, which is smaller than the requested velocity if
-    this is outside the range of the solver.
+    The drag is computed at the velocity of the answer.  This velocity is smaller than the requested
+    one if the requested one is outside the range of the solver.
     """
     problem, dissipation = request.problem(), answer.dissipation
     assert dissipation is not None  # checked by energy_fields

@@ -28,7 +28,7 @@ ALLOWED = (
 )
 
 _SCALE = re.compile(r"(.*?)\s*(HV|HRC|HBW?|HBS|HR[ABD-Z]|HK|HS|Shore.*|Mohs)", re.S)
-"""Pattern of a hardness on a scale, also on one that is not supported."""
+"""Pattern of a hardness with its scale.  Not all of these scales are supported."""
 
 
 def read_hardness(name: str, value: Any) -> Quantity:

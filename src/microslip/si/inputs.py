@@ -263,7 +263,7 @@ def _elastic(young: Quantity, nu: Quantity) -> Body:
 
 
 def _of_material(name: Any) -> Body:
-    """The body for a Material or its name."""
+    """The body made of a Material, or of the material with this name."""
     if isinstance(name, Material):
         return Body(name, _numbers(name))
     body = material_named(name)
@@ -343,7 +343,7 @@ def _check_without_radii(arguments: Mapping[str, Any]) -> None:
 def _of_size(inputs: Inputs, plain: TwoBodies) -> TwoBodies:
     """A contact with a prescribed size and pressure; raises InputError.
 
-    plain: the bodies and the load, with any radius.
+    plain: the bodies and the load, with an arbitrary radius.
     """
     size = inputs.quantities["contact_radius"].si
     try:
@@ -397,7 +397,7 @@ def _check_hertzian(contact: TwoBodies, second: str, inputs: Inputs) -> None:
     except ArithmeticError:
         good = False
     if not good:
-        load = inputs.arguments["load"] or contact.load  # that of a search
+        load = inputs.arguments["load"] or contact.load  # of a search for the load
         raise InputError("load", load, f"with these bodies and radii, {OUT_OF_RANGE}")
 
 
@@ -452,7 +452,7 @@ def motion_of(motion: str, inputs: Inputs) -> RealMotion:
     """The motion; raises InputError."""
     kind = kind_of(motion)
     if kind.several and kind.stroke is None and not any(map(inputs.si, PARTS)):
-        allowed = "allowed is above 0 where no other amplitude is"
+        allowed = "allowed is a value above 0 if no other amplitude is above 0"
         raise inputs.error(kind.needed[0], allowed)
     values: dict[str, Any] = {name: inputs.si(name) for name in ("speed", *MOTION_ARGUMENTS)}
     name = motion if kind.stroke is None else kind.stroke.name

@@ -330,7 +330,7 @@ def _along(one: UncertainInput, request_at: RequestAt) -> tuple[np.ndarray, list
 def _static_of(
     prediction: Prediction, request: Request, draws: _Draws, ends: Ends, numbers: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray]:
-    """mu_static of all draws, and the error estimates.  numbers: as for _at."""
+    """mu_static of all draws, and the error estimates.  numbers: see `_at`."""
     static, static_error = prediction.mu_static, prediction.mu_static_error
     assert static is not None and static_error is not None  # the motion oscillates
     if not math.isfinite(static):

@@ -154,7 +154,7 @@ def predict(
         text such as "700 HV" or "60 HRC".  A density is in kg/m^3.  Hardnesses and densities are
         used for warnings only.
     wear_coefficient : quantity, optional
-        Wear coefficient of Archard's law, m^2/N: worn volume of a body divided by load and sliding
+        Wear coefficient of Archard's law, m^2/N: wear volume of a body divided by load and sliding
         distance, such as "1e-5 mm^3/N/m".
     tolerance : quantity
         Largest accepted absolute error of the ratio mu_macro.  Default: 1e-3.  Under a force, it is

@@ -127,10 +127,10 @@ class Prediction:
     energy_per_cycle_J, energy_per_cycle_error_J : float or None
         Energy dissipated by friction per period or per turn, J.
     wear_volume_per_cycle_m3, wear_volume_per_cycle_error_m3 : float or None
-        Worn volume of a body per period or per turn by Archard's law, m^3: the wear coefficient
+        Wear volume of a body per period or per turn by Archard's law, m^3: the wear coefficient
         times the dissipated energy, divided by mu.
     wear_depth_per_cycle_m, wear_depth_per_cycle_error_m : float or None
-        Mean worn depth over the contact area, m.
+        Mean wear depth over the contact area, m.
     uncertainty : mapping
         Standard uncertainties, 95 % intervals and probabilities of the outcomes for uncertain
         inputs, by column.  The columns are NAME_spread, NAME_low and NAME_high, `interval_method`

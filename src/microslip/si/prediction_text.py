@@ -223,7 +223,7 @@ class _Texts(dict[str, Any]):
             most = "the vibration adds nothing"
             if record.cycles_to_rest:
                 cycles = f"about {record.cycles_to_rest:.2g} cycles"
-                most = f"nine tenths of the part by the vibration within {cycles}"
+                most = f"nine tenths of the part caused by the vibration within {cycles}"
             lines += show("displacement", f"{{displacement_m}} forward, then no further: {most}")
             unknown = record.displacement_m is None
             lines += show("displacement", "unknown: {displacement_reason}", unknown)

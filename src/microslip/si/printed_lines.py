@@ -58,7 +58,7 @@ def prefixed(value: float, base: str) -> tuple[str, float]:
 
 
 def prefixed_text(value: float, base: str, digits: int = EXACT_DIGITS) -> str:
-    """Format an exact quantity in the unit with this prefix.  value: in the SI unit `base`."""
+    """Format an exact quantity with a metric prefix.  value: in the SI unit `base`."""
     name, size = prefixed(value, base)
     return number_text(value / size, unit=name, digits=digits)
 

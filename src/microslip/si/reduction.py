@@ -33,8 +33,9 @@ class _NoAnswerError(Exception):
 
 @dataclass(frozen=True)
 class _Line:
-    """Values of the quantity of a search, with decreasing friction, as a function of a real number,
-    called the place.
+    """The unknown quantity of a search as a function of a real number, called the place.
+
+    Friction decreases as the place increases.
 
     Attributes
     ----------

@@ -54,8 +54,8 @@ def predict_table(
     -------
     xarray.Dataset
         Every column of a Prediction, over the dimension `case`, with units.  Missing values are
-        NaN.  Lists of texts are joined by semicolons.  `case_NAME` contains the input column NAME.
-        `error` is the error message of a case without a prediction, else empty.
+        NaN.  Lists of strings are joined with semicolons.  `case_NAME` contains the input column
+        NAME.  `error` is the error message of a case without a prediction, else empty.
 
     Raises
     ------

@@ -109,8 +109,8 @@ def table_of(
 
 
 def parsed_file(argument: str, path: str | os.PathLike, parse: Callable[[bytes], T]) -> T:
-    """Return parse(content) of a CSV file.  Raises InputError about the argument if the file cannot
-    be read, or if `parse` raises ValueError."""
+    """Read a CSV file and return parse(content).  Raises InputError about the argument if the file
+    cannot be read, or if `parse` raises ValueError."""
     try:
         return parse(content_of(path))
     except OSError as error:

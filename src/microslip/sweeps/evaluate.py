@@ -23,9 +23,9 @@ Answer = TypeVar("Answer")
 log = logging.getLogger(__name__)
 
 REALS = {"velocity", "amplitude", "poisson", "tolerance", "travel", *DRIVES}
-"""Keys of requests whose values are numbers in texts."""
+"""Keys of requests whose values are numbers written as texts."""
 OTHER_KEYS = ("kind", "cpu")
-"""Keys of requests that are no arguments.  Measured times belong to a CPU."""
+"""Keys of requests that are not arguments.  A measured time is valid for one CPU only."""
 SHORTEST = 0.02
 """Shortest CPU time that is measured, in seconds.  Shorter runs are repeated and measured
 together."""
@@ -58,8 +58,8 @@ def request_of(kind: str, **arguments: Any) -> dict:
 
 
 def arguments(request: dict) -> dict:
-    """Return the keyword arguments of the function that computes a request.  Texts of numbers
-    become floats."""
+    """Return the keyword arguments of the function that computes a request.  Numbers written as
+    texts become floats."""
     return {
         name: float(value) if name in REALS and value is not None else value
         for name, value in request.items()

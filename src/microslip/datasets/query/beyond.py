@@ -218,7 +218,7 @@ def narrower(limits: Limits, edge: Estimate, amplitude: np.ndarray, narrowest: f
 
 
 def _near_full_friction(edge: Estimate, low: np.ndarray, share: np.ndarray) -> tuple:
-    """Estimate friction between the edge of a map, where `share` is 1, and 1, where it is 0.
+    """Estimate friction between its value at the edge of a map (share = 1) and 1 (share = 0).
 
     low: lower end of the bracket.  The value is `low` if friction at the edge is unknown.
     """

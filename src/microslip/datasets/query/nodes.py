@@ -183,7 +183,7 @@ def _values_at(nodes: xr.Dataset, poisson: float) -> tuple[np.ndarray, np.ndarra
     axis = Axis(ratios)
     (cell,), (share,), (index,), (weights,) = axis.cubics(np.array([poisson]))
     misses = axis.misses(values.reshape(len(ratios), -1)).reshape(values.shape)
-    # at the nodes around the cell, as along the other axes
+    # the largest miss at the nodes around the cell, as along the other axes
     around = misses[max(cell - 1, 0) : cell + 3].max(axis=0)
     error = 4.0 * share * (1.0 - share) * largest_around(around)
     return np.tensordot(weights, values[index], 1), errors[index].max(axis=0) + error

@@ -42,7 +42,7 @@ def has_room(datasets: Sequence[xr.Dataset]) -> bool:
 def draw(name: str, *datasets: xr.Dataset) -> Figure:
     """Draw two panels for each dataset: contours at every ratio, and the change over all ratios.
 
-    For the datasets that fit, see `has_room`.
+    The datasets must satisfy `has_room`.
     """
     figure = look.new_figure(look.DOUBLE, 2.8 * len(datasets))
     grid = figure.subplots(len(datasets), 2, width_ratios=(1.0, 1.15), squeeze=False)

@@ -154,7 +154,7 @@ def _numbers(
         allowed = f"a column {which}; allowed are some of {', '.join(COLUMNS)}"
         raise InputError("measured", title, allowed)
     if len({len(column) for column in table.columns.values()}) > 1:
-        raise InputError("measured", title, "columns of several lengths; allowed is one")
+        raise InputError("measured", title, "columns of several lengths; allowed is one length")
     rows, indices, left_out = [], [], []
     for index, row in enumerate(zip(*(table.columns[name] for name in names), strict=True)):
         if index in table.errors:
