@@ -150,8 +150,6 @@ def test_any_number_of_points_has_room_for_panels_and_legends(points):
     assert len(frames) == points and len(legends) == 2
     for index, box in enumerate(legends):
         assert not any(box.overlaps(other) for other in [*frames, *legends[index + 1 :]])
-    with pytest.raises(ValueError, match="no points or no trials"):
-        drawing.draw("accuracy_vs_work", {"accuracy_cost": data.isel(trial=[])})
 
 
 @pytest.mark.long
