@@ -20,7 +20,7 @@ QUICK = ("point", "history", "field", "period")
 """Kinds of requests to which TYPICAL applies."""
 START = 2.3
 """CPU seconds that a job takes in addition to solving, measured by benchmarks/first_run.py."""
-COMPILE = 50.0
+COMPILE = 30.0
 """CPU seconds that two jobs take to compile the solver, measured by benchmarks/first_run.py."""
 SOLVED = re.compile(r"^\d+ points, (\d+) computed in ([\d.]+) s of CPU time", re.MULTILINE)
 """Pattern of the line with the CPU time in the log of a batch."""
