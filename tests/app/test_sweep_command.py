@@ -44,7 +44,7 @@ REFUSED = [
     ("fig7", "TARGET = 'fig7'", "a figure such as fig2"),
     ("fig2_transverse", "TARGET = 'fig2_transverse'", "did you mean fig2_transverse_map?"),
     ("-n --config poisson", "--config = 'poisson'", "KEY=VALUE"),
-    ("-n --configfile none.yaml", "none.yaml: cannot be read: No such file"),
+    ("-n --configfile none.yaml", "--configfile = 'none.yaml'", "no such file", "a YAML file"),
     ("-n --configfile good.yaml --configfile good.yaml", "--configfile", "--configfile A B"),
     ("-n --configfile good.yaml tabs.yaml", "tabs.yaml: not valid YAML:"),
     (

@@ -21,6 +21,7 @@ from pathlib import Path
 from microslip.app.figure_targets import TARGETS
 from microslip.app.terminal import complain
 from microslip.config import load
+from microslip.config.records import CERTIFIED
 from microslip.foundation import extras, files
 from microslip.foundation.errors import CacheError, InputError
 from microslip.foundation.spec import near_miss
@@ -138,7 +139,7 @@ def _check(arguments: list[str]) -> None:
         if isinstance(count, int) and count < 1:
             raise InputError(f"--{name}", count, "allowed is a whole number of at least 1, or all")
     known = [*TARGETS, *drawing.SHORT_NAMES, *drawing.FIGURES]
-    of_configuration = drawing.figure_of(""), drawing.CERTIFIED  # prefixes of further names
+    of_configuration = drawing.figure_of(""), CERTIFIED  # prefixes of further names
     for target in options.targets:
         is_file = bool({".", "/"} & set(target))
         if not (is_file or target in known or target.startswith(of_configuration)):
@@ -160,6 +161,9 @@ def _check_configuration(options: argparse.Namespace) -> None:
     from snakemake.cli import parse_config
     from snakemake.utils import update_config
 
+    for file in options.configfile or ():
+        if not os.path.isfile(file):
+            raise InputError("--configfile", str(file), "no such file; allowed is a YAML file")
     paths = [os.path.relpath(file) for file in options.configfile or ()]
     if not paths:
         places = (Path(options.directory or "."), snakefile().parent)

@@ -2,7 +2,7 @@
 
 from typing import TYPE_CHECKING
 
-from microslip.config.records import LOOSEST_POINTS, CertifiedMap, Refusal, Sweep
+from microslip.config.records import CERTIFIED, LOOSEST_POINTS, CertifiedMap, Refusal, Sweep
 from microslip.foundation.canonical import number
 
 if TYPE_CHECKING:
@@ -40,7 +40,7 @@ def map_of(sweep: Sweep, adaptive: "Adaptive") -> CertifiedMap:
     error = float(number(adaptive.error))
     loosest = min(SHARE_OF_POINTS * error, LOOSEST_POINTS)
     tolerance = loosest if adaptive.tolerance is None else adaptive.tolerance
-    return CertifiedMap(f"certified_{sweep.name}", sweep, error, float(number(tolerance)))
+    return CertifiedMap(f"{CERTIFIED}{sweep.name}", sweep, error, float(number(tolerance)))
 
 
 def refuse_unsolvable(map_: CertifiedMap) -> None:

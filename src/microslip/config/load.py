@@ -18,6 +18,7 @@ import yaml
 from microslip.config import certified, extended, schema
 from microslip.config.axes import DRIVES, MOST_POINTS, refuse_crowd
 from microslip.config.records import (
+    CERTIFIED,
     MODELS_OF_MOTION,
     MOTION_OF_SWEEP,
     RESERVED,
@@ -317,7 +318,7 @@ def _sweep(name: str, entry: Any, folders: Iterable, strict: bool) -> Sweep:
 
 def _refuse_taken(name: str, others: Iterable[str]) -> None:
     """Raise Refusal if a sweep has the name of another result."""
-    if name in RESERVED or name in others or name.removeprefix("certified_") in others:
+    if name in RESERVED or name in others or name.removeprefix(CERTIFIED) in others:
         raise Refusal("another result has this name; allowed: a new one")
 
 

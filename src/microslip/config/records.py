@@ -15,10 +15,12 @@ HISTORIES_OF_SWEEP = {
     "continuous_bore": ("field", "transients"),
 }
 """Single runs for figures in a sweep's dataset, keyed by the name of the sweep."""
+CERTIFIED = "certified_"
+"""Prefix of the names of certified maps.  The figure of a map has the same name as its dataset."""
 RESERVED = (*MOTION_OF_SWEEP, "accuracy", "accuracy_cost", "stability", "claims", "propulsion")
 RESERVED += tuple(f"{name}_histories" for name in MOTION_OF_SWEEP)
 RESERVED += tuple(f"{name}_periods" for name in MOTION_OF_SWEEP)
-RESERVED += tuple(f"certified_{name}" for name in MOTION_OF_SWEEP)
+RESERVED += tuple(f"{CERTIFIED}{name}" for name in MOTION_OF_SWEEP)
 """Names of datasets and batch folders.  Other sweeps must not have these names."""
 MODELS_OF_MOTION = {
     "transverse": ("auto", "rigid", "slider", "dahl", "mdr", "radial", "polar", "cartesian"),

@@ -16,7 +16,7 @@ from typing import Any
 
 import xarray as xr
 
-from microslip.config.records import MOTION_OF_SWEEP
+from microslip.config.records import CERTIFIED, MOTION_OF_SWEEP
 from microslip.datasets.netcdf import group_names, refuse_oversized
 from microslip.foundation.errors import CacheError, InputError
 from microslip.foundation.files import refuse_no_folder
@@ -86,14 +86,18 @@ def _dataset(
     path = Path(name)
     if path.suffix != ".nc":
         path = Path(results, f"{name}.nc")
-        if str(name) not in MOTION_OF_SWEEP and not path.is_file():
+        of_workflow = str(name) in MOTION_OF_SWEEP or str(name).startswith(CERTIFIED)
+        if not of_workflow and not path.is_file():
             allowed = (
                 f"{near_miss(name, MOTION_OF_SWEEP)}allowed is {', '.join(MOTION_OF_SWEEP)}, "
                 f"another sweep with a dataset in {results}, or a path that ends in .nc"
             )
             raise InputError("name", name, allowed)
     if not path.is_file():
-        raise CacheError(f"{path} is not there: run the workflow first, or name its results folder")
+        target = " (snakemake certified)" if path.stem.startswith(CERTIFIED) else ""
+        raise CacheError(
+            f"{path} is not there: run the workflow first{target}, or name its results folder"
+        )
     if is_damaged(path):
         raise CacheError(f"{path} is damaged: run the workflow again, which makes it anew")
     refuse_oversized(path)

@@ -19,6 +19,7 @@ from collections.abc import Iterable, Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from microslip.config.records import CERTIFIED
 from microslip.foundation.files import writing_beside
 
 if TYPE_CHECKING:
@@ -62,8 +63,6 @@ certified maps and for groups in `extended`, see `figure_of`.
 SHORT_NAMES = {name.partition("_")[0]: name for name in FIGURES if name.startswith("fig")}
 """Full names of the paper's figures, keyed by their short names fig1 to fig6."""
 
-CERTIFIED = "certified_"
-"""Prefix of the names of certified maps. A map's figure has the same name as its dataset."""
 MOST_POISSONS = 4
 """Maximum number of Poisson's ratios in the figure `poisson`."""
 
