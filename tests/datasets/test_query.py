@@ -489,7 +489,7 @@ def test_what_cannot_be_opened_is_one_line(results, tmp_path):
     with pytest.raises(CacheError, match="bore.nc is not there"):
         open_map("bore", results)
     with pytest.raises(CacheError, match="snakemake certified"):
-        microslip.open_map("certified_bore", tmp_path)
+        open_map("certified_bore", results)
     path = results / "transverse.nc"
     stamps.write(results / stamps.stamp_of("transverse"), "f00d", [path])
     path.write_bytes(path.read_bytes()[:-100])
