@@ -54,7 +54,7 @@ def legend_above(axes: Axes, note: str = "", ncols: int = 2) -> None:
         title_fontsize=look.HEADING,
         alignment="left",
         loc="lower left",
-        bbox_to_anchor=(0.0, 1.0),
+        bbox_to_anchor=(0.0, 1.02),
         ncols=ncols,
         handlelength=2.2,
         handletextpad=0.6,
