@@ -18,8 +18,9 @@ TYPICAL = 0.025
 configuration and a tolerance of 1e-3."""
 QUICK = ("point", "history", "field", "period")
 """Kinds of requests to which TYPICAL applies."""
-START = 2.3
-"""CPU seconds that a job takes in addition to solving, measured by benchmarks/first_run.py."""
+START = 1.3
+"""CPU seconds that a job takes to import its libraries, as the first point of a Python process
+does: `python -c 'import microslip; microslip.solve("bore", 0.5, 1.0)'`."""
 COMPILE = 30.0
 """CPU seconds that two jobs take to compile the solver, measured by benchmarks/first_run.py."""
 SOLVED = re.compile(r"^\d+ points, (\d+) computed in ([\d.]+) s of CPU time", re.MULTILINE)

@@ -199,7 +199,7 @@ def rebalance(
         y[0, i] += near / system.solver.penalty[i]
 
 
-@kernel
+@kernel  # inlining would save a few per cent for rings, and cost seconds of compiling
 def _iterate(
     system: System, balance: Balance, step: Step, fields: Fields, most: int
 ) -> tuple[int, float, float]:
