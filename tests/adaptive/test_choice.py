@@ -10,11 +10,9 @@ import microslip
 from microslip.adaptive.choice import choose_model
 from microslip.adaptive.closed_forms import closed_form
 from microslip.models.registry import MODELS
-from microslip.motions.bore import Bore
 from microslip.motions.by_name import MOTIONS, motion_named
-from microslip.motions.continuous_bore import ContinuousBore
+from microslip.motions.named import Bore, ContinuousBore, Transverse
 from microslip.motions.problem import Problem
-from microslip.motions.transverse import Transverse
 from microslip.solver.discretise import Resolution
 from microslip.solver.static_run import simulate_static
 from microslip.theory import paper

@@ -11,8 +11,8 @@ from microslip.adaptive.choice import choose_model
 from microslip.estimate.ladder import LEVELS, Ladder, ladder_for
 from microslip.models.registry import MODELS
 from microslip.motions.by_name import MOTIONS, motion_named
+from microslip.motions.named import Transverse
 from microslip.motions.problem import Problem
-from microslip.motions.transverse import Transverse
 from microslip.solver.discretise import Resolution
 from microslip.solver.static_limit import at_turning_points
 

@@ -21,9 +21,8 @@ from microslip.models.reduced.slider import slider_contact
 from microslip.models.registry import MODELS
 from microslip.models.rings.contact import RadialContact
 from microslip.models.squares.contact import CartesianContact
-from microslip.motions.bore import Bore
+from microslip.motions.named import Bore, Transverse
 from microslip.motions.problem import Problem
-from microslip.motions.transverse import Transverse
 from microslip.solver.discretise import Resolution
 from microslip.solver.period_map import Goal, PeriodMap
 from microslip.solver.periodic import find_periodic_state

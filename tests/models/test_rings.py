@@ -9,7 +9,7 @@ from microslip.models.contact import energy_norm, forward_slip
 from microslip.models.path import EULER, SDIRK2, half_period_phases, make_path
 from microslip.models.reduced.slider import slider_contact
 from microslip.models.rings.contact import RadialContact
-from microslip.motions.transverse import Transverse
+from microslip.motions.named import Transverse
 
 # Friction of ``exponential_contact`` after six half periods from forward slip, from a solver in
 # complex numbers, Gauss-Seidel and dense Newton, which shares no code with this one

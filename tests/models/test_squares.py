@@ -14,8 +14,7 @@ from microslip.models.contact import forward_slip
 from microslip.models.path import EULER, SDIRK2, half_period_phases, make_path
 from microslip.models.squares.contact import CartesianContact
 from microslip.models.squares.convolution import convolve, influence, square_convolution, workspace
-from microslip.motions.bore import Bore
-from microslip.motions.transverse import Transverse
+from microslip.motions.named import Bore, Transverse
 from microslip.theory.hertz import G_STAR
 
 NUS = [0.0, 0.4]

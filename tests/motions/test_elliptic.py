@@ -149,3 +149,18 @@ def test_equal_loops_share_a_stored_point_in_the_folder_of_the_motion(tmp_path):
     assert one.mu_macro == other.mu_macro
     (point,) = tmp_path.rglob("*.json")
     assert point.relative_to(tmp_path).parts[:2] == ("points", "elliptic")
+
+
+def test_an_ellipse_without_a_lateral_part_is_the_longitudinal_motion():
+    """Its phase lead only shifts the time, so the same closed form applies."""
+    line = microslip.solve("elliptic:forward=0.5,lateral=0,phase=40", 0.1, 1.0)
+    exact = microslip.solve("longitudinal", 0.1, 0.5)
+    assert line.model == exact.model
+    assert line.mu_macro == pytest.approx(exact.mu_macro, abs=1e-9)
+
+
+def test_an_ellipse_without_a_forward_part_has_the_symmetries_of_the_transverse_motion():
+    """The number of cycles of a direction that does not oscillate has no effect."""
+    line, sine = motion_named("elliptic:forward=0,forward_cycles=2"), motion_named("transverse")
+    assert line.turns(0.1, 1.0) == sine.turns(0.1, 1.0)
+    assert (line.half_period_mirror, line.straight, line.cycles) == (True, True, 1)

@@ -22,10 +22,8 @@ from microslip.motions import by_name
 from microslip.motions.body_contacts import BodyContact
 from microslip.motions.by_name import MOTIONS
 from microslip.motions.drive import Force, Spring
-from microslip.motions.elliptic import Elliptic
+from microslip.motions.named import Elliptic, Transverse, Zigzag
 from microslip.motions.problem import Problem
-from microslip.motions.transverse import Transverse
-from microslip.motions.zigzag import Zigzag
 from microslip.solver.discretise import Resolution
 from microslip.solver.static_run import simulate_static
 from microslip.theory import paper
@@ -108,7 +106,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from microslip.motions.transverse import Transverse
+from microslip.motions.named import Transverse
 
 
 @dataclass(frozen=True)
@@ -159,7 +157,7 @@ BROKEN = {
     "no_package.py": ("\nimport no_such_package", "ModuleNotFoundError in line 2"),
     "number.py": ("NUMBER = 3", "no Motion named Number"),
     "fails.py": (
-        "from microslip.motions.transverse import Transverse\nclass Fails(Transverse):\n"
+        "from microslip.motions.named import Transverse\nclass Fails(Transverse):\n"
         "    def __init__(self):\n        1 / 0",
         "ZeroDivisionError in line 4",
     ),

@@ -285,7 +285,7 @@ def test_an_oscillating_load_alone_is_its_closed_form():
 
 OWN_BORE = """from dataclasses import dataclass
 
-from microslip.motions.bore import Bore
+from microslip.motions.named import Bore
 
 
 @dataclass(frozen=True)

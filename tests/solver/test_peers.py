@@ -18,8 +18,8 @@ from microslip.models.path import EULER, make_path
 from microslip.models.registry import MODELS
 from microslip.models.squares.contact import CartesianContact
 from microslip.motions.by_name import MOTIONS
+from microslip.motions.named import Transverse
 from microslip.motions.problem import Problem
-from microslip.motions.transverse import Transverse
 from microslip.solver import method_names
 from microslip.solver.discretise import Resolution
 from microslip.solver.methods import aspher

@@ -8,9 +8,8 @@ import pytest
 from microslip.models.contact import energy_norm, forward_slip
 from microslip.models.path import EULER, SDIRK2, half_period_phases, make_path
 from microslip.models.registry import MODELS
-from microslip.motions.bore import Bore
+from microslip.motions.named import Bore, Transverse
 from microslip.motions.problem import Problem
-from microslip.motions.transverse import Transverse
 from microslip.solver import discretise
 from microslip.solver.discretise import Resolution, build_contact
 from microslip.solver.period_map import Goal, PeriodMap

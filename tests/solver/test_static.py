@@ -5,9 +5,8 @@ import pytest
 
 import microslip
 from microslip.models.registry import MODELS
-from microslip.motions.bore import Bore
+from microslip.motions.named import Bore, Transverse
 from microslip.motions.problem import Problem
-from microslip.motions.transverse import Transverse
 from microslip.solver.static_limit import residual_part, static_state
 from microslip.theory import hertz, paper
 

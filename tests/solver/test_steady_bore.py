@@ -7,7 +7,7 @@ import microslip
 from microslip.adaptive.history import STARTS
 from microslip.models.polar.contact import PolarContact
 from microslip.models.squares.contact import CartesianContact
-from microslip.motions.continuous_bore import ContinuousBore
+from microslip.motions.named import ContinuousBore
 from microslip.motions.problem import Problem
 from microslip.solver.steady import steady_state
 from microslip.theory import hertz, paper

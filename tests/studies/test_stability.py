@@ -9,9 +9,8 @@ from microslip.models.contact import FORWARD, StepFailure, energy_norm, forward_
 from microslip.models.path import SDIRK2, make_path
 from microslip.models.reduced.slider import slider_contact
 from microslip.models.rings.contact import RadialContact
-from microslip.motions.bore import Bore
+from microslip.motions.named import Bore, Transverse
 from microslip.motions.problem import Problem
-from microslip.motions.transverse import Transverse
 from microslip.solver.discretise import Resolution, build_contact, path_of
 from microslip.solver.method_names import method_named
 from microslip.solver.methods import _searches

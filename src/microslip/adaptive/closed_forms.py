@@ -109,14 +109,14 @@ def closed_form(problem: Problem, tolerance: float) -> Exact | None:
     if not motion.periodic:
         return _steady_bore(problem) if motion.name == "continuous-bore" else None
     transformed = problem.follows or problem.backward
-    if motion.closed_form is not None and problem.poisson == 0.0 and not transformed:
+    if problem.poisson == 0.0 and not transformed:
         exact = motion.closed_form(velocity, amplitude, problem.pressure)
         if exact is not None:
             error = WHOLE_ROUNDING if velocity > 0.0 else ROUNDING
             mu, energy = exact
             return _exact(mu, energy, error if problem.pressure.hertzian else OF_RECORD)
     if velocity == 0.0:
-        limit = None if motion.closed_form is not None else STATIC_LIMITS.get(motion.name)
+        limit = STATIC_LIMITS.get(motion.name)
         if limit is None or (problem.poisson > 0.0 and not limit.any_poisson):
             return None
         return _static(problem, limit.function)

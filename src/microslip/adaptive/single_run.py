@@ -15,10 +15,9 @@ from microslip.adaptive.choice import method_refusal
 from microslip.models.contact import forward_slip
 from microslip.models.path import EULER, half_period_phases, make_path
 from microslip.models.registry import MODELS
-from microslip.motions.bore import Bore
 from microslip.motions.by_name import motion_named
+from microslip.motions.named import Bore, Transverse
 from microslip.motions.problem import Problem
-from microslip.motions.transverse import Transverse
 from microslip.pressures.by_name import pressure_named
 from microslip.pressures.hertz import HERTZ
 from microslip.solver.discretise import Resolution, build_contact

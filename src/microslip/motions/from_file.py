@@ -11,6 +11,8 @@ A column `time` is used to check that the samples are equally spaced.
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 from microslip.foundation.csv_text import PURE
 from microslip.foundation.named_files import DECIMALS, GRID, FileReader, NamedFile
 from microslip.foundation.number_table import NumberTable, read_numbers
@@ -73,7 +75,8 @@ def _of_content(file: NamedFile, content: bytes) -> Sampled:
                 f"{name} has the unit {unit}, which microslip predict accepts; allowed here: "
                 "dimensionless numbers without a unit"
             )
-    return Sampled.of_columns({n: table.columns.get(n) for n in COLUMNS}, file.name)
+    samples = Sampled.of_columns({n: table.columns.get(n) for n in COLUMNS})
+    return replace(samples, text=file.name)
 
 
 read_motion = FileReader("motion", _of_content)

@@ -1,20 +1,30 @@
-"""Base class of motions: displacement as a function of the phase, and symmetries.
+"""Motions: forward sliding, and one wave for each direction that oscillates.
 
 *Forward* is the direction of sliding, and *lateral* is perpendicular to it.  A positive angle moves
 points with a positive lateral coordinate forward.  Displacements are in u_lim, angles in u_lim / a,
-and time is the phase omega t.
+and time is the phase omega t.  With the amplitude A, a wave adds to its direction
+
+    A share sin(cycles phase + lead).
+
+The unit of an angle is the largest angle of a bore with the amplitude 1, phi_lk(a/2).  The normal
+load, or the indentation depth, divided by its reference value is 1 plus its wave.  There is no
+contact while this sum is below 0.  The reference values are those without oscillation.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable
+import math
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
-from typing import ClassVar
+from functools import cached_property
+from typing import ClassVar, NamedTuple
 
 import numpy as np
 
 from microslip.foundation import spec
+from microslip.foundation.errors import InputError
 from microslip.pressures.pressure import Pressure
+from microslip.theory import hertz, masing, oscillating_load, paper
 
 FOCUS_RANGE = (0.05, 0.9995)
 """Range of radii towards which rings are graded.  A smaller stick zone carries almost no load."""
@@ -23,93 +33,96 @@ LOOP = np.linspace(0.0, 2.0 * np.pi, 721)
 """Phases of a period at which the extremes of an oscillation are evaluated."""
 HALF_PERIOD = (-np.pi / 2, np.pi / 2)
 """Phases of two consecutive turning points of a sine."""
-WHOLE_PERIOD = (*HALF_PERIOD, 1.5 * np.pi)
-"""Phases of three consecutive turning points of a sine.  They span a whole period."""
+MOST_CYCLES = 20
+"""Largest number of cycles in a period."""
+PLANE = ("forward", "lateral", "angle")
+NORMAL = ("load", "indentation")
+
+
+class Wave(NamedTuple):
+    """Oscillation along one direction.
+
+    Parameters
+    ----------
+    share : float
+        Amplitude of the wave divided by the amplitude of the motion, 0 to 1.
+    cycles : int
+        Number of cycles in a period, 1 to 20.
+    degrees : float
+        Phase lead, in degrees.
+    form : callable
+        Wave form, a function of an array of phases.  It has the symmetries and the turning points
+        of the sine: form(-x) = -form(x), form(pi - x) = form(x), and it rises from -1 at -pi/2 to 1
+        at pi/2.
+    """
+
+    share: float = 1.0
+    cycles: int = 1
+    degrees: float = 0.0
+    form: Callable[[np.ndarray], np.ndarray] = np.sin
+
+    @property
+    def lead(self) -> float:
+        """Phase lead in radians."""
+        return float(np.deg2rad(self.degrees % 360.0))
+
+    def __call__(self, phase: np.ndarray) -> np.ndarray:
+        return self.share * self.form(self.cycles * phase + self.lead)
 
 
 @dataclass(frozen=True)
 class Motion:
     """A prescribed motion.
 
-    Each motion is a subclass in its own file.  The fields of the class are the numbers that may
-    follow the motion's name in a text such as "elliptic:forward=0.5,phase=30"; `str` returns this
-    text.  The motion's name is derived from the class name: ContinuousBore has the name
-    "continuous-bore".
+    A subclass declares its waves.  All symmetries follow from them.  The fields of the class are
+    the numbers that may follow the motion's name in a text such as
+    "elliptic:forward=0.5,phase=30"; `str` returns this text.  The motion's name is derived from the
+    class name: ContinuousBore has the name "continuous-bore".  A motion that is not a sum of waves
+    overrides `displacement`, and the symmetries that it has.
 
     Attributes
     ----------
+    waves : mapping of str to Wave
+        Wave of each direction: some of "forward", "lateral", "angle", and "load" or "indentation".
     summary, numbers : str
         Description of the motion in one line, and description of its numbers.
     velocity_label, amplitude_label : str
         Formulas of the dimensionless velocity and amplitude.
     periodic : bool
         Whether the motion has an amplitude and the period 2 pi; otherwise it is steady.
-    rotates : bool
-        Whether the contact rotates.  In a rotation, the tractions depend on the polar angle.
-    half_period_mirror : bool
-        Whether the second half of a period equals the first half with the lateral displacement and
-        the angle reversed.  If False, a march covers a whole period.
-    straight : bool
-        Whether the oscillation alone follows a straight line and turns at the phases -pi/2 and
-        pi/2.
-    propels : bool
-        Whether the oscillation alone can propel the contact, so that the mean friction can be
-        negative; see `symmetry.reverses_forward`.
-    cycles : int
-        Largest number of cycles that a component has in a period.
-    half_disc : bool
-        Whether the tractions on one half of a round contact follow by symmetry from those on the
-        other half.  The symmetry is a mirror across the lateral axis for rotations, and a point
-        reflection for other motions.  A rotation combined with a lateral motion has neither
-        symmetry.
-    loads : bool
-        Whether the normal load oscillates, as described by `depth`, `deepest` and `mean_load`.
+    edge_velocity : bool
+        Whether the velocity is divided by the largest speed of the edge in rotation, instead of
+        omega u_lim.
     readings : tuple of Motion
         Alternative motions through the same samples.  The difference in friction between these
         motions serves as an error estimate.
+
+    Raises
+    ------
+    InputError
+        If a number is not finite, if a share is outside 0 to 1, if a number of cycles is not an
+        integer from 1 to 20, or if no direction oscillates.
     """
 
+    waves: ClassVar[Mapping[str, Wave]] = {}
     summary: ClassVar[str] = ""
     numbers: ClassVar[str] = ""
     velocity_label: ClassVar[str] = "v0 / (omega u_lim)"
     amplitude_label: ClassVar[str] = "A"
     periodic: ClassVar[bool] = True
-    loads: ClassVar[bool] = False
-    closed_form: ClassVar[Callable | None] = None
-    """closed_form(velocity, amplitude, pressure) -> mean friction and dissipated energy per period
-    at nu = 0.  Velocity 0 is the static limit.  The function returns None for arguments without a
-    closed form.  The attribute is None for motions without a closed form."""
-
-    @property
-    def readings(self) -> tuple[Motion, ...]:
-        return ()
-
-    @property
-    def rotates(self) -> bool:
-        return False
-
-    @property
-    def half_period_mirror(self) -> bool:
-        return False
-
-    @property
-    def straight(self) -> bool:
-        return True
-
-    @property
-    def propels(self) -> bool:
-        return False
-
-    @property
-    def cycles(self) -> int:
-        return 1
-
-    @property
-    def half_disc(self) -> bool:
-        return True
+    edge_velocity: ClassVar[bool] = False
 
     def __post_init__(self) -> None:
         spec.refuse_strange(self, "motion")
+        shares = {name: wave.share for name, wave in self.waves.items()}
+        spec.refuse_shares(self.name, "motion", shares)
+        cycles = {
+            f"{'normal' if name in NORMAL else name}_cycles": wave.cycles
+            for name, wave in self.waves.items()
+        }
+        spec.refuse_counts(self.name, "motion", cycles, MOST_CYCLES)
+        if shares and not any(shares.values()):
+            raise InputError("motion", self.name, f"allowed is {' or '.join(shares)} above 0")
 
     @property
     def name(self) -> str:
@@ -119,32 +132,108 @@ class Motion:
     def __str__(self) -> str:
         return self.name
 
+    @property
+    def readings(self) -> tuple[Motion, ...]:
+        return ()
+
+    # Symmetries
+
+    @cached_property
+    def components(self) -> dict[str, Wave]:
+        """Waves with a share above 0.  The phase lead of a single wave has no effect, so it is
+        0."""
+        waves = {name: wave for name, wave in self.waves.items() if wave.share}
+        if len(waves) == 1:
+            return {name: wave._replace(degrees=0.0) for name, wave in waves.items()}
+        return waves
+
+    @property
+    def loads(self) -> bool:
+        """Whether the normal load oscillates, as described by `depth`, `deepest` and
+        `mean_load`."""
+        return not self.components.keys().isdisjoint(NORMAL)
+
+    @property
+    def rotates(self) -> bool:
+        """Whether the contact rotates.  In a rotation, the tractions depend on the polar angle."""
+        return "angle" in self.components
+
+    @property
+    def half_disc(self) -> bool:
+        """Whether the tractions on one half of a round contact follow by symmetry from those on the
+        other half.
+
+        The symmetry is a mirror across the lateral axis for rotations, and a point reflection for
+        other motions.  A rotation combined with a lateral motion has neither symmetry.
+        """
+        return not {"angle", "lateral"} <= self.components.keys()
+
+    @property
+    def half_period_mirror(self) -> bool:
+        """Whether the second half of a period equals the first half with the lateral displacement
+        and the angle reversed.  If False, a march covers a whole period."""
+        odd = {name: wave.cycles % 2 == 1 for name, wave in self.components.items()}
+        return bool(odd) and all(one == (name in ("lateral", "angle")) for name, one in odd.items())
+
+    @property
+    def straight(self) -> bool:
+        """Whether the oscillation alone follows a straight line and turns at the phases -pi/2 and
+        pi/2."""
+        plane = [wave for name, wave in self.components.items() if name in PLANE]
+        if self.loads:
+            return not plane
+        return all(wave.cycles == 1 and wave.lead % np.pi == 0.0 for wave in plane)
+
+    @property
+    def propels(self) -> bool:
+        """Whether the oscillation alone can propel the contact, so that the mean friction can be
+        negative.
+
+        It cannot if the oscillation at a later phase equals the original one with its forward
+        component reversed.  Let d be the greatest common divisor of the numbers of cycles.  After a
+        fraction 1/(2 d) of the period, every component has the same value as before, or minus this
+        value if its number of cycles is an odd multiple of d.  The forward component must change
+        its sign, and the load must not.  The signs of lateral and angle do not matter: under a
+        symmetric pressure, two images of a solution are also solutions.  The mirror image reverses
+        forward and angle.  The point reflection q(-forward, -lateral) reverses the angle; it is a
+        solution because the influence of one point on another is an even function of the vector
+        between them.  Together with -q, which reverses all components, these images give every
+        combination of signs.  In all images, the forward force has the sign of the forward motion.
+        """
+        if "forward" not in self.components:
+            return False
+        cycles = {name: int(wave.cycles) for name, wave in self.components.items()}
+        common = math.gcd(*cycles.values())
+        load = max(cycles.get(name, 0) for name in NORMAL)
+        return cycles["forward"] // common % 2 == 0 or load // common % 2 == 1
+
+    @property
+    def cycles(self) -> int:
+        """Largest number of cycles that a component has in a period."""
+        return max((int(wave.cycles) for wave in self.components.values()), default=1)
+
+    @property
+    def _sines(self) -> bool:
+        """Whether the displacement is a sum of sines, so that closed forms for sines apply."""
+        sines = all(wave.form is np.sin for wave in self.components.values())
+        return sines and type(self).displacement is Motion.displacement
+
+    # Displacement in the plane
+
     def displacement(
         self, phase: np.ndarray, velocity: float, amplitude: float, poisson: float
     ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Forward, lateral and angular displacement, each with the shape of `phase`."""
-        raise NotImplementedError
-
-    def focus(self, velocity: float, amplitude: float, pressure: Pressure) -> float | None:
-        """Radius of a kink in the traction, towards which rings are graded; None without a kink."""
-        return None
-
-    def turns(self, velocity: float, amplitude: float) -> tuple[float, ...]:
-        """Phases of the turning points during a march, including its start and its end.  A march
-        covers half a period or a period."""
-        return HALF_PERIOD if self.half_period_mirror else WHOLE_PERIOD
-
-    def depth(self, phase: np.ndarray, amplitude: float, pressure: Pressure) -> np.ndarray:
-        """Indentation depth divided by its reference value, >= 0; 0 if there is no contact."""
-        return np.ones_like(phase)
-
-    def deepest(self, amplitude: float, pressure: Pressure) -> float:
-        """Largest value of `depth` in a period."""
-        return 1.0
-
-    def mean_load(self, amplitude: float, pressure: Pressure) -> float:
-        """Mean normal load divided by its reference value."""
-        return 1.0
+        """Forward, lateral and angular displacement, each with the shape of `phase` (Eqs 1, 2, 4,
+        23, 27 and 28)."""
+        forward, lateral, turn = (
+            amplitude * self.components[name](phase)
+            if name in self.components
+            else np.zeros_like(phase)
+            for name in PLANE
+        )
+        unit = float(hertz.bore_angle(1.0, poisson))
+        speed = velocity * unit * amplitude if self.edge_velocity else velocity
+        return speed * phase + forward, lateral, unit * turn
 
     def drift(self, velocity: float, amplitude: float, poisson: float) -> float:
         """Mean forward displacement per radian of phase, in u_lim.
@@ -163,8 +252,103 @@ class Motion:
         motions."""
         if not self.periodic:
             return 0.0
-        ends = self.displacement(np.array([-0.5, 0.5]) * np.pi, 0.0, amplitude, poisson)
+        ends = self.displacement(np.array(HALF_PERIOD), 0.0, amplitude, poisson)
         return 0.5 * max(float(abs(part[1] - part[0])) for part in ends)
+
+    @cached_property
+    def reach(self) -> float:
+        """Largest distance from the mean position, divided by the amplitude."""
+        forward, lateral = (
+            self.components[name](LOOP) if name in self.components else 0.0 for name in PLANE[:2]
+        )
+        return float(np.max(np.hypot(forward, lateral)))
+
+    def focus(self, velocity: float, amplitude: float, pressure: Pressure) -> float | None:
+        """Radius of a kink in the traction, towards which rings are graded; None without a kink.
+
+        Under an oscillating load, it is the smallest contact radius divided by the largest.  For a
+        translation, it is the stick radius of a straight oscillation with the same reach (Eq 8).
+        For a rotation, it is Lubkin's stick radius (Eq 30), under any pressure: this grading does
+        no harm there.
+        """
+        if self._normal.share:
+            smallest = pressure.radius(self._extreme(-1.0, amplitude, pressure))
+            return within_rings(smallest / pressure.radius(self.deepest(amplitude, pressure)))
+        if self.reach > 0.0:
+            return stick_focus(amplitude * self.reach, pressure)
+        if "angle" not in self.components:
+            return None
+        turn = amplitude * self.components["angle"].share
+        return within_rings(float(paper.bore_stick_radius(turn)))
+
+    def turns(self, velocity: float, amplitude: float) -> tuple[float, ...]:
+        """Phases of the turning points during a march, including its start and its end.
+
+        A march covers half a period or a period.  It begins at the smallest load if the load
+        oscillates.  A longitudinal motion v t + A sin t turns where its velocity changes sign.
+        """
+        if self._longitudinal and velocity < amplitude * self.reach:
+            back = float(np.arccos(-velocity / (amplitude * self.reach)))
+            return -back, back, 2.0 * np.pi - back
+        first = -0.5 * np.pi / self._normal.cycles
+        return tuple(first + np.pi * np.arange(2 if self.half_period_mirror else 3))
+
+    # Normal load
+
+    @property
+    def _normal(self) -> Wave:
+        waves = [self.components[name] for name in NORMAL if name in self.components]
+        return waves[0] if waves else Wave(0.0)
+
+    def _depth_at(self, height: np.ndarray, pressure: Pressure) -> np.ndarray:
+        """Indentation depth at a load or an indentation; 0 below contact."""
+        height = np.maximum(height, 0.0)
+        return pressure.of_load(height) if "load" in self.components else height
+
+    def _extreme(self, sign: float, amplitude: float, pressure: Pressure) -> float:
+        """Smallest (sign = -1) or largest (sign = 1) indentation depth."""
+        height = np.array(1.0 + sign * amplitude * self._normal.share)
+        return float(self._depth_at(height, pressure))
+
+    def depth(self, phase: np.ndarray, amplitude: float, pressure: Pressure) -> np.ndarray:
+        """Indentation depth divided by its reference value, >= 0; 0 if there is no contact."""
+        return self._depth_at(1.0 + amplitude * self._normal(phase), pressure)
+
+    def deepest(self, amplitude: float, pressure: Pressure) -> float:
+        """Largest value of `depth` in a period."""
+        return self._extreme(1.0, amplitude, pressure) if self.loads else 1.0
+
+    def mean_load(self, amplitude: float, pressure: Pressure) -> float:
+        """Mean normal load divided by its reference value."""
+        if not self.loads:
+            return 1.0
+        size, by_load = amplitude * self._normal.share, "load" in self.components
+        return oscillating_load.mean_load(size, by_load, pressure)
+
+    # Closed forms
+
+    @property
+    def _longitudinal(self) -> bool:
+        return self.components.keys() == {"forward"} and self.straight and self._sines
+
+    def closed_form(
+        self, velocity: float, amplitude: float, pressure: Pressure
+    ) -> tuple[float, float] | None:
+        """Mean friction and dissipated energy per period at nu = 0; None without a closed form.
+
+        Velocity 0 is the static limit.  A motion along the direction of sliding follows Masing's
+        rule under every pressure with a known loading curve.  An oscillating load alone has a
+        closed form for axisymmetric indenters (theory/oscillating_load.py).
+        """
+        if self._longitudinal and pressure.loading is not None:
+            place = velocity, amplitude * self.reach, pressure.loading
+            return float(masing.longitudinal(*place)), masing.longitudinal_energy(*place)
+        if self.loads and len(self.components) == 1 and self._sines and pressure.is_indenter:
+            slow, size = velocity / self._normal.cycles, amplitude * self._normal.share
+            by_load = "load" in self.components
+            mu = oscillating_load.friction(slow, size, by_load, pressure)
+            return mu, 2.0 * np.pi * velocity * mu * self.mean_load(amplitude, pressure)
+        return None
 
 
 def within_rings(radius: float) -> float:

@@ -17,14 +17,11 @@ import numpy as np
 
 from microslip.foundation.arguments import LARGEST
 from microslip.foundation.errors import InputError
-from microslip.motions.motion import LOOP, Motion, stick_focus, within_rings
+from microslip.motions.motion import LOOP, NORMAL, PLANE, Motion, stick_focus, within_rings
 from microslip.pressures.pressure import Pressure
 
 if TYPE_CHECKING:
     from scipy.interpolate import CubicSpline
-
-PLANE = ("forward", "lateral", "angle")
-NORMAL = ("load", "indentation")
 
 
 @dataclass(frozen=True, eq=False)
@@ -46,7 +43,7 @@ class _Samples(Motion):
     by_load: bool
 
     @property
-    def loads(self) -> bool:  # type: ignore[override]  # a class attribute of motions with formulas
+    def loads(self) -> bool:
         return self.height is not None
 
     @property
@@ -137,7 +134,8 @@ class Sampled(_Samples):
     by_load : bool
         Whether `height` is a load.
     text : str
-        Name of the motion, with a digest of the numbers.
+        Name of the motion, with a digest of the numbers or of their file.  Motions with equal names
+        are equal.
     """
 
     text: str
@@ -146,7 +144,7 @@ class Sampled(_Samples):
     amplitude_label = "factor of the samples"
 
     @classmethod
-    def of_columns(cls, columns: Mapping[str, Any], text: str = "") -> Sampled:
+    def of_columns(cls, columns: Mapping[str, Any]) -> Sampled:
         """Create the motion from named columns; see PLANE and NORMAL.  A quantity is constant if
         its column is None.
 
@@ -157,12 +155,10 @@ class Sampled(_Samples):
             FEWEST_SAMPLES rows.
         """
         rows, height, by_load = _rows_of(columns, FEWEST_SAMPLES)
-        if not text:
-            parts = [rows] if height is None else [rows, height]
-            digest = hashlib.sha256(b"".join(one.tobytes() for one in parts)).hexdigest()[:16]
-            kind = "" if height is None else ",load" if by_load else ",indentation"
-            text = f"array:sha256={digest}{kind}"
-        return cls(rows, height, by_load, text)
+        parts = [rows] if height is None else [rows, height]
+        digest = hashlib.sha256(b"".join(one.tobytes() for one in parts)).hexdigest()[:16]
+        kind = "" if height is None else ",load" if by_load else ",indentation"
+        return cls(rows, height, by_load, f"array:sha256={digest}{kind}")
 
     @property
     def name(self) -> str:
@@ -180,7 +176,7 @@ class Sampled(_Samples):
         return _spline(self.rows - self.rows.mean(axis=0))
 
     @cached_property
-    def _normal(self) -> CubicSpline:
+    def _height_spline(self) -> CubicSpline:
         height = np.ones(len(self.rows)) if self.height is None else self.height
         return _spline(height - 1.0)
 
@@ -254,11 +250,13 @@ class Sampled(_Samples):
         return 0.5 * amplitude * float(np.ptp(self._loop, axis=0).max())
 
     def depth(self, phase: np.ndarray, amplitude: float, pressure: Pressure) -> np.ndarray:
-        return self._depth_at(np.maximum(1.0 + amplitude * self._normal(phase), 0.0), pressure)
+        return self._depth_at(
+            np.maximum(1.0 + amplitude * self._height_spline(phase), 0.0), pressure
+        )
 
     def _extremes(self, amplitude: float, pressure: Pressure) -> tuple[float, float]:
         """Smallest and largest indentation."""
-        turns = self._normal.derivative().roots(extrapolate=False)
+        turns = self._height_spline.derivative().roots(extrapolate=False)
         phases = np.concatenate([[0.0], turns[np.isfinite(turns)]])
         depths = self.depth(phases, amplitude, pressure)
         return float(depths.min()), float(depths.max())

@@ -24,7 +24,7 @@ The bounds hold for any nu and any stiffness.  The arguments are the paper's dim
 Friction never decreases as the forward velocity increases.  Coulomb's law at a given pressure is
 monotone, and the half-space is elastic.  So (mu1 - mu2)(v1 - v2) >= 0 for periodic states of the
 same oscillation at the velocities v1 and v2.  Friction is odd in the velocity if the oscillation
-reverses its forward motion half a period later under the same load (motions/symmetry.py).  So it is
+reverses its forward motion half a period later under the same load (Motion.propels).  So it is
 never negative for v > 0.  Other motions can propel the contact (Motion.propels).
 """
 
