@@ -70,10 +70,15 @@ def lines(content: bytes, encoding: str = "utf-8") -> Iterator[tuple[int, str]]:
             yield number, line.rstrip("\r")
 
 
+def all_words(line: str, separator: str) -> list[str]:
+    """Cells of a line, without surrounding spaces and quotes."""
+    return [word.strip().strip("\"'").strip() for word in line.split(separator)]
+
+
 def words(line: str, separator: str) -> list[str]:
     """Cells of the heading line, without surrounding spaces and quotes.  Empty cells at the end are
     omitted."""
-    cells = [word.strip().strip("\"'").strip() for word in line.split(separator)]
+    cells = all_words(line, separator)
     while len(cells) > 1 and not cells[-1]:
         cells.pop()
     return cells

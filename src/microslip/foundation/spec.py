@@ -60,8 +60,23 @@ def _float(argument: str, text: str, plain: str) -> float:
     return number
 
 
+HALVES = {
+    "diameter": "radius",
+    "counter_diameter": "counter_radius",
+    "contact_diameter": "contact_radius",
+    "stroke": "amplitude",
+    "peak_to_peak": "amplitude",
+}
+"""Names of arguments that are half of another quantity, keyed by this quantity."""
+
+
 def near_miss(name: object, names: Iterable[str]) -> str:
-    """'did you mean NAME? ' for the most similar name, or '' if there is none."""
+    """'did you mean NAME? ' for the most similar name, or '' if there is none.  If the name is
+    twice an argument, the text says so."""
+    half = HALVES.get(str(name).lstrip("-").replace("-", "_"), "")
+    for one in names:
+        if half and one.lstrip("-").replace("-", "_") == half:
+            return f"{one} is half of it; "
     near = difflib.get_close_matches(str(name), names, n=1)
     return f"did you mean {near[0]}? " if near else ""
 

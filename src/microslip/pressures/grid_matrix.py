@@ -52,17 +52,25 @@ def grid(
     """
     forward, lateral, units = read_pitch(pitch)
     lines = [(n, *_split(line, decimal)) for n, line in csv_text.lines(content, encoding)]
-    if lines and lines[-1][-1] == END:
+    if lines and _trimmed(lines[-1][-1]) == END:
         lines.pop()
-    header = next((i for i, (*_, cells) in enumerate(lines) if all(map(_is_number, cells))), None)
+    filled = [[cell for cell in cells if cell] for *_, cells in lines]
+    header = next((i for i, cells in enumerate(filled) if all(map(_is_number, cells))), None)
     if header is None:
         raise ValueError(f"no row of numbers; {ALLOWED}")
+    widest = max(len(_trimmed(cells)) for *_, cells in lines[header:])
+    for where, _, cells in lines[header:]:
+        if "" in cells[:widest]:
+            empty = f"cell {cells.index('') + 1} is empty; {ALLOWED}, with 0 where nothing presses"
+            raise ValueError(f"line {where}: {empty}")
+    lines = [(where, separator, _trimmed(cells)) for where, separator, cells in lines]
     start, separator, first = lines[header]
-    for where, _, cells in lines[:header]:
+    for where, own, cells in lines[:header]:
         titles = filter(None, map(csv_text.HEADING.fullmatch, cells))
         if {title[1].lower() for title in titles} == set(COLUMNS):
             raise ValueError(f"line {where}: a heading of columns; allowed without pitch only")
-        if len(cells) == len(first) and any(map(_is_number, cells)):
+        count = sum(map(_is_number, cells))
+        if own == separator and (count > 1 or count and len(cells) == len(first)):
             text = next(cell for cell in cells if not _is_number(cell))
             raise ValueError(f"line {where}: {text[:40]!r} between numbers; {ALLOWED}")
     rows, thousands = [], csv_text.Thousands(separator, decimal, ["pressure"])
@@ -93,11 +101,18 @@ def grid(
 
 
 def _split(line: str, decimal: str) -> tuple[str, list[str]]:
-    """Return the separator of a line, and its cells without empty last cells."""
+    """Return the separator of a line, and its cells."""
     separators = [";", "\t"] + [","] * (decimal == ".")
     for separator in filter(line.__contains__, separators):
-        return separator, csv_text.words(line, separator)
+        return separator, csv_text.all_words(line, separator)
     return " ", line.split()
+
+
+def _trimmed(cells: list[str]) -> list[str]:
+    """Cells without empty last cells."""
+    while len(cells) > 1 and not cells[-1]:
+        cells = cells[:-1]
+    return cells
 
 
 def _is_number(cell: str) -> bool:
