@@ -165,7 +165,7 @@ WARNED = {
     "0.3 of the radius of relative curvature": rigid_at(0.15 * 5e-3, 2.5e-3)
     | {"counter_radius": 5e-3},
     "amplitude": {"amplitude": "20 um"},
-    "shear wave crosses": {"density": "7850 kg/m^3", "frequency": "20 MHz"},
+    "shear wave": {"density": "7850 kg/m^3", "frequency": "20 MHz"},
     "slip speed": {"density": "7850 kg/m^3", "speed": "400 m/s"},
     "beta": {"counterbody": "rigid"},
     "mu is 1.2": {"mu": 1.2},

@@ -63,7 +63,7 @@ def test_a_line_that_cannot_be_read_does_not_refuse_the_others():
     [
         ("", "line 1: the heading is ''"),
         ("load [N]\n", "line 1: no line follows"),
-        ("load [N],sped\n1,2\n", "line 1: a column 'sped'; allowed: some of load, speed"),
+        ("load [N],sped\n1,2\n", "line 1: a column 'sped'; did you mean speed"),
         ("load [N],load [kN]\n1,2\n", "line 1: load is there twice"),
         ("load [N],mu\n1,5,0.3\n", "line 2: 3 cells; allowed: 2, parted by a comma"),
         ("load [N]\n1 kN\n", "line 2: load is '1 kN' in a column in N"),

@@ -264,10 +264,21 @@ class Sampled(_Samples):
     def deepest(self, amplitude: float, pressure: Pressure) -> float:
         return self._extremes(amplitude, pressure)[1]
 
+    def share_without_load(self, amplitude: float) -> float:
+        """Fraction of a period in which the load or the indentation is at most 0."""
+        if not self.loads:
+            return 0.0
+        height = 1.0 + amplitude * self._height_spline(self._fine_phases)
+        return float(np.mean(height <= ROUNDING))
+
+    @property
+    def _fine_phases(self) -> np.ndarray:
+        return np.linspace(0.0, 2.0 * np.pi, 64 * len(self.rows), endpoint=False)
+
     def mean_load(self, amplitude: float, pressure: Pressure) -> float:
         if not self.loads:
             return 1.0
-        phases = np.linspace(0.0, 2.0 * np.pi, 64 * len(self.rows), endpoint=False)
+        phases = self._fine_phases
         return float(np.mean(pressure.total(self.depth(phases, amplitude, pressure))))
 
 

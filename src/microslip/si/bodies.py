@@ -6,6 +6,8 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
+import numpy as np
+
 from microslip.foundation.errors import InputError
 from microslip.si.materials import Material
 from microslip.theory.hertz import checked
@@ -100,6 +102,15 @@ class TwoBodies:
     def smallest_radius(self) -> float:
         """The smaller |radius| of the two bodies, m."""
         return min(map(abs, self.radii), default=self.radius)
+
+    @property
+    def curvature_radius(self) -> float | None:
+        """Geometric mean of both radii of relative curvature, m; None without curvatures."""
+        return self.radius
+
+    def load_at(self, radius: np.ndarray) -> np.ndarray | None:
+        """Load, N, at which a round contact has this radius, m; None for other shapes."""
+        return self.load * (radius / self.contact_radius) ** 3
 
     @property
     def indentation(self) -> float:

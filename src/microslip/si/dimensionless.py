@@ -8,6 +8,7 @@ from functools import cached_property
 
 from microslip.motions.by_name import motion_named
 from microslip.motions.motion import Motion
+from microslip.motions.samples import Sampled
 from microslip.pressures.by_name import pressure_named
 from microslip.si.bodies import TwoBodies
 from microslip.si.motions import MOTIONS, PARTS
@@ -202,6 +203,19 @@ class MovingContact:
         record = self.solver_motion
         record = record if isinstance(record, Motion) else motion_named(record)
         return load * float(record.mean_load(self._size, pressure_named(self.contact.pressure)))
+
+    @property
+    def separated(self) -> float:
+        """Fraction of a period without contact, 0 to 1."""
+        motion = self.motion
+        if motion.stroke is None:
+            swing = motion.load_amplitude or 0.0
+            return (
+                math.acos(self.contact.load / swing) / math.pi if swing > self.contact.load else 0.0
+            )
+        record = self.solver_motion
+        assert isinstance(record, Sampled)  # the motion is read from a file
+        return record.share_without_load(self._size)
 
     @property
     def full_friction(self) -> float:

@@ -443,9 +443,22 @@ def check_motion_and_drive(motion: str, arguments: Mapping[str, Any], sought: st
     for name, allowed in refused.items():
         if arguments[name] is not None:
             raise InputError(name, arguments[name], allowed)
-    for name, allowed in missing.items():
-        if arguments[name] is None and name != sought:
-            raise InputError(name, None, allowed)
+    _refuse_missing({n: text for n, text in missing.items() if n != sought}, arguments)
+
+
+def _refuse_missing(needed: Mapping[str, str], arguments: Mapping[str, Any]) -> None:
+    """Raise InputError for the first of the needed arguments that is missing.  The message names
+    all others that are missing, including those of the bodies and the size."""
+    missing = [name for name in needed if arguments[name] is None]
+    if not missing:
+        return
+    if all(arguments[name] is None for name in ("radius", "contact_radius", "pressure")):
+        missing.append("radius")
+    if arguments["material"] is None:
+        missing += [name for name in ("young", "nu") if arguments[name] is None]
+    first, *others = missing
+    also = f"; also missing: {', '.join(others)}" if others else ""
+    raise InputError(first, None, f"{needed[first]}{also}")
 
 
 def motion_of(motion: str, inputs: Inputs) -> RealMotion:

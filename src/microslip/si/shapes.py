@@ -6,7 +6,10 @@ import math
 from dataclasses import dataclass, replace
 from functools import cached_property
 
+import numpy as np
+
 from microslip.foundation.errors import InputError
+from microslip.pressures.axisymmetric_indenter import Indenter
 from microslip.pressures.by_name import pressure_named
 from microslip.pressures.ellipse import SMALLEST_RATIO
 from microslip.pressures.pressure import Pressure
@@ -54,6 +57,30 @@ class ShapedContact(TwoBodies):
     @cached_property
     def _record(self) -> Pressure:
         return pressure_named(self.pressure)
+
+    @property
+    def curvature_radius(self) -> float | None:
+        """Geometric mean of both radii of relative curvature, m; None for other shapes than Hertz's
+        (K. L. Johnson, Contact Mechanics, 4.2)."""
+        if not self._record.hertzian:
+            return None
+        ratio = getattr(self._record, "ratio", 1.0)
+        if 1.0 - ratio <= ROUND:
+            return self.size**3 * self.E_star / (0.75 * self.load)
+        from scipy.special import ellipe, ellipk
+
+        m = 1.0 - ratio**2
+        first, second = ellipk(m), ellipe(m)
+        sizes = (first - second) * (second / ratio**2 - first)
+        pressure = 1.5 * self.load / (math.pi * self.size**2 * ratio)
+        return float(0.5 * self.E_star * self.size * m / (pressure * ratio * math.sqrt(sizes)))
+
+    def load_at(self, radius: np.ndarray) -> np.ndarray | None:
+        """Load, N, at which a round contact has this radius, m; None for other shapes."""
+        if not isinstance(self._record, Indenter):
+            return None
+        with np.errstate(over="ignore"):
+            return self.load * self._record.total(self._record.depth(radius / self.size))
 
     @property
     def u_lim(self) -> float:

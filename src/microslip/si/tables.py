@@ -21,6 +21,7 @@ from microslip.foundation import csv_text
 from microslip.foundation.csv_text import HEADING, PURE
 from microslip.foundation.errors import InputError
 from microslip.foundation.named_files import content_of
+from microslip.foundation.spec import near_miss
 
 T = TypeVar("T")
 
@@ -182,7 +183,8 @@ def _headings(
         name, unit = match[1].lower(), _unit(match)
         if name not in names and name not in LABELS:
             texts = f"columns of text: {', '.join(LABELS)}"
-            raise ValueError(f"line {where}: a column {name!r}; {allowed}; {texts}")
+            hint = near_miss(name, names)
+            raise ValueError(f"line {where}: a column {name!r}; {hint}{allowed}; {texts}")
         if name in units:
             raise ValueError(f"line {where}: {name} is there twice; allowed: once")
         if names.get(name) and not unit:

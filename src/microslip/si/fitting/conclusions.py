@@ -14,7 +14,7 @@ from microslip.si.fitting.curves import curve_of
 from microslip.si.fitting.fitted import Fit
 from microslip.si.fitting.scales import Modulus, Scale
 from microslip.si.motions import MOTIONS
-from microslip.si.validity import broken_assumptions
+from microslip.si.validity import broken_assumptions, warnings_of
 
 WIDEST_MU = 2.0
 """Largest allowed ratio between the upper and the lower end of the interval for mu."""
@@ -172,10 +172,14 @@ def _warnings(
     for other in others:
         apart = abs(other.theta[1] - best.theta[1])
         if other.squares < best.squares + allowed and apart > math.log(2.0):
-            mu, size = np.exp(other.theta)
-            yield f"mu {mu:.3g} with {size:.3g} {scale.unit} fits nearly as well: two answers"
-    if isinstance(scale, Modulus):
-        rows, mu = scale.rows, math.exp(best.theta[0])
+            pair = np.exp(other.theta)
+            text = f"mu {pair[0]:.3g} with {pair[1]:.3g} {scale.unit}"
+            yield f"{text} fits nearly as well: two answers"
+    mu = math.exp(best.theta[0])
+    if not isinstance(scale, Modulus):
+        yield from warnings_of({"mu": mu})
+    else:
+        rows = scale.rows
         widest = int(np.argmax(rows.amplitude))
         columns = (rows.speed, rows.amplitude, rows.frequency)
         speed, amplitude, frequency = (float(column[widest]) for column in columns)

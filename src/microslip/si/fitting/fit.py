@@ -97,7 +97,7 @@ def fit(
         raise InputError("motion", motion, f"allowed is one of {', '.join(SINGLE)}")
     shared = {"speed": speed, "amplitude": amplitude, "frequency": frequency, "load": load}
     rows = read_measured(motion, measured, decimal=decimal, encoding=encoding, **shared)
-    _refuse_too_few(rows)
+    _refuse_undetermined(rows)
     scale, texts = _scale(motion, rows, nu, radius, counterbody)
     accepted = CONFIDENCE if confidence is None else read("confidence", confidence, "").si
     if accepted >= 1.0:
@@ -116,11 +116,20 @@ def fit(
     return concluded(problem, _fits(problem), motion=motion, confidence=accepted, texts=texts)
 
 
-def _refuse_too_few(rows: Measured) -> None:
+def _refuse_undetermined(rows: Measured) -> None:
     least, count = 2 if rows.has_errors else 3, len(rows.value)
     if count < least:
         more = "" if rows.has_errors else ", or two with errors of their own"
         allowed = f"{count} row{'s' if count > 1 else ''}; two numbers take at least {least}{more}"
+        raise InputError("measured", rows.name, allowed)
+    if (rows.value <= 0.0).all():
+        negative = int((rows.value < 0.0).sum())
+        allowed = f"the rows determine neither number: {rows.quantity} is 0 in all rows"
+        if negative:
+            allowed = (
+                f"{rows.quantity} is negative in {negative} of {count} rows, and above 0 in none; "
+            )
+            allowed += "allowed is a positive sign for a force against the motion"
         raise InputError("measured", rows.name, allowed)
     if rows.distinct < 2:
         allowed = "all rows are of one condition; allowed: two or more conditions"

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from microslip.si.fitting.curves import Curve
+from microslip.si.fitting.fit_text import fit_text
 from microslip.si.prediction import column_unit
 
 if TYPE_CHECKING:
@@ -114,6 +115,10 @@ class Fit:
     fitted_error: np.ndarray = field(repr=False)
     residual: np.ndarray = field(repr=False)
     curve: Curve = field(repr=False)
+
+    def __str__(self) -> str:
+        """The lines that `microslip fit` prints."""
+        return fit_text(self)
 
     def to_dict(self) -> dict:
         """All fields except the curve as a dict.  Arrays and tuples become lists."""
