@@ -11,6 +11,20 @@ def markdown(rows):
     return "\n".join(f"| {' | '.join(cells)} |" for cells in lines)
 
 
+ROUNDING = 1e-12
+"""Numbers smaller than this fraction of their scale are rounding noise.  Sums of thousands of terms
+of double precision lose three to four of their 16 digits."""
+
+
+def number(value, form, error=0.0, scale=1.0):
+    """Text of a number for a page, with a format such as ".1e".
+
+    A number below its error, or below ROUNDING times its scale, is printed as 0, so that a page is
+    the same for every processor and every version of the libraries.
+    """
+    return "0" if abs(value) <= max(abs(error), ROUNDING * abs(scale)) else format(value, form)
+
+
 def measured(rows):
     """Markdown table of (quantity, value) pairs."""
     return markdown([{"what": what, "measured": value} for what, value in rows])

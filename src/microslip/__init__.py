@@ -49,6 +49,7 @@ _WHERE = {
     "predict_propulsion": "microslip.si.propulsion",
     "RealPropulsionLine": "microslip.si.propulsion",
     "open_map": "microslip.datasets.query.open_map",
+    "texts": "microslip.datasets.netcdf",
     "history": "microslip.adaptive.history",
     "History": "microslip.adaptive.history",
     "traction_field": "microslip.adaptive.history",

@@ -5,6 +5,7 @@ import json
 import subprocess
 import sys
 import time
+import warnings
 from types import SimpleNamespace
 from unittest.mock import Mock
 
@@ -98,10 +99,10 @@ def test_errors_convergence_and_effort_are_there(tmp_path, monkeypatch):
         assert data.converged.sel(amplitude=0).all()
         assert not data.converged.sel(amplitude=2).any()
         assert np.isnan(data.mu_macro.sel(amplitude=2)).all()
-        assert set(data.reason.sel(amplitude=2).values) == {"no periodic state"}
-        assert set(data.model.values.flat) == {"polar"}
+        assert set(microslip.texts(data.reason.sel(amplitude=2)).values) == {"no periodic state"}
+        assert set(microslip.texts(data.model).values.flat) == {"polar"}
         for name, value in EFFORT.items():
-            assert data[name].dtype.kind == ("f" if name == "periods" else "i")
+            assert data[name].dtype.kind == ("f" if name in ("periods", "work", "effort") else "i")
             assert (data[name] == value).all()
         assert (data.mu_macro_error == 4e-5).all()
         assert list(sweep_dataset.report(data)) == [
@@ -117,7 +118,8 @@ def test_errors_convergence_and_effort_are_there(tmp_path, monkeypatch):
         assert list(flag.flag_values) == [0, 1]
         assert flag.flag_meanings == "not_converged converged"
         assert raw["mu_macro"].dimensions == ("amplitude", "velocity")
-        assert raw["model"][0].tolist() == ["polar"] * 3
+        assert raw["model"].flag_meanings == "polar"
+        assert (raw["model"][:] == raw["model"].flag_values).all()
 
 
 def test_a_point_that_the_solver_failed_at_is_a_gap(tmp_path, monkeypatch, solver):
@@ -180,7 +182,7 @@ def test_conventions_and_provenance(name, tmp_path, solver):
             assert variable.attrs["description"] != variable.attrs["long_name"]
     with on_disk(name, tmp_path) as data:
         for variable in data.variables.values():
-            if variable.dtype.kind in "if":
+            if variable.dtype.kind in "if" and "flag_values" not in variable.attrs:
                 assert variable.attrs["units"] in ("1", "rad")
                 assert not np.isin("_FillValue", list(variable.encoding)) or variable.ndim == 0
         assert data.Conventions == "CF-1.11"
@@ -238,6 +240,65 @@ def test_a_dataset_of_many_points_can_be_opened(tmp_path):
     assert microslip.open_map(path).reason.shape == (70, 70)
 
 
+VERBS = {
+    "transpose": lambda data: data.transpose(),
+    "stack": lambda data: data.stack(point=("velocity", "amplitude")),
+    "unstack": lambda data: data.stack(point=("velocity", "amplitude")).unstack(),
+    "where": lambda data: data.where(data.converged),
+    "sortby": lambda data: data.sortby("velocity", ascending=False),
+    "reindex": lambda data: data.reindex(velocity=[0.1, 0.5]),
+    "roll": lambda data: data.roll(velocity=1),
+    "table": lambda data: data.to_dataframe(),
+}
+
+
+@pytest.mark.parametrize("chunks", [None, {}, "auto"], ids=str)
+def test_an_opened_map_supports_the_verbs_of_xarray(chunks, tmp_path, monkeypatch):
+    Solver(monkeypatch, fails=2.0)
+    write("transverse", tmp_path, tmp_path / "transverse.nc")
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        for of in (xr.open_dataset, microslip.open_map):
+            with of(tmp_path / "transverse.nc", chunks=chunks) as data:
+                for verb in VERBS.values():
+                    changed = verb(data)
+                    if isinstance(changed, xr.Dataset):
+                        assert changed.load().mu_macro.size
+                data.to_netcdf(tmp_path / "copy.nc")
+                with xr.open_dataset(tmp_path / "copy.nc") as copy:
+                    xr.testing.assert_identical(copy.load(), data.load())
+
+
+def test_variables_of_a_map_have_types_of_cf_1_8_and_no_texts(tmp_path, solver):
+    write("transverse", tmp_path, tmp_path / "transverse.nc")
+    with netCDF4.Dataset(tmp_path / "transverse.nc") as raw:
+        kinds = {name: variable.dtype for name, variable in raw.variables.items()}
+    assert set(map(str, kinds.values())) <= {"int8", "int16", "int32", "float32", "float64"}
+
+
+def test_only_codes_have_texts(tmp_path, solver):
+    with (
+        on_disk("bore", tmp_path) as data,
+        pytest.raises(InputError, match="codes = 'mu_macro': allowed is a variable with"),
+    ):
+        microslip.texts(data.mu_macro)
+
+
+def test_codes_of_texts_are_equal_in_all_files_and_texts_are_stored_exactly(tmp_path):
+    """Files can therefore be joined; the texts of many points have more than 64 kB."""
+    texts = [f"point {k} of \N{GREEK SMALL LETTER NU} {'_' * (k % 3)}x" for k in range(3000)]
+    for name, part in (("all", ["", *texts]), ("some", texts[:2500:7])):
+        netcdf.write(tmp_path / f"{name}.nc", xr.Dataset({"reason": ("point", part)}))
+    with (
+        xr.open_dataset(tmp_path / "all.nc") as every,
+        xr.open_dataset(tmp_path / "some.nc") as some,
+    ):
+        assert microslip.texts(every.reason).values.tolist() == ["", *texts]
+        assert some.reason.values.tolist() == every.reason[1:2501:7].values.tolist()
+        assert len(set(every.reason.flag_meanings.split())) == 3001
+    assert netcdf.whole(tmp_path / "some.nc").reason.values.tolist() == texts[:2500:7]
+
+
 def test_a_single_run_that_fails_is_left_out_and_listed(tmp_path, monkeypatch, solver):
     fail = Mock(side_effect=SolverError("a root finder found none"))
     monkeypatch.setattr("microslip.history", fail, raising=False)
@@ -262,7 +323,8 @@ def test_a_sweep_at_an_imposed_resolution_counts_what_misses_its_tolerance(tmp_p
             assert (data.mu_macro_error > 1e-3).all()
             assert np.isnan(data.tolerance) == (tolerance is None)
             if tolerance:
-                assert all("at the imposed resolution" in str(r) for r in data.reason.values.flat)
+                reasons = microslip.texts(data.reason).values
+                assert all("at the imposed resolution" in reason for reason in reasons.flat)
 
 
 # Tables, plots and joins in plain xarray

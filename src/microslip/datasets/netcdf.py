@@ -12,14 +12,17 @@ single runs, are in groups, which are opened by name:
 from __future__ import annotations
 
 import os
+import re
+import zlib
 from collections.abc import Hashable, Mapping
 from typing import Any
 
 import netCDF4
+import numpy as np
 import xarray as xr
 
 from microslip.datasets.variables import link_errors
-from microslip.foundation.errors import CacheError
+from microslip.foundation.errors import CacheError, InputError
 from microslip.foundation.files import writing_beside
 
 Groups = Mapping[str, tuple[str, tuple[str, ...]]]
@@ -59,6 +62,71 @@ def divide(dataset: xr.Dataset, groups: Groups) -> tuple[xr.Dataset, dict[str, x
     return root, parts
 
 
+TEXTS = "flag_texts"
+"""Attribute of a variable that contains codes of texts: the texts, one on each line, in the order
+of `flag_values`.  `flag_meanings` lists them as single words, as CF requires."""
+
+
+def coded(variable: xr.Variable) -> xr.Variable:
+    """Return a variable of texts as a variable of integers with flag_values and flag_meanings.
+
+    xarray's operations support integers without exception, also on disk and in dask chunks.  The
+    code of a text is its CRC-32 in 31 bits, and 0 for an empty text, so that a text has the same
+    code in all files, and files can be joined.
+    """
+    codes: dict[int, str] = {}
+    code_of = {}
+    for text in sorted(set(map(str, variable.values.flat))):
+        line = " ".join(text.split())
+        code = zlib.crc32(line.encode()) & 0x7FFFFFFF
+        while codes.setdefault(code, line) != line:
+            code = (code + 1) & 0x7FFFFFFF
+        code_of[text] = code
+    values = np.array([code_of[str(text)] for text in variable.values.flat], np.int32)
+    words: dict[str, None] = {}
+    for line in codes.values():
+        word = re.sub(r"[^A-Za-z0-9_.+@-]+", "_", line).strip("_") or "none"
+        words[word if word not in words else f"{word}_{len(words)}"] = None
+    flags = {"flag_values": np.array(list(codes), np.int32), "flag_meanings": " ".join(words)}
+    flags |= {TEXTS: "\n".join(codes.values())}
+    return xr.Variable(variable.dims, values.reshape(variable.shape), variable.attrs | flags)
+
+
+def texts(codes: xr.DataArray) -> xr.DataArray:
+    """Texts of a variable that contains codes, such as `model` and `reason` of a map.
+
+    Parameters
+    ----------
+    codes : xarray.DataArray
+        Variable of a dataset, or a selection of it, with the attribute flag_texts.
+
+    Returns
+    -------
+    xarray.DataArray
+        The texts, in dask chunks if the codes are.  A code without a text, from a dataset that was
+        joined with this one, becomes "?".
+
+    Raises
+    ------
+    InputError
+        If the variable has no attribute flag_texts.
+    """
+    if TEXTS not in getattr(codes, "attrs", {}):
+        name = getattr(codes, "name", codes)
+        raise InputError("codes", name, f"allowed is a variable with the attribute {TEXTS}")
+    values = np.atleast_1d(codes.attrs["flag_values"]).tolist()
+    text_of = dict(zip(values, codes.attrs[TEXTS].split("\n"), strict=True))
+    kind = f"U{max(map(len, text_of.values())) or 1}"
+
+    def look_up(part: np.ndarray) -> np.ndarray:
+        return np.array([text_of.get(code, "?") for code in part.flat], kind).reshape(part.shape)
+
+    out = xr.apply_ufunc(look_up, codes, dask="parallelized", output_dtypes=[kind])
+    about = {"flag_values", "flag_meanings", TEXTS}
+    out.attrs = {name: value for name, value in codes.attrs.items() if name not in about}
+    return out
+
+
 def write(
     path: str | os.PathLike[str], root: xr.Dataset, parts: Mapping[str, xr.Dataset] | None = None
 ) -> None:
@@ -75,6 +143,8 @@ def write(
 
 def _append(dataset: xr.Dataset, path: str | os.PathLike[str], **how: Any) -> None:
     dataset = link_errors(dataset)
+    of_text = {n: v for n, v in dataset.variables.items() if v.dtype.kind in "OUT"}
+    dataset = dataset.assign({n: coded(v) for n, v in of_text.items() if n not in dataset.dims})
     encoding = {name: _encoding(name, v.dtype.kind) for name, v in dataset.variables.items()}
     dataset.to_netcdf(path, engine="netcdf4", format="NETCDF4", encoding=encoding, **how)
 
@@ -83,9 +153,10 @@ def _encoding(name: Hashable, kind: str) -> dict:
     if kind == "f":
         return {"_FillValue": None}
     if kind in "OUT":
-        # Strings are stored as arrays of characters.  If a file that is open is opened again, HDF5
-        # loses the type of variable-length strings, and Python crashes.  Each variable has its own
-        # dimension of characters, so that a selection can be saved.
+        # Axes of texts are stored as arrays of characters, other texts as codes, see `coded`.  If a
+        # file that is open is opened again, HDF5 loses the type of variable-length strings, and
+        # Python crashes.  Each variable has its own dimension of characters, so that a selection
+        # can be saved.
         return {"dtype": "S1", "char_dim_name": f"characters_of_{name}"}
     return {}
 
@@ -121,6 +192,8 @@ def group_names(path: str | os.PathLike[str]) -> tuple[str, ...]:
 def whole(path: str | os.PathLike[str]) -> xr.Dataset:
     """Read the root and all groups of a file into one dataset with the attributes of the root.
 
+    Codes of texts are decoded.
+
     Raises CacheError if the file declares more values than it has bytes.  Raises xarray's errors if
     the file is not a netCDF file.
     """
@@ -130,4 +203,5 @@ def whole(path: str | os.PathLike[str]) -> xr.Dataset:
     for group in group_names(path):
         with xr.open_dataset(path, engine="netcdf4", group=group) as part:
             dataset = dataset.merge(part.load(), compat="identical", join="exact")
-    return dataset
+    coded_names = [n for n, v in dataset.variables.items() if TEXTS in v.attrs]
+    return dataset.assign({name: texts(dataset[name]) for name in coded_names})

@@ -25,8 +25,8 @@ POINT_VARIABLES = {
     "steps_per_period": (np.int32, "time steps in a period"),
     "periods": (float, "full periods marched in the longest run"),
     "iterations": (np.int32, "iterations of the step solver"),
-    "work": (np.int64, "step solves times unknowns"),
-    "effort": (np.int64, "iterations times unknowns"),
+    "work": (float, "step solves times unknowns"),
+    "effort": (float, "iterations times unknowns"),
     "retried": (np.int32, "runs repeated with tighter steps"),
     "model": (str, "contact model that was used"),
     "reason": (str, "why the point did not converge"),
@@ -76,7 +76,7 @@ DESCRIPTIONS = {
     "mu_macro_change": "mu_macro less that at the smallest Poisson's ratio",
 }
 """Attribute `description` of variables whose long_name is not sufficient."""
-MISSING: dict[type, Any] = {float: np.nan, bool: False, np.int32: 0, np.int64: 0, str: ""}
+MISSING: dict[type, Any] = {float: np.nan, bool: False, np.int32: 0, str: ""}
 LONGEST_TEXT = 256
 """Maximum number of characters in a text.  A longer text is truncated and ends with dots."""
 

@@ -146,14 +146,16 @@ def report(dataset: xr.Dataset, name: str | None = None) -> Iterator[str]:
 
     name: name of the sweep.  Default: the name of the motion.
     """
-    converged = dataset["converged"]
+    converged, reason = dataset["converged"], dataset["reason"]
+    if netcdf.TEXTS in reason.attrs:
+        reason = netcdf.texts(reason)
     bad = np.argwhere(~converged.values)
     failed = f"{len(bad)} not converged" if len(bad) else "all converged"
     yield f"{name or dataset.motion}: {converged.size} points, {failed}"
     for index in bad:
-        point = dataset.isel(dict(zip(converged.dims, index, strict=True)))
+        point = reason.isel(dict(zip(converged.dims, index, strict=True)))
         where = ", ".join(f"{dim} {float(point[dim]):g}" for dim in converged.dims)
-        yield f"  not converged: {where}: {point['reason'].item()}"
+        yield f"  not converged: {where}: {point.item()}"
     if "single_runs_failed" in dataset.attrs:
         yield f"  single runs left out: {dataset.single_runs_failed}"
 

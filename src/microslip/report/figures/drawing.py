@@ -15,7 +15,9 @@ from __future__ import annotations
 import importlib
 import json
 import os
+import sys
 from collections.abc import Iterable, Mapping
+from contextlib import suppress
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -116,6 +118,7 @@ def draw(name: str, datasets: Mapping[str, xr.Dataset]) -> Figure:
     Figure
         A figure without a window and without global state.
     """
+    import_matplotlib()
     from microslip.report.figures.style import style
 
     keys = _DRAWN[name][1:] if name in _DRAWN else datasets
@@ -133,6 +136,25 @@ def draw(name: str, datasets: Mapping[str, xr.Dataset]) -> Figure:
     return figure
 
 
+def import_matplotlib() -> None:
+    """Import matplotlib with any value of MPLBACKEND in the environment.
+
+    matplotlib cannot be imported if this variable has an unknown value. Figures of this package
+    need no backend. Other figures of the process get the backend of the variable if it is known.
+    """
+    if "matplotlib" in sys.modules:
+        return
+    backend = os.environ.pop("MPLBACKEND", None)
+    try:
+        matplotlib = importlib.import_module("matplotlib")
+    finally:
+        if backend is not None:
+            os.environ["MPLBACKEND"] = backend
+    if backend:
+        with suppress(ValueError):
+            matplotlib.rcParams["backend"] = backend
+
+
 def made_from(datasets: Iterable[xr.Dataset]) -> str:
     """Return the provenance of datasets: a JSON list of their attributes in `PROVENANCE`."""
     attributes = [{key: d.attrs[key] for key in PROVENANCE if key in d.attrs} for d in datasets]
@@ -145,6 +167,7 @@ def save(figure: Figure, path: str | os.PathLike[str]) -> Path:
     The metadata contain the provenance, see `made_from`, and no date, so that equal figures have
     equal bytes. A missing folder is created. Raises CacheError if the file cannot be written.
     """
+    import_matplotlib()
     from microslip.report.figures.style import style
 
     path = Path(path)

@@ -23,7 +23,7 @@ VISIBLE_ERROR = 0.01
 """Smallest error estimate that is drawn. The markers hide smaller error estimates."""
 
 
-def grid(figure: Figure | SubFigure, count: int, across: int, **shared: bool) -> list[Axes]:
+def grid(figure: Figure | SubFigure, count: int, across: int, **shared: Any) -> list[Axes]:
     """Return `count` new panels in rows of `across` panels. shared: arguments of `subplots`."""
     rows = -(-count // across)
     axes = list(figure.subplots(rows, across, squeeze=False, **shared).flat)
