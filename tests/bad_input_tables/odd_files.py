@@ -87,7 +87,7 @@ CSV = [
     ((HEAD + ROWS).replace("\n", ",\n"), PLAIN),
     (HEAD + "0,0,1,5\n", refused("line 2: 4 cells")),
     (",forward,lateral,pressure\n0,0,0,1\n", refused("line 1: the heading")),
-    ("sep=;\n" + SEMI, refused("line 1: the heading is 'sep=;'")),
+    ("sep=;\n" + SEMI + ROWS.replace(",", ";"), PLAIN),
     ("x,y,pressure\n" + ROWS, refused("line 1: the heading is 'x,y,pressure'")),
     (HEAD + "mm,mm,MPa\n" + ROWS, refused("line 2: forward is 'mm'")),
     ("forward [deg],lateral [deg],pressure\n" + ROWS, refused("[deg] is no known unit of length")),

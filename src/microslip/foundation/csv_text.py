@@ -6,7 +6,7 @@ from __future__ import annotations
 import codecs
 import csv
 import re
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 
 from microslip.foundation.errors import InputError
 
@@ -26,6 +26,14 @@ mark."""
 UNGROUPED = re.compile(r"[+-]?[1-9]\d{0,2}", re.A)
 EMPTY = re.compile(r"[\s,;\"]*")
 """Pattern of a line of empty cells."""
+SEPARATOR_LINE = re.compile(r"\"?sep=.\"?", re.I)
+"""Pattern of the first line that names the separator for a spreadsheet."""
+UNIT = re.compile(r"[\[(]?[^\W\d_][^\s,;]*[\])]?")
+"""Pattern of a cell that may be a unit."""
+OPEN_CELL = re.compile(r'(?:^|([,;\t]))\s*"[^"]*$')
+"""Pattern of a line that ends inside a quoted cell."""
+MOST_BREAKS = 100
+"""Largest number of lines of a quoted cell."""
 DECIMAL_COMMA = re.compile(r"(?<=[0-9]),(?=[0-9])|^([+−-]?),(?=[0-9])")
 
 
@@ -41,8 +49,16 @@ def check_format(decimal: str, encoding: str) -> None:
         raise InputError("encoding", encoding, allowed) from None
 
 
-def lines(content: bytes, encoding: str = "utf-8") -> Iterator[tuple[int, str]]:
-    """Line number and text of each line.  Empty lines, and comments that begin with #, are omitted.
+def lines(
+    content: bytes,
+    encoding: str = "utf-8",
+    is_heading: Callable[[str], bool] = lambda text: False,
+) -> Iterator[tuple[int, str]]:
+    """Line number and text of each line.
+
+    Empty lines, comments that begin with #, and a first line such as sep=; are omitted.  The lines
+    of a quoted cell are joined by spaces.  The comment above the first line is a line if it is a
+    heading, and the first line is none.
 
     Raises
     ------
@@ -63,11 +79,50 @@ def lines(content: bytes, encoding: str = "utf-8") -> Iterator[tuple[int, str]]:
         where = text.count("\n", 0, text.index("\0")) + 1
         raise ValueError(f"line {where}: not text; allowed: CSV or netCDF")
     text = text.replace("\r\n", "\n").replace("\r", "\n")
-    for number, line in enumerate(text.split("\n"), 1):
+    comment, first = (0, ""), True
+    for number, line in _joined(text.split("\n")):
         stripped = line.strip()
-        counts = not stripped.startswith("#") or SPREADSHEET_ERROR.match(stripped)
-        if counts and not EMPTY.fullmatch(stripped):
-            yield number, line.rstrip("\r")
+        if EMPTY.fullmatch(stripped) or number == 1 and SEPARATOR_LINE.fullmatch(stripped):
+            continue
+        if stripped.startswith("#") and not SPREADSHEET_ERROR.match(stripped):
+            comment = number, stripped.lstrip("#").strip()
+            continue
+        if first and is_heading(comment[1]) and not is_heading(line):
+            yield comment
+        first = False
+        yield number, line
+
+
+def _joined(parts: list[str]) -> Iterator[tuple[int, str]]:
+    """Number and text of each line.  The lines of a quoted cell are one line."""
+    number = 0
+    while number < len(parts):
+        line, end = parts[number], number + 1
+        begin = OPEN_CELL.search(line)
+        while OPEN_CELL.search(line) and line.count('"') % 2 and end < len(parts):
+            line, end = f"{line} {parts[end]}", end + 1
+            if end - number > MOST_BREAKS:
+                break
+        separators = begin[1] if begin and begin[1] else SEPARATORS
+        if end > number + 1 and not any(_are_cells(line, one) for one in separators):
+            line, end = parts[number], number + 1
+        yield number + 1, line
+        number = end
+
+
+def _are_cells(line: str, separator: str) -> bool:
+    """True if all quotes of a line are in pairs around whole cells."""
+    try:
+        return bool(list(csv.reader([line], delimiter=separator, strict=True)))
+    except csv.Error:
+        return False
+
+
+def heading_hint(heading: str) -> str:
+    """What to change in a file whose heading is not accepted; empty if unknown."""
+    if heading.startswith("LabVIEW Measurement"):
+        return "; of a LabVIEW file keep only the table, below a heading with units"
+    return ""
 
 
 def all_words(line: str, separator: str) -> list[str]:
@@ -114,6 +169,15 @@ def cells(where: int, line: str, separator: str, count: int) -> list[str]:
         allowed = f"{count}, {parted}, one with such a sign in double quotes{hint}"
         raise ValueError(f"line {where}: {len(cells)} cells; allowed: {allowed}")
     return cells
+
+
+def refuse_units(where: int, pairs: Sequence[tuple[str, str]]) -> None:
+    """Raise ValueError about a line of units below the heading.  pairs: heading and cell."""
+    example = next(((name, cell) for name, cell in pairs if UNIT.fullmatch(cell)), None)
+    if example is not None:
+        name, cell = example[0], example[1].strip("[]()")
+        problem = f"line {where}: {name} is {cell!r}; allowed: a number"
+        raise ValueError(f"{problem}, with its unit in the heading, as in {name} [{cell}]")
 
 
 def with_point(where: int, name: str, cell: str, decimal: str) -> str:

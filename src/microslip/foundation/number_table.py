@@ -74,7 +74,14 @@ def read_numbers(
     ValueError
         If the content has another format.  The message begins with the line number.
     """
-    lines = csv_text.lines(content, encoding)
+
+    def is_heading(text: str) -> bool:
+        try:
+            return bool(_headings(0, text, names, allowed, complete, decimal))
+        except ValueError:
+            return False
+
+    lines = csv_text.lines(content, encoding, is_heading)
     where, heading = next(lines, (1, ""))
     separator, units = _headings(where, heading, names, allowed, complete, decimal)
     rows, places, thousands = [], [], csv_text.Thousands(separator, decimal, list(units))
@@ -82,6 +89,8 @@ def read_numbers(
         cells = csv_text.cells(where, line, separator, len(units))
         pairs = list(zip(units, cells, strict=True))
         words = [csv_text.with_point(where, name, cell, decimal) for name, cell in pairs]
+        if not rows and not any(map(str.isdigit, "".join(words))):
+            csv_text.refuse_units(where, pairs)
         rows.append(
             [
                 number(where, n, word, least.get(n, -math.inf))
@@ -106,7 +115,8 @@ def _headings(
         fits = units.keys() == set(names) if complete else units.keys() <= set(names)
         if fits and len(units) == len(matches):
             return separator, units
-    raise ValueError(f"line {where}: the heading is {heading[:80]!r}; allowed: {allowed}")
+    hint = csv_text.heading_hint(heading)
+    raise ValueError(f"line {where}: the heading is {heading[:80]!r}; allowed: {allowed}{hint}")
 
 
 def number(where: int, name: str, word: str, least: float = -math.inf) -> float:

@@ -136,7 +136,14 @@ def read_table(
     ValueError
         If the table is invalid or has no valid line.  The message begins with the line number.
     """
-    lines = csv_text.lines(content, encoding)
+
+    def is_heading(text: str) -> bool:
+        try:
+            return bool(_headings(0, text, names, decimal))
+        except ValueError:
+            return False
+
+    lines = csv_text.lines(content, encoding, is_heading)
     where, heading = next(lines, (1, ""))
     separator, units = _headings(where, heading, names, decimal)
     table = Table({name: [] for name in units}, [], {})
@@ -147,6 +154,8 @@ def read_table(
         try:
             cells = csv_text.cells(where, line, separator, len(units))
             raw = dict(zip(units, cells, strict=True))
+            numbers = [(name, raw[name]) for name in quantities if name != "counterbody"]
+            units_row = not table.lines and not any(map(str.isdigit, "".join(cells)))
             row |= {name: raw[name] or None for name in units if name in LABELS}
             row |= {
                 name: _text(where, name, cell, units[name], decimal, names[name])
@@ -155,7 +164,9 @@ def read_table(
             }
             thousands.see(where, [raw[name] for name in quantities])
         except ValueError as error:
-            table.errors[len(table.lines)] = str(error)
+            units_row, table.errors[len(table.lines)] = False, str(error)
+        if units_row:
+            csv_text.refuse_units(where, numbers)
         table.lines.append(where)
         for name, text in row.items():
             table.columns[name].append(text)
@@ -177,13 +188,15 @@ def _headings(
     allowed = f"allowed: some of {', '.join(names)}, {units_are}{example}"
     separator, matches = next(csv_text.headings(heading, decimal), ("", []))
     if not matches:
-        raise ValueError(f"line {where}: the heading is {heading[:80]!r}; {allowed}")
+        hint = csv_text.heading_hint(heading)
+        raise ValueError(f"line {where}: the heading is {heading[:80]!r}; {allowed}{hint}")
     units: dict[str, str | None] = {}
     for match in matches:
         name, unit = match[1].lower(), _unit(match)
         if name not in names and name not in LABELS:
             texts = f"columns of text: {', '.join(LABELS)}"
             hint = near_miss(name, names)
+            texts += csv_text.heading_hint(heading)
             raise ValueError(f"line {where}: a column {name!r}; {hint}{allowed}; {texts}")
         if name in units:
             raise ValueError(f"line {where}: {name} is there twice; allowed: once")
