@@ -84,7 +84,8 @@ def read_numbers(
     lines = csv_text.lines(content, encoding, is_heading)
     where, heading = next(lines, (1, ""))
     separator, units = _headings(where, heading, names, allowed, complete, decimal)
-    rows, places, thousands = [], [], csv_text.Thousands(separator, decimal, list(units))
+    rows: list[list[float]] = []
+    places, thousands = [], csv_text.Thousands(separator, decimal, list(units))
     for where, line in lines:
         cells = csv_text.cells(where, line, separator, len(units))
         pairs = list(zip(units, cells, strict=True))

@@ -35,9 +35,11 @@ REFINEMENTS = 3
 remains."""
 FEWEST_PER_PERIOD = 4
 """Smallest number of samples in a period of the record."""
-ROUNDED = 0.4
-"""Largest allowed deviation of rounded times, divided by the spacing.  A missing sample shifts some
-times by at least half a spacing."""
+PERIODIC = 0.5
+"""Smallest amplitude in a quarter of the record, divided by the largest one of a quarter.  A motion
+with a smaller ratio is not periodic throughout."""
+QUARTERS = 4
+"""Number of parts of the record whose amplitudes are compared."""
 MOST_DECIMALS = 12
 """Largest number of decimals of times that count as rounded.  More decimals need no allowance."""
 LARGEST_LOSS = 0.01
@@ -52,6 +54,8 @@ per duration of the record: that of u**2 / 2 for u from -1/2 to 1/2."""
 FINER = 32
 """Number of interpolated points per sample for the peak-to-peak value.  With 32 samples, the peak
 of a sine is too small by at most 5e-6 of its amplitude."""
+CONSTANT = 1e-12
+"""Largest variation of a constant column, divided by its largest value: rounding errors."""
 TREND = 3
 """Degree of the polynomial that is subtracted before the search for the frequency."""
 SLOWEST = 3
@@ -108,7 +112,7 @@ def fold(
     Parameters
     ----------
     time : array_like, shape (samples,)
-        Equally spaced times, s.  Deviations by the rounding of decimals are allowed.
+        Equally spaced times, s.  Each time may be rounded to its last digit.
     columns : mapping of array_like, shape (samples,)
         Columns forward, lateral, angle, and load or indentation, in any units.
     frequency : float or None
@@ -159,6 +163,7 @@ def fold(
         if name in NORMAL:
             mean[name] += values[name].mean()
     result = Fold(frequency, error * frequency, len(periods), mean, scatter, drift)
+    _check_throughout(harmonics, longest, order)
     _check_noise(result)  # first, since the phases of noise look like a drift
     _check_drift(frequency, longest, variance, order)
     return replace(result, errors={n: one + np.abs(lost[n]) for n, one in scatter.items()})
@@ -200,6 +205,38 @@ def _check_drift(frequency: float, longest: float, variance: float, order: int) 
     raise InputError("time", float(f"{longest:.6g}"), f"{problem}; {allowed}")
 
 
+def _check_throughout(harmonics: Mapping[str, np.ndarray], longest: float, order: int) -> None:
+    """Raise InputError if the oscillation begins, ends, or changes its size a lot."""
+    power = sum(
+        np.abs(one[:, order]) ** 2 / np.mean(np.abs(one) ** 2) for one in harmonics.values()
+    )
+    parts = np.array_split(np.sqrt(power), QUARTERS)
+    sizes = [float(np.median(one)) for one in parts]
+    if min(sizes) >= PERIODIC * max(sizes):
+        return
+    share = 100.0 * min(sizes) / max(sizes)
+    problem = (
+        f"not periodic throughout: in quarter {int(np.argmin(sizes)) + 1} of the record of "
+        f"{longest:.6g} s, the oscillation is only {share:.2g} % as large as in quarter "
+        f"{int(np.argmax(sizes)) + 1}; allowed is a steady oscillation; cut off the rest"
+    )
+    raise InputError("time", float(f"{longest:.6g}"), problem)
+
+
+def _check_marks(name: str, values: np.ndarray) -> None:
+    """Raise InputError for a value that is repeated exactly and lies far outside of all others."""
+    levels, counts = np.unique(values, return_counts=True)
+    if len(levels) <= QUARTERS:  # a motion with few levels
+        return
+    inner = levels[-2] - levels[1]
+    ends = ((levels[0], counts[0], levels[1]), (levels[-1], counts[-1], levels[-2]))
+    for level, number, other in ends:
+        if number > 1 and abs(level - other) > inner:
+            problem = f"stands in {number} rows, far outside of all others, from {other:.6g} on"
+            allowed = "allowed are measured values; such a value often marks a missing sample"
+            raise InputError(name, float(level), f"{problem}; {allowed}")
+
+
 def _check_noise(result: Fold) -> None:
     """Raise InputError if no column has an oscillation that is larger than its noise."""
     sizes = {name: result.peak_to_peak(name) for name in result.columns}
@@ -239,6 +276,8 @@ def _checked(time: Any, columns: Mapping[str, Any]) -> tuple[float, dict[str, np
             raise InputError(name, values[name].shape, allowed)
         if not np.isfinite(values[name]).all():
             raise InputError(name, math.nan, "allowed are finite numbers")
+        if name != "time":
+            _check_marks(name, values[name])
     time = values.pop("time")
     fewest = FEWEST_PER_PERIOD * FEWEST_PERIODS
     if len(time) < fewest:
@@ -257,14 +296,41 @@ def _step(time: np.ndarray) -> float:
     if step <= 0.0:
         problem = f"the last time, and the first is {time[0]:.9g} s; allowed are increasing times"
         raise InputError("time", float(time[-1]), problem)
+    if uneven_row(time, EVEN) is None:
+        return step
     # Numbers with a fixed number of significant digits have the fewest decimals at the end.
-    place = _resolution(time[-len(time) // 8 :])
-    row = uneven_row(time, max(EVEN, min(place / step, ROUNDED)))
-    if row is not None:
-        allowed = "allowed are equal steps, except for rounded decimals"
+    half = 0.5 * _resolution(time[-len(time) // 8 :])
+    step, rest = _even_steps(time, step)
+    row = int(np.argmax(np.abs(rest)))
+    most = half * (1.0 + 1e-6) + EVEN * step
+    if half <= 0.5 * step:  # a missing sample shifts some times by at least half a step
+        most = min(most, (0.5 - EVEN) * step)
+    if np.abs(rest[row]) > most:
+        allowed = "allowed are equal steps, and times rounded to their last digit"
         problem = f"not equally spaced, in row {row} (the first is 0); {allowed}"
         raise InputError("time", float(time[row]), problem)
     return step
+
+
+def _even_steps(time: np.ndarray, step: float) -> tuple[float, np.ndarray]:
+    """The step of the equally spaced times with the smallest largest deviation, and the deviations,
+    shape (samples,).
+
+    For a step, the deviations extend over the vertical width of the times' convex hull.  As a
+    function of the step, this width is smallest at the slope of an edge.
+    """
+    from scipy.spatial import ConvexHull
+
+    index = np.arange(len(time))
+    rest = time - time[0] - step * index
+    points = np.stack([index / len(time), rest / np.ptp(rest)], axis=1)
+    corners = points[ConvexHull(points).vertices]
+    across, up = (corners - np.roll(corners, 1, axis=0)).T
+    slopes = up[across != 0.0] / across[across != 0.0]
+    widths = [np.ptp(corners[:, 1] - slope * corners[:, 0]) for slope in slopes]
+    change = float(slopes[int(np.argmin(widths))]) * float(np.ptp(rest)) / len(time)
+    rest = rest - change * index
+    return step + change, rest - 0.5 * (rest.max() + rest.min())
 
 
 def _resolution(time: np.ndarray) -> float:
@@ -282,7 +348,7 @@ def _strongest(values: Mapping[str, np.ndarray]) -> float:
     for one in values.values():
         x = np.linspace(-1.0, 1.0, len(one))
         rest = one - np.polynomial.Polynomial.fit(x, one, TREND)(x)
-        if rest.any():
+        if np.abs(rest).max() > CONSTANT * np.abs(one).max():
             spectrum = np.abs(np.fft.rfft(rest * np.hanning(len(one)))) ** 2
             power = power + spectrum / spectrum.sum()
     if not np.any(power):
