@@ -1,5 +1,9 @@
 """Records of coarse times, constant channels, late starts and marks of missing samples."""
 
+import pickle
+import subprocess
+import sys
+
 import numpy as np
 import pytest
 
@@ -74,3 +78,18 @@ def test_a_saturated_signal_and_a_square_wave_have_no_such_value():
     time, lateral = record()
     microslip.fold(time, {"lateral": np.clip(lateral, -0.8, 0.8)})
     microslip.fold(time, {"lateral": np.sign(np.sin(2.0 * np.pi * FREQUENCY * time))})
+
+
+def test_a_prediction_of_a_file_prints_without_the_file(tmp_path):
+    path = tmp_path / "stroke.csv"
+    path.write_text("time [ms],lateral [um]\n0,0\n0.25,1\n0.5,0\n0.75,-1\n")
+    body = {"material": "steel", "radius": "5 mm", "load": "10 N", "mu": 0.3, "speed": "1 mm/s"}
+    result = microslip.predict(f"file:{path}", **body, tolerance=0.1)
+    text = str(result)
+    path.write_text("time [ms],lateral [um]\n0,0\n0.25,2\n0.5,0\n0.75,-2\n")
+    assert str(result) == text
+    path.unlink()
+    (tmp_path / "result").write_bytes(pickle.dumps(result))
+    code = "import pickle, sys; print(pickle.load(open(sys.argv[1], 'rb')))"
+    words = [sys.executable, "-c", code, str(tmp_path / "result")]
+    assert subprocess.run(words, capture_output=True, text=True).stdout == text + "\n"

@@ -264,6 +264,7 @@ def _common(request: Request, answer: Result, threshold: Estimate | None) -> dic
         "friction_force_still_N": still,
         "force_reduction": 1.0 - friction.value,
         "understood": request.understood,
+        "kind": request.kind,
         "motion": request.motion.name,
         "pressure": contact.pressure,
         "contacts": request.carriers.text,

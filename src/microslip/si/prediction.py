@@ -13,6 +13,7 @@ from typing import Any
 
 from microslip.estimate.estimate import Estimate
 from microslip.foundation.errors import InputError
+from microslip.si.motions import RealMotionKind
 from microslip.si.prediction_text import prediction_text
 
 _NAMES = """
@@ -76,6 +77,8 @@ class Prediction:
     understood : dict of str
         The arguments as the user wrote them, by name.  The SI value is added if the unit is of
         another kind ("1200 rpm = 20 Hz").  The operator == ignores this field.
+    kind : RealMotionKind
+        The kind of the motion, for the printed text.
     motion, pressure : str
         The motion, and the pressure as in microslip.solve.
     contacts : str or None
@@ -140,6 +143,7 @@ class Prediction:
     """
 
     understood: dict = field(compare=False)
+    kind: RealMotionKind = field(compare=False, repr=False)
     motion: str
     pressure: str
     contacts: str | None
@@ -189,6 +193,7 @@ class Prediction:
         """All columns as a plain dict."""
         columns = EMPTY | vars(self) | {"counterbody": self.counterbody}
         columns |= columns.pop("uncertainty")
+        del columns["kind"]
         return columns | {name: list(columns[name]) for name in ("warnings", "not_checked")}
 
     def __getattr__(self, name: str) -> Any:

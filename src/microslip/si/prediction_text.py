@@ -6,7 +6,6 @@ import math
 from typing import Any
 
 from microslip.foundation.number_text import ROUNDING, interval_text, number_text
-from microslip.si.motions import kind_of
 from microslip.si.printed_lines import (
     EXCLUDED,
     FIRST_ORDER,
@@ -122,7 +121,7 @@ class _Texts(dict[str, Any]):
         if record.contact_radius_m >= LARGEST_NUMBER * length[1]:
             unit = unit_for(record.contact_radius_m, LENGTHS)
             self["contact_radius_m"] = in_unit(record.contact_radius_m, 0.0, unit)
-        turned = ("rad", 1.0) if kind_of(record.motion).unit == "rad" else length
+        turned = ("rad", 1.0) if record.kind.unit == "rad" else length
         if record.amplitude_si is not None:
             self["size"] = in_unit(record.amplitude_si, 0.0, turned)
         if record.sought is not None:
@@ -140,7 +139,7 @@ class _Texts(dict[str, Any]):
         lines = show("contact radius", "{contact_radius_m}")
         lines += show("indentation", "{indentation_m}", not math.isnan(record.indentation_m))
         lines += show("u_lim", "{u_lim_m}") + show("largest pressure", pressure)
-        several = kind_of(record.motion).several
+        several = record.kind.several
         lines += show("amplitude", "{size}, dimensionless {amplitude}", not several)
         lines += show("amplitude", "the largest is dimensionless {amplitude}", several)
         lines += show("velocity", "dimensionless {velocity}", not forced)
@@ -171,7 +170,7 @@ class _Texts(dict[str, Any]):
         static = "{mu_static_apparent}: coefficient of friction at vanishing speed"
         lines += show("static friction", static) + show("", "{mu_static_apparent_interval}")
         if record.mu_static is not None:
-            threshold, along = record.force_threshold_N, kind_of(record.motion).along_the_drive
+            threshold, along = record.force_threshold_N, record.kind.along_the_drive
             lines += show("", UNKNOWN_THRESHOLD, threshold is None and along)
             apart = threshold is not None and not _moves_at_static_friction(record)
             lines += show("", ALONG_THE_DRIVE, apart)

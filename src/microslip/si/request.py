@@ -25,7 +25,7 @@ from microslip.si.inputs import (
     read_inputs,
     with_stroke,
 )
-from microslip.si.motions import kind_of
+from microslip.si.motions import RealMotionKind, kind_of
 from microslip.si.quantities import read
 from microslip.si.several import Carriers, read_carriers
 
@@ -61,6 +61,8 @@ class Request(MovingContact):
         Accepted error of mu_macro, or accepted relative error of the speed under a force.
     understood : dict of str
         The arguments as the user wrote them, by name.
+    kind : RealMotionKind
+        The kind of the motion, without the samples of a file.
     """
 
     inputs: Inputs
@@ -69,6 +71,7 @@ class Request(MovingContact):
     sought: str | None
     tolerance: float
     understood: dict[str, str]
+    kind: RealMotionKind
 
     def at(self, **changes: Any) -> Request:
         """A copy with changed fields of the motion, or with another load, N."""
@@ -226,10 +229,11 @@ def request_of(motion: str, arguments: Mapping[str, Any]) -> Request:
     real, drive = motion_of(motion, inputs), drive_of(motion, inputs)
     if sought is not None and drive != RealDrive():
         raise inputs.error("reduction", "allowed only without a force and a drive_stiffness")
-    understood = {"motion": f"{motion}: the sphere {kind_of(motion).description}"} | inputs.texts
+    kind = replace(kind_of(motion), stroke=None)
+    understood = {"motion": f"{motion}: the sphere {kind.description}"} | inputs.texts
     if real.stroke is not None:
         understood["amplitude"] += " times the samples"
-    request = Request(contact, real, inputs, drive, carriers, sought, accepted, understood)
+    request = Request(contact, real, inputs, drive, carriers, sought, accepted, understood, kind)
     if sought is None:
         request.check_range()
     if carriers.text is not None:
