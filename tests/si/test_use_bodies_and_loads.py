@@ -180,3 +180,22 @@ def test_a_fit_prints_what_the_command_prints(tmp_path, capsys):
     assert code in (0, 1)
     assert str(microslip.fit("transverse", path, **common)) + "\n" == printed
     assert "u_lim" in printed and "u lim" not in printed
+
+
+@pytest.mark.parametrize(
+    "missing, titles",
+    [
+        ("amplitude", {"amplitude": 1.0}),
+        ("load", {"u_lim": 2.0 / 3.0, "contact radius": 1.0 / 3.0}),
+    ],
+)
+def test_values_that_follow_from_a_root_have_its_error(missing, titles):
+    inputs = {n: v for n, v in (BALL | SIDEWAYS).items() if n != missing}
+    result = microslip.predict("transverse", reduction="40 %", tolerance=0.02, **inputs)
+    value = {"amplitude": result.amplitude_si, "load": result.load_N}[missing]
+    lines = str(result).split("\n\n")[1].splitlines()
+    for title, power in titles.items():
+        line = next(one for one in lines if one.startswith(f"{title} "))
+        number, error = re.search(r"([\d.]+) \+- ([\d.e-]+)", line).groups()
+        share = power * result.sought_error / value
+        assert float(error) / float(number) == pytest.approx(share, rel=0.15)

@@ -78,6 +78,27 @@ OUTCOMES = {
     "undecided": "undecided within the error: it moves by at most {fastest}",
 }
 """Sentences that describe the outcomes, except for a contact that runs away."""
+POWERS: dict[str, dict[str, float]] = {
+    "amplitude": {"amplitude": 1.0},
+    "speed": {"velocity": 1.0},
+    "load": {
+        **{"contact_radius_m": 1.0 / 3.0, "indentation_m": 2.0 / 3.0, "u_lim_m": 2.0 / 3.0},
+        **{"largest_pressure_Pa": 1.0 / 3.0, "amplitude": -2.0 / 3.0, "velocity": -2.0 / 3.0},
+        "friction_force_still_N": 1.0,
+    },
+    "load of a size": {
+        **{"indentation_m": 1.0, "u_lim_m": 1.0, "largest_pressure_Pa": 1.0, "amplitude": -1.0},
+        **{"velocity": -1.0, "friction_force_still_N": 1.0},
+    },
+}
+"""Exponents of values that are powers of the result of a search, for Hertz's contacts and for
+contacts of a prescribed size."""
+SPINS: dict[str, dict[str, float]] = {
+    "amplitude": {"velocity": -1.0},
+    "load": {"amplitude": -1.0 / 3.0, "velocity": -1.0 / 3.0},
+    "load of a size": {"velocity": 0.0},
+}
+"""Exponents that differ from POWERS for a bore."""
 ENDS = ("_m_s", "_N_m", "_m", "_N", "_W", "_J", "_Pa", "_s")
 """Column-name suffixes that state the unit."""
 
@@ -284,7 +305,18 @@ class _Texts(dict[str, Any]):
         if stem.endswith("_spread"):
             return number_text(value / unit[1], 0.0, unit[0], digits=2)
         error = getattr(self.record, f"{stem}_error{end}", None)
-        return in_unit(value, error or 0.0, unit)
+        return in_unit(value, error or self._error_of_root(name), unit)
+
+    def _error_of_root(self, name: str) -> float:
+        """Error of a value that is a power of the result of a search; 0 for other values."""
+        record = self.record
+        if record.sought is None:
+            return 0.0
+        sized = "contact_radius" in record.understood
+        key = f"{record.sought} of a size" if sized and record.sought == "load" else record.sought
+        powers = POWERS[key] | (SPINS.get(key, {}) if record.kind.unit == "rad" else {})
+        share = record.sought_error / record.sought_value if record.sought_value else 0.0
+        return abs(powers.get(name, 0.0) * share * getattr(record, name))
 
     def _interval(self, stem: str, end: str) -> str:
         """The text of a 95 % interval, with its method."""
