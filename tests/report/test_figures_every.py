@@ -31,10 +31,15 @@ def arguments() -> dict[str, tuple[str, dict]]:
     figures = {name: (name, stub.pulled() | datasets | paper) for name in drawing.FIGURES}
     for name in ("drives", "pairs"):
         figures[name] = name, stub.pulled()
+    few = stub.fake_transverse(7)
+    few["converged"][2, 2] = 0
     static = certified_stub.bore(velocity=[0], poisson=[0.1, 0.4])
     return figures | {
         "poisson": ("poisson", ratios),
         "two maps": ("fig2_transverse_map", ratios),
+        "coarse": ("fig2_transverse_map", {"transverse": stub.at_ratios(few, 0.0, 0.2, 0.4)}),
+        "coarse motion": ("extended_motions", {"a": stub.at_ratios(stub.holed(), 0.0, 0.3)}),
+        "coarse motions": ("extended_motions", {"a": stub.holed(), **stub.motions(2)}),
         "fit": ("fit", {"fit": fit_stub.fitted()}),
         "certified": ("certified_bore", {"certified_bore": certified_stub.bore()}),
         "deep": ("certified_bore", {"certified_bore": certified_stub.bore(poisson=[0.1, 0.4])}),
@@ -46,7 +51,8 @@ def arguments() -> dict[str, tuple[str, dict]]:
 
 
 FIGURES = arguments()
-SOME = ("fig1_force_history", "fig5_transients", "pairs", "certified static", "lines")
+SOME = ("fig1_force_history", "fig5_transients", "pairs", "certified static", "lines", "coarse")
+SOME += ("coarse motion", "coarse motions")
 """Figures that are drawn in every run."""
 each = pytest.mark.parametrize(
     "name", [pytest.param(n, marks=() if n in SOME else pytest.mark.long) for n in FIGURES]

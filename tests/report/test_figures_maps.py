@@ -291,6 +291,60 @@ def test_all_of_poissons_ratios_of_a_group_are_drawn():
         assert len(maps_in(figure)) == drawn
 
 
+def blank(figure, axes, dataset):
+    """Points of a dataset at which the drawn figure is white."""
+    image = pixels(figure)
+    points = dataset.mu_macro.to_series().dropna().reset_index()
+    at = axes.transData.transform(points[["velocity", "amplitude"]].values)
+    column, row = at.round().astype(int).T
+    row = image.shape[0] - row
+    near = [image[r - 3 : r + 4, c - 3 : c + 4].min() for r, c in zip(row, column, strict=True)]
+    return points[np.array(near) > 240]
+
+
+@pytest.mark.parametrize("size", [(7, 5), (15, 13)])
+@pytest.mark.parametrize("ratios", [(0.0,), (0.0, 0.3)])
+def test_every_value_of_a_map_is_visible_as_colour_or_marker(size, ratios):
+    """Half of the points have no value, so that no cell of the map has a colour."""
+    dataset = stub.holed(*size)
+    shown = stub.at_ratios(dataset, *ratios) if len(ratios) > 1 else dataset
+    figure = drawing.draw("extended_motions", {"m": shown})
+    assert blank(figure, figure.axes[0], dataset).empty
+    assert "computed points" in words(figure)
+
+
+def test_a_coarse_map_at_several_ratios_has_colour_and_says_that_contours_end():
+    dataset = mapped(7, 5)
+    figure = drawing.draw("extended_motions", {"m": stub.at_ratios(dataset, 0.0, 0.3)})
+    axes = figure.axes[0]
+    finer = dataset.interp(
+        velocity=np.geomspace(0.011, 9, 20), amplitude=np.linspace(0.25, 2.9, 20)
+    )
+    assert blank(figure, axes, finer).empty
+    assert "contours only where certain" in words(figure)
+    assert len(artists(axes, "points")[0].get_xdata()) == 35
+
+
+@pytest.mark.parametrize("velocity", [0.1, 1e-3])
+def test_figure_2_names_the_velocities_of_the_markers_and_of_the_limits(velocity):
+    dataset = stub.fake_transverse(5).assign_coords(velocity=velocity * np.geomspace(1, 100, 5))
+    text = words(drawing.draw("fig2_transverse_map", {"transverse": dataset}))
+    assert f"markers: $\\tilde v_0 = {look.number(velocity)}$" in text.replace("{v}", " v")
+    assert "\\to 0$" in text
+
+
+def test_all_computed_values_of_a_cut_are_inside_its_panel():
+    """Values can exceed 1, and static friction can vanish well before the largest amplitude."""
+    dataset = stub.at_ratios(stub.fake_transverse(9), 0.0, 0.2, 0.4)
+    figure = drawing.draw("fig2_transverse_map", {"transverse": dataset})
+    markers = artists(figure, "computed")
+    assert len(markers) == 6
+    for line in markers:
+        box = line.axes.get_window_extent().padded(1)
+        assert box.count_contains(line.axes.transData.transform(line.get_xydata())) == 9
+    assert len({line.get_markersize() for line in markers}) == 3  # all at one place can be seen
+
+
 # Lines
 
 

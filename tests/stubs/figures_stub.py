@@ -136,6 +136,17 @@ def spanning(title="", shift=0.0, amplitude_label="x0 / u_lim", group="motions")
     )
 
 
+def holed(velocities: int = 7, amplitudes: int = 5) -> xr.Dataset:
+    """A coarse map in which every second point along each axis has no value."""
+    velocity, amplitude = np.geomspace(1e-2, 3, velocities), np.linspace(0.2, 3, amplitudes)
+    mu = paper.large_amplitude_transverse(velocity, amplitude[:, None])
+    mu[1::2, 1::2] = np.nan
+    coords = {"amplitude": amplitude, "velocity": velocity, "poisson": 0.0}
+    dataset = xr.Dataset(fake_map(mu), coords, {"title": "a motion", "group": "motions"})
+    dataset["converged"] = np.isfinite(dataset["mu_macro"]).astype(np.int8)
+    return labelled(dataset, "x0 / u_lim")
+
+
 def static(title="", velocity=(0.0, 1e-3), power=1.0, **more) -> xr.Dataset:
     """Static friction against amplitude, and friction at a small velocity."""
     amplitude, velocity = np.linspace(0, 1.2, 7), np.array(velocity)

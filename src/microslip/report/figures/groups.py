@@ -67,10 +67,10 @@ def _maps(datasets: Sequence[xr.Dataset], titles: Sequence[str]) -> Figure:
     figure = look.new_figure(width, rows * HEIGHT[columns_] + AROUND)
     fills, contours = levels_of(datasets)
     grid = panels.grid(figure, count, columns_)
-    entries: dict[str, Artist] = {}
+    entries: list[Artist] = []
     for axes, dataset, title in zip(grid, datasets, titles, strict=True):
         filled, handles, _ = fill(axes, dataset, fills, contours, look.SMALLEST)
-        entries |= {str(handle.get_label()): handle for handle in handles}
+        entries += handles
         axes.set_gid("map")
         panels.heading(axes, title, 0.8 * width / columns_ - 0.1)
     for dim in ("velocity", "amplitude"):
@@ -78,7 +78,7 @@ def _maps(datasets: Sequence[xr.Dataset], titles: Sequence[str]) -> Figure:
     label = look.FRICTION if rows > 1 or columns_ < 3 else look.FRICTION_IN_TWO_LINES
     ticks = fills[np.isclose(np.round(5 * fills), 5 * fills)]
     panels.colour_bar(filled, grid, label, aspect=20 * rows, ticks=ticks)
-    panels.legend_of_figure(figure, list(entries.values()), "lower right")
+    panels.legend_of_figure(figure, panels.merged(entries), "upper right")
     return figure
 
 

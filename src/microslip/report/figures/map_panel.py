@@ -1,4 +1,8 @@
-"""A panel with a map: bands, contours, and hatched cells around unconverged points."""
+"""A panel with a map: bands, contours, computed points, and hatched cells without a result.
+
+Every finite value of the dataset is visible, as a colour or as a marker.  What a panel leaves out
+is an entry of its legend, which is drawn outside of the panel.
+"""
 
 from __future__ import annotations
 
@@ -14,6 +18,7 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 from matplotlib.path import Path
 from matplotlib.patheffects import withStroke
+from scipy.ndimage import maximum_filter
 from scipy.spatial import KDTree
 
 from microslip.datasets.query.surface import Surface
@@ -27,6 +32,9 @@ FEW = len(LINE_LEVELS)
 """The points are drawn if an axis has fewer points than this."""
 POINTS: look.Ink = {"ls": "none", "marker": "o", "ms": 3.0, "color": look.BLACK}
 POINTS |= {"mec": "white", "mew": 0.4, "clip_on": False, "gid": "points"}
+BARE: look.Ink = {"marker": "o", "s": 22.0, "edgecolors": look.BLACK, "linewidths": 0.8}
+BARE |= {"clip_on": False, "zorder": 6, "gid": "bare-points"}
+"""Points beside cells without a colour. Their own colour is that of their value."""
 OUTLINE = 3.0
 """Line width of the outline of numbers, in points. Half of the line is outside the digits."""
 HATCHED: look.Ink = {"fc": (1.0, 1.0, 1.0, 0.45), "ec": look.BLACK, "lw": 0.0, "hatch": 6 * "/"}
@@ -95,7 +103,8 @@ def fill(
     """Fill a panel with `mu_macro` over velocity and amplitude, interpolated as in `microslip.at`.
 
     Contours end where the interpolation is too uncertain, see `Surface.supported`. In this case,
-    and on coarse maps, the computed points are drawn as well.
+    and on coarse maps, the computed points are drawn as well. Points beside a cell without a colour
+    are always drawn, in the colour of their value.
 
     Parameters
     ----------
@@ -113,34 +122,67 @@ def fill(
     shown = shown.transpose("amplitude", "velocity", ...)
     velocity, amplitude, mu = columns(shown, "velocity", "amplitude", "mu_macro")
     surface = Surface(velocity, amplitude, mu)
-    grid = surface.velocity, surface.amplitude
     colours, norm = signed.scale(fills)
     # Values that are outside the levels due to rounding would be white.
     inside = np.clip(surface.values, fills[0], fills[-1])
+    grid = surface.velocity, surface.amplitude
     filled = bands(axes, *grid, inside, levels=fills, cmap=colours, norm=norm)
-    supported = surface.supported(lines)
-    contours = axes.contour(
-        *grid,
-        supported,
-        levels=lines,
-        colors=signed.inks(lines, fills),
-        linestyles=["dashed" if level < 0 else "solid" for level in lines],
-        linewidths=[1.1 if level == 0 else 0.7 for level in lines],
-    )
-    contours.set_gid("contours")
+    dashes = ["dashed" if level < 0 else "solid" for level in lines]
+    contours, complete = draw_contours(axes, surface, fills, lines, linestyles=dashes)
     number_contours(axes, contours, size, filled)
     axes.set_ylim(*amplitude[[0, -1]])
     panels.logarithmic(axes, velocity[[0, -1]])
     panels.ticks_outside(axes)
     handles: list[Artist] = []
-    few = min(len(velocity), len(amplitude)) < FEW
-    if few or np.ma.count(supported) < np.ma.count(surface.values):
-        axes.plot(*map(np.ravel, np.meshgrid(velocity, amplitude)), **POINTS)
-        handles.append(Line2D([], [], label="computed points", **POINTS))
+    if min(mu.shape) < FEW or not (complete and np.isfinite(mu).all()):
+        handles.append(draw_points(axes, velocity, amplitude, mu))
+        if not complete:
+            handles[0].set_label("computed points; contours only where certain")
+    draw_bare_points(axes, velocity, amplitude, mu, filled)
     hatched = _hatch(axes, velocity, amplitude, shown["converged"].values != 0)
     if hatched:
         handles.append(Patch(label="not converged", **HATCHED))
     return filled, handles, hatched
+
+
+def draw_contours(
+    axes: Axes, surface: Surface, fills: np.ndarray, lines: np.ndarray, **ink: Any
+) -> tuple[ContourSet, bool]:
+    """Draw contours where they are reliable. fills: levels of the bands behind them.
+
+    Returns the contours, and whether they are drawn wherever the surface is known.
+    """
+    supported = surface.supported(lines)
+    ink = {"linewidths": [1.1 if level == 0 else 0.7 for level in lines], **ink}
+    colours = signed.inks(lines, fills)
+    grid = surface.velocity, surface.amplitude
+    contours = axes.contour(*grid, supported, levels=lines, colors=colours, **ink)
+    contours.set_gid("contours")
+    return contours, bool(np.ma.count(supported) == np.ma.count(surface.values))
+
+
+def draw_points(
+    axes: Axes, velocity: np.ndarray, amplitude: np.ndarray, values: np.ndarray
+) -> Artist:
+    """Draw dots at the points with a finite value. Returns the legend entry."""
+    row, column = np.nonzero(np.isfinite(values))
+    axes.plot(velocity[column], amplitude[row], **POINTS)
+    return Line2D([], [], label="computed points", **POINTS)
+
+
+def draw_bare_points(
+    axes: Axes,
+    velocity: np.ndarray,
+    amplitude: np.ndarray,
+    values: np.ndarray,
+    filled: ContourSet,
+) -> None:
+    """Draw the points beside a cell without a colour, in the colour that `filled` has for them."""
+    bare = np.isfinite(values) & maximum_filter(~np.isfinite(values), 3, mode="nearest")
+    row, column = np.nonzero(bare)
+    ends = np.sort(np.array(filled.levels))[[0, -1]]
+    ink: look.Ink = {"cmap": filled.cmap, "norm": filled.norm, **BARE}
+    axes.scatter(velocity[column], amplitude[row], c=np.clip(values[bare], *ends), **ink)
 
 
 def _hatch(axes: Axes, velocity: np.ndarray, amplitude: np.ndarray, converged: np.ndarray) -> int:

@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 import xarray as xr
+from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
@@ -35,8 +36,10 @@ CURVES: dict[str, dict[str, tuple[str, Any]]] = {
     },
 }
 """Colour and line style of the closed forms of each motion."""
-NOTHING = 0.02
-"""Curves are not shown below this friction. It also determines where a cut's axis ends."""
+LARGER = 1.3
+"""Difference in points between the sizes of the markers of two Poisson's ratios."""
+MARGIN = 0.04
+"""Margin above and below the points of a cut, relative to their range."""
 POISSONS = (
     (look.BLACK, "o"),
     (look.PURPLE, "s"),
@@ -69,20 +72,23 @@ def draw(name: str, dataset: xr.Dataset) -> Figure:
     alone = len(parts) == 1
     quantities = VELOCITY[motion], AMPLITUDE[motion]
     labels = [look.axis(one if alone else replace(one, unit="")) for one in quantities]
+    entries: list[Artist] = []
+    unconverged = 0
     for index, (axes, part) in enumerate(zip(maps, parts, strict=True)):
         poisson = float(part["poisson"])
-        filled, handles, unconverged = fill(axes, part)
+        filled, handles, hatched = fill(axes, part)
+        unconverged += hatched
+        entries += handles
         ratio = rf"$\nu = {look.number(poisson)}$" if len(every) > 1 or poisson else ""
         panels.heading(axes, ratio)
         axes.set_xlabel(labels[0])
-        if handles:
-            if unconverged:
-                handles[-1].set_label(f"not converged ({unconverged} of {part['mu_macro'].size})")
-            above: look.Ink = {"loc": "lower right", "bbox_to_anchor": (1.0, 1.0)}
-            above |= {"borderaxespad": 0.2}
-            axes.legend(handles=handles, **above)
         if index % ACROSS == 0:
             axes.set_ylabel(labels[1])
+    entries = panels.merged(entries)
+    if unconverged:
+        size = sum(part["mu_macro"].size for part in parts)
+        entries[-1].set_label(f"not converged ({unconverged} of {size})")
+    panels.legend_of_figure(maps[0].figure, entries, "lower center", ncols=1 if alone else None)
     friction = look.FRICTION if alone else look.FRICTION_IN_TWO_LINES
     panels.colour_bar(filled, maps, friction, aspect=32, ticks=np.linspace(0, 1, 6))
     _static_cut(static_cut, parts, motion)
@@ -111,18 +117,14 @@ def _static_cut(axes: Axes, parts: list[xr.Dataset], motion: str) -> None:
         if name != LARGE:
             _curve(axes, parts, motion, name, velocity=velocity)
     _points(axes, [part.sel(velocity=velocity) for part in parts], "amplitude")
-    where = "left edge" if velocity > 0 else "static limit"
-    at = look.conditions([(VELOCITY[motion].latex, velocity)])
-    panels.legend_above(axes, f"{where}, {at}")
-    axes.set(xlabel=look.axis(AMPLITUDE[motion]), xlim=_where_not_zero(axes))
-
-
-def _where_not_zero(axes: Axes) -> tuple[float, float]:
-    """Return the x range where a line is above `NOTHING`, with the upper end multiplied by 1.5."""
-    x, y = np.concatenate([line.get_xydata() for line in axes.get_lines()]).T
-    last = x[y > NOTHING].max(initial=x.min())
-    following = x[x > last].min(initial=x.max())
-    return x.min(), min(max(1.5 * last, following), x.max())
+    symbol = VELOCITY[motion].latex
+    where = rf"limit for ${symbol} \to 0$"
+    if velocity > 0:
+        at = look.conditions([(symbol, velocity)])
+        where = f"left edge, markers: {at},\nlines: {where}"
+    panels.legend_above(axes, where)
+    axes.set_xlabel(look.axis(AMPLITUDE[motion]))
+    axes.margins(x=0.0)
 
 
 def _large_cut(axes: Axes, parts: list[xr.Dataset], motion: str) -> None:
@@ -149,9 +151,16 @@ def _curve(axes: Axes, parts: list[xr.Dataset], motion: str, name: str, **at: fl
 
 def _points(axes: Axes, cut: list[xr.Dataset], dim: str) -> None:
     """Draw the computed points of a cut and set the vertical axis."""
-    for line, (color, marker) in zip(cut, POISSONS, strict=False):
+    for index, (line, (color, marker)) in enumerate(zip(cut, POISSONS, strict=False)):
         ratio = rf", $\nu = {look.number(float(line['poisson']))}$" if len(cut) > 1 else ""
         points = columns(line, dim, "mu_macro", "mu_macro_error", "converged")
-        panels.computed(axes, *points, label=f"computed{ratio}", color=color, marker=marker)
+        ink: look.Ink = {"color": color, "marker": marker, "clip_on": False}
+        # Later markers are smaller and in front, so that all markers at one place can be seen.
+        ink |= {"ms": look.COMPUTED["ms"] + LARGER * (len(cut) - 1 - index), "zorder": 5 + index}
+        panels.computed(axes, *points, label=f"computed{ratio}", **ink)
+    values = np.concatenate([line["mu_macro"].values for line in cut])
+    low, high = (f(values, initial=end) for f, end in ((np.nanmin, 0.0), (np.nanmax, 1.0)))
     panels.unit_range(axes)
+    margin = MARGIN * (high - low)
+    axes.set_ylim(low - margin, high + margin)
     axes.set_ylabel(look.FRICTION_IN_TWO_LINES)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from typing import Any
 
 import numpy as np
@@ -47,9 +47,12 @@ def heading(axes: Axes, note: str = "", room: float = np.inf) -> None:
     axes.set_title(text, loc="left", pad=5, fontsize=look.HEADING)
 
 
-def legend_above(axes: Axes, note: str = "", ncols: int = 2) -> None:
-    """Write a letter, a note and a legend above a panel."""
+def legend_above(
+    axes: Axes, note: str = "", ncols: int = 2, handles: Sequence[Artist] | None = None
+) -> None:
+    """Write a letter, a note and a legend above a panel. handles: replace the panel's entries."""
     legend = axes.legend(
+        handles=axes.get_legend_handles_labels()[0] if handles is None else handles,
         title=lettered(axes, note),
         title_fontsize=look.HEADING,
         alignment="left",
@@ -66,13 +69,27 @@ def legend_above(axes: Axes, note: str = "", ncols: int = 2) -> None:
 
 
 def legend_of_figure(
-    figure: Figure, handles: Sequence[Artist], where: str = "upper center", ncols: int | None = None
+    figure: Figure | SubFigure,
+    handles: Sequence[Artist],
+    where: str = "upper center",
+    ncols: int | None = None,
 ) -> None:
     """Add one legend for all panels, outside the panels."""
     if handles:
         columns = ncols or len(handles)
         place: look.Ink = {"loc": f"outside {where}", "ncols": columns}
         figure.legend(handles=handles, columnspacing=1.6, **place)
+
+
+def merged(handles: Iterable[Artist]) -> list[Artist]:
+    """Return one legend entry for each kind of artist, the one with the longest label.
+
+    The entries are in the order of the names of the kinds: lines and markers, then patches.
+    """
+    entries: dict[str, Artist] = {}
+    for handle in sorted(handles, key=lambda handle: len(str(handle.get_label()))):
+        entries[type(handle).__name__] = handle
+    return [entries[kind] for kind in sorted(entries)]
 
 
 def colour_bar(
