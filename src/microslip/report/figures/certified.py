@@ -8,7 +8,7 @@ from __future__ import annotations
 import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
-from matplotlib.collections import LineCollection, PolyCollection
+from matplotlib.collections import PolyCollection
 from matplotlib.figure import Figure
 
 from microslip.datasets import certified_map
@@ -33,7 +33,7 @@ SIDE = np.linspace(0.0, 1.0, 17)
 
 
 def draw(name: str, dataset: xr.Dataset) -> Figure:
-    """Draw the map with its cells and points, and the error bound of each cell.
+    """Draw the map, and its cells with their error bounds and the computed points.
 
     A map with several Poisson's ratios is drawn at the smallest ratio. A map of the static limit is
     drawn as a line.
@@ -52,7 +52,7 @@ def draw(name: str, dataset: xr.Dataset) -> Figure:
         grid = grid.assign(converged=np.isfinite(grid["mu_macro"]))
         filled, *_ = fill(left, grid, lines=CONTOURS)
         panels.colour_bar(filled, left, look.FRICTION, aspect=20, ticks=np.linspace(0, 1, 6))
-    errors = _show_cells(left, right, dataset, _points(dataset, poisson), across)
+    errors = _show_cells(right, dataset, _points(dataset, poisson), across)
     panels.colour_bar(errors, right, BOUND, aspect=20)
     ratio = rf" at $\nu = {look.number(poisson)}$" if poisson or _is_deep(dataset) else ""
     panels.heading(left, f"{_points_of(dataset)}, {len(dataset['cell_error'])} cells")
@@ -80,20 +80,17 @@ def _drift(left: Axes, right: Axes, dataset: xr.Dataset) -> None:
     left.set(xlim=(0.0, coordinates.force), ylim=coordinates.amplitude)
 
 
-def _show_cells(
-    left: Axes, right: Axes, dataset: xr.Dataset, at: xr.Dataset, across: str
-) -> PolyCollection:
-    """Draw cells and points on the left panel, and error bounds on the right one.
+def _show_cells(axes: Axes, dataset: xr.Dataset, at: xr.Dataset, across: str) -> PolyCollection:
+    """Draw cells in the colours of their error bounds, and the computed points.
 
-    at: dataset of the points; across: variable of the abscissa. Returns the artist of the bounds.
+    at: dataset of the points; across: variable of the abscissa. Returns the artist of the cells.
     """
     outlines, errors = _cells(dataset)
-    left.add_collection(LineCollection(outlines, colors=look.VERMILLION, lw=0.7, gid="cells"))
-    ink: look.Ink = {"color": look.BLACK, "ms": 2.2, "clip_on": False, "gid": "points"}
-    left.plot(at[across], at["amplitude"], ".", **ink)
+    ink: look.Ink = {"color": look.VERMILLION, "ms": 2.2, "clip_on": False, "gid": "points"}
+    axes.plot(at[across], at["amplitude"], ".", **ink)
     shades = PolyCollection(outlines, array=1e3 * errors, cmap=look.COLOURMAP, gid="errors")
     shades.set(edgecolors="white", linewidths=0.6, clim=(0.0, 1e3 * float(dataset.attrs["error"])))
-    right.add_collection(shades)
+    axes.add_collection(shades)
     return shades
 
 
