@@ -1,11 +1,14 @@
 """Test sweeps with kills, signals and damaged files at random moments, then run them again.
 
-    python benchmarks/faults.py [--rounds N] [--seed S] [--markdown FILE]
+    python benchmarks/faults.py [--rounds N] [--seed S] [--only FAULT] [--markdown FILE]
 
 The project is copied to a temporary folder, and the sweeps of config/smoke.yaml are run once
 without a fault. Every round removes a random part of the results. Then Snakemake is killed (alone
-or with its jobs) or receives SIGINT or SIGTERM, or files are damaged. The sweeps are run again
-without special options; the folder is unlocked first if Snakemake asks for it. Afterwards all
+or with its jobs) or receives SIGINT or SIGTERM, or files are damaged. The sweeps are run once more
+without special options; the folder is unlocked first if Snakemake asks for it. The jobs of a
+Snakemake process that was killed alone go on: in every other round they end before the next run,
+in the others they run beside it. The table counts the signals that came while a job was
+running. Afterwards all
 results except logs must be equal to those of the first run, bit for bit. Points stored before a
 signal must not be lost or written again. The search for processes works on Linux. Full and
 read-only disks are tested in tests/sweeps and tests/app.
@@ -115,6 +118,15 @@ def wait_for_all(running):
         time.sleep(0.1)
 
 
+def job_runs(running):
+    """True if a script of a job is running in the session of a process."""
+    for pid in processes(running):
+        with suppress(psutil.Error):
+            if any("/.snakemake/scripts/" in word for word in psutil.Process(pid).cmdline()):
+                return True
+    return False
+
+
 def damage(path, rng):
     """Truncate a file, empty it, flip one bit, or replace its content."""
     whole = path.read_bytes()
@@ -124,13 +136,17 @@ def damage(path, rng):
     path.write_bytes(rng.choice([short, b"", bytes(flipped), rng.randbytes(5000)]))
 
 
-def round_of(project, fault, reference, seconds, rng):
-    """Findings after one fault, as a list of sentences. It is empty if no result has changed."""
+def round_of(project, fault, reference, seconds, rng, jobs_end_first):
+    """Cause one fault, and run again.
+
+    Returns findings, a list of sentences, which is empty if no result has changed, and whether a
+    job was running when the signal came.
+    """
     chosen = rng.choice([1.0, 0.5, 0.2])
     for path in project.files().values():
         if rng.random() < chosen:
             path.unlink()
-    before, findings = project.stored(), []
+    before, findings, during = project.stored(), [], False
     if fault == DAMAGE:
         files = list(project.files().values())
         for path in rng.sample(files, min(3, len(files))):
@@ -139,17 +155,23 @@ def round_of(project, fault, reference, seconds, rng):
         number, everybody = SIGNALS[fault]
         running = project.start()
         time.sleep(rng.uniform(0.0, chosen * seconds))
+        during = running.poll() is None and job_runs(running)
         for pid in list(processes(running)) if everybody else [running.pid]:
             with suppress(ProcessLookupError):
                 os.kill(pid, number)
-        wait_for_all(running)
+        running.wait()
+        if jobs_end_first or number != signal.SIGKILL:
+            wait_for_all(running)
         after = project.stored()
         findings += [f"lost or written again: {n}" for n in before if after.get(n) != before[n]]
     output = project.run()
+    if fault != DAMAGE:
+        wait_for_all(running)
     findings += [f"the plain re-run failed: {output[-2000:]}"] if output else []
     digests = project.digests()
     names = sorted(digests.keys() | reference.keys())
-    return findings + [f"changed: {n}" for n in names if digests.get(n) != reference.get(n)]
+    findings += [f"changed: {n}" for n in names if digests.get(n) != reference.get(n)]
+    return findings, during
 
 
 def main():
@@ -158,6 +180,7 @@ def main():
         "--rounds", type=int, default=20, help="number of rounds for each kind of fault"
     )
     parser.add_argument("--seed", type=int, default=1)
+    parser.add_argument("--only", choices=[*SIGNALS, DAMAGE], help="one kind of fault")
     options = parser.parse_args()
     with tempfile.TemporaryDirectory(prefix="faults-") as folder:
         project = Project(Path(folder, "project"))
@@ -168,13 +191,22 @@ def main():
                 sys.exit(f"the run without a fault failed:\n{output}")
         seconds, reference = time.perf_counter() - started, project.digests()
         rows, all_findings = [], []
-        for fault in (*SIGNALS, DAMAGE):
-            findings = []
+        for fault in [options.only] if options.only else (*SIGNALS, DAMAGE):
+            findings, while_a_job_ran = [], 0
             for index in tqdm(range(options.rounds), desc=fault):
                 rng = random.Random(f"{options.seed} {fault} {index}")
-                findings += round_of(project, fault, reference, seconds, rng)
+                round_findings, during = round_of(
+                    project, fault, reference, seconds, rng, jobs_end_first=index % 2 == 0
+                )
+                findings += round_findings
+                while_a_job_ran += during
             rows.append(
-                {"fault": fault, "times": options.rounds, "findings": len(findings) or "none"}
+                {
+                    "fault": fault,
+                    "times": options.rounds,
+                    "while a job ran": "-" if fault == DAMAGE else while_a_job_ran,
+                    "findings": len(findings) or "none",
+                }
             )
             all_findings += [f"- {fault}: {one}" for one in findings]
     tables.publish("\n".join([tables.markdown(rows), "", *all_findings]), options)

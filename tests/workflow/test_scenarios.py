@@ -9,7 +9,7 @@ import time
 
 import pytest
 import xarray as xr
-from stubs.workflow_project import ENVIRONMENT, SNAKEMAKE, Project, jobs_in
+from stubs.workflow_project import ENVIRONMENT, RUN, SNAKEMAKE, Project, jobs_in
 
 pytestmark = pytest.mark.long
 
@@ -26,6 +26,8 @@ def solve(**arguments):
     with open(_folder / "solved", "a") as file:
         file.write(f"{arguments}\\n" if "cells" in arguments else "")  # not to compile
     time.sleep(0.3 * (_folder / "slow").exists())
+    while (_folder / "hold").exists():
+        time.sleep(0.05)
     return _solve(**arguments)
 """
 
@@ -94,17 +96,21 @@ def test_a_grown_axis_solves_its_new_points_alone(axis, values, batches, new, pr
     assert jobs_in(project.run(DATASET)) == {"collect": 1}
 
 
-def killed(project, seconds):
-    """Start a run, and kill it with its jobs after some seconds."""
-    command = [SNAKEMAKE, DATASET, "-j2", "--configfile", "tiny.yaml", "--nolock"]
-    running = subprocess.Popen(
-        command,
+def started(project, *arguments):
+    """Start a run as the leader of a session."""
+    return subprocess.Popen(
+        [SNAKEMAKE, *arguments, *RUN],
         cwd=project.folder,
         env=ENVIRONMENT,
         stdout=subprocess.DEVNULL,
         stderr=subprocess.DEVNULL,
         start_new_session=True,
     )
+
+
+def killed(project, seconds):
+    """Start a run, and kill it with its jobs after some seconds."""
+    running = started(project, DATASET, "--nolock")
     time.sleep(seconds)
     os.killpg(running.pid, signal.SIGKILL)
     running.wait()
@@ -126,6 +132,63 @@ def test_kills_lose_the_points_in_flight_at_most(finished, project):
     assert len(solved) - 9 <= 6 * 2
     assert (project.folder / DATASET).read_bytes() == (finished.folder / DATASET).read_bytes()
     assert project.planned(DATASET) == {}
+
+
+def wait_until(holds):
+    for _ in range(1000):
+        if holds():
+            return
+        time.sleep(0.1)
+    pytest.fail("it never happens")
+
+
+def is_alive(session):
+    """True if a process of the session runs, or may not be looked at."""
+    try:
+        os.killpg(session, 0)
+    except ProcessLookupError:
+        return False
+    return True
+
+
+PLAIN = ["--workflow-profile", "none", "--rerun-triggers", "mtime", "--rerun-incomplete"]
+
+
+@pytest.mark.parametrize(
+    ("moment", "options"),
+    [("after its jobs", []), ("after its jobs", PLAIN), ("beside its jobs", [])],
+    ids=["after", "after, without the profile", "beside"],
+)
+def test_one_run_makes_every_file_after_a_kill_of_snakemake_alone(
+    moment, options, finished, project
+):
+    """The jobs of the killed process go on, and end before the next run begins or during it."""
+    shutil.rmtree(project.folder / "results" / "points")
+    shutil.rmtree(project.folder / "results" / "batches")
+    for name in (DATASET, FIGURE, "solved"):
+        (project.folder / name).unlink()
+    (project.folder / "hold").touch()
+    running = started(project, DATASET, FIGURE)
+    try:
+        wait_until(project.solved)
+        running.kill()
+        running.wait()
+        assert is_alive(running.pid)  # the job that solves
+        assert not list(project.folder.glob("results/batches/*/*"))
+        if moment == "after its jobs":
+            (project.folder / "hold").unlink()
+            wait_until(lambda: not is_alive(running.pid))
+            assert list(project.folder.glob("results/batches/*/*"))
+        assert project.snakemake("--unlock", *RUN).returncode == 0
+        (project.folder / "hold").unlink(missing_ok=True)
+        project.run(DATASET, FIGURE, *options)
+        wait_until(lambda: not is_alive(running.pid))
+    finally:
+        if is_alive(running.pid):
+            os.killpg(running.pid, signal.SIGKILL)
+    for file in (DATASET, FIGURE):
+        assert (project.folder / file).read_bytes() == (finished.folder / file).read_bytes()
+    assert project.planned(DATASET, FIGURE) == {}
 
 
 def forget(project):

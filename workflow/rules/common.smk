@@ -128,19 +128,27 @@ def is_right(product):
     return right
 
 
+# Snakemake runs an existing file with its mark of an unfinished job again, and from there it does
+# not follow an ancient input.  So an input is ancient only where the product itself is up to date.
+
+
 def batches_for(product):
-    """Return the batches of a product. Whole batches are ancient, so that they start no job."""
+    """Return the batches of a product. Whole batches of a product that is up to date are ancient,
+    so that they start no job."""
     names = PLAN.batch_files(*PLAN.products[product].groups)
     if HERE and not is_right(product):
         missing = [f for f in names if not (is_whole(f) and os.path.exists(f"{PLACE}/{f}"))]
         TO_SOLVE.update(dict.fromkeys(missing))
-    return [(ancient if is_whole(file) else str)(f"{RESULTS}/{file}") for file in names]
+    dated = ancient if is_right(product) else str
+    return [(dated if is_whole(file) else str)(f"{RESULTS}/{file}") for file in names]
 
 
 def datasets_for(product):
-    """Return the datasets of a product. Datasets that are up to date are ancient."""
+    """Return the datasets of a product. If it and a dataset are up to date, the dataset is
+    ancient."""
     names = PLAN.products[product].datasets
-    return [(ancient if is_right(name) else str)(f"{RESULTS}/{name}.nc") for name in names]
+    dated = ancient if is_right(product) else str
+    return [(dated if is_right(name) else str)(f"{RESULTS}/{name}.nc") for name in names]
 
 
 def batch_of(group, name):
