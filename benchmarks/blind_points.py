@@ -63,7 +63,9 @@ class Stratum:
         Function of the random generator that draws a drive as a dict of `microslip.solve`
         arguments. A force replaces the velocity.
     contacts : tuple of str
-        Equally probable strings that describe several contacts.
+        Equally probable strings that describe several contacts on one body. The solver has no
+        such contacts any more. Their points are drawn but not solved, so that the numbers and
+        the references of all other points remain.
     """
 
     name: str

@@ -28,7 +28,6 @@ _WHERE = {
     "TransverseBore": "microslip.motions.named",
     "Force": "microslip.motions.drive",
     "Spring": "microslip.motions.drive",
-    "BodyContact": "microslip.motions.body_contacts",
     "Sampled": "microslip.motions.samples",
     "Pressure": "microslip.pressures.pressure",
     "Hertz": "microslip.pressures.hertz",

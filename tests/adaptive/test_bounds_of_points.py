@@ -16,7 +16,7 @@ from microslip.models.registry import MODELS
 from microslip.motions.by_name import motion_named
 from microslip.motions.problem import Problem
 from microslip.solver.budget import Budget, Spent
-from microslip.solver.discretise import Resolution, build_contact, path_of
+from microslip.solver.discretise import Resolution, contact_of, path_of
 from microslip.solver.simulate import Settings, simulate
 from microslip.solver.static_run import simulate_static
 
@@ -111,9 +111,9 @@ def test_ctrl_c_ends_a_march_that_would_take_minutes(name):
     interrupted."""
     label, model, resolution = MARCHES[name]
     motion = Problem(motion_named(label), 0.01, 0.5, 0.0)
-    contact = build_contact(motion, model, Resolution(4, 4, 2))
+    contact = contact_of(motion, model, Resolution(4, 4, 2))
     contact.march(path_of(motion, contact, 2), forward_slip(contact), 1e-3)  # compiles
-    contact = build_contact(motion, model, resolution)
+    contact = contact_of(motion, model, resolution)
     path, returned = path_of(motion, contact, resolution.steps), threading.Event()
     timer = threading.Timer(0.3, os.kill, (os.getpid(), signal.SIGINT))
     timer.start()
@@ -129,7 +129,7 @@ def test_ctrl_c_ends_a_march_that_would_take_minutes(name):
 def test_a_march_is_done_again_where_the_program_goes_on_after_ctrl_c(monkeypatch):
     """With a signal handler that does not raise, the result is the same as without a signal."""
     motion = Problem(motion_named("transverse"), 0.1, 0.5, 0.0)
-    contact = build_contact(motion, "radial", Resolution(4, 1, 4))
+    contact = contact_of(motion, "radial", Resolution(4, 1, 4))
     path, state = path_of(motion, contact, 4), forward_slip(contact)
     expected, march, calls, heard = contact.march(path, state, 1e-8), system_contact.march, [], []
 

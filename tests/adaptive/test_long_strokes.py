@@ -32,11 +32,3 @@ def test_tolerances_agree(velocity, amplitude):
     )
     assert_agree(rough, finest)
     assert_agree(finer, finest)
-
-
-def test_several_contacts_with_long_strokes_are_each_alone():
-    """At a prescribed velocity contacts do not interact."""
-    place, tolerance = ("transverse", 115.0, 50000.0), {"tolerance": 1e-3}
-    alone = microslip.solve(*place, **tolerance)
-    result = microslip.solve(*place, contacts="phase=0;phase=90", **tolerance)
-    assert_agree(result, alone)

@@ -15,7 +15,7 @@ from microslip.models.path import make_path, phases_between
 from microslip.motions.by_name import motion_named
 from microslip.motions.problem import Problem
 from microslip.pressures.hertz import HERTZ
-from microslip.solver.discretise import Resolution, build_contact
+from microslip.solver.discretise import Resolution, contact_of
 
 EIGHT = "elliptic:forward_cycles=2,phase=0"
 
@@ -173,7 +173,7 @@ def test_marched_back_without_a_mirror():
     """A plain march on a backward path, from the stress-free contact."""
     velocity, phases = -0.3, phases_between((-0.5 * np.pi, 0.5 * np.pi, 1.5 * np.pi), 64)
     problem = Problem(motion_named("elliptic:forward_cycles=2,phase=20"), 0.3, 1.0, 0.0)
-    contact = build_contact(problem, "radial", Resolution(24, 1, 64))
+    contact = contact_of(problem, "radial", Resolution(24, 1, 64))
     path = make_path(replace(problem, velocity=velocity).displacement, phases)
     state = 0.0 * forward_slip(contact)
     for _ in range(4):

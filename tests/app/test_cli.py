@@ -188,14 +188,3 @@ def test_a_time_limit_ends_a_point_as_not_converged(capsys):
     assert cli.main([*slow, "--tolerance", "1e-6", "--time-limit", "1e-9"]) == 1
     message = json.loads(capsys.readouterr().out)
     assert message["exhausted"] == "time" and "time limit" in message["reason"]
-
-
-def test_point_knows_several_contacts(capsys):
-    words = ["point", "longitudinal", "--amplitude", "0.5", "--force", "0.3", "--json"]
-    assert cli.main([*words, "--contacts", "phase=0;phase=180"]) == 0
-    message = json.loads(capsys.readouterr().out)
-    assert message["velocity"] == 0.0
-    assert message["contacts"] == "load=1,phase=0,amplitude=1;load=1,phase=180,amplitude=1"
-    assert cli.main([*words, "--contacts", "phase=0;"]) == 2
-    line = capsys.readouterr().err
-    assert line.count("\n") == 1 and "--contacts = 'phase=0;': contact 2: in it ''" in line

@@ -29,15 +29,11 @@ NUMBERS = [
     (f"{SHAKEN} --velocity", "--velocity", "expected one argument"),
     (f"{SPUN} --amplitude -0.5", "--amplitude = '-0.5'", FINITE),
     (f"{SPUN} --amplitude 1e999", "--amplitude = '1e999'", BEYOND),
-    (f"{TRANSVERSE} --contacts mass=1", "--contacts = 'mass=1'", "allowed: load, phase, amplitude"),
     (f"{SHAKEN} --force -0.1", "--force = '-0.1'", "at least 0: transverse propels nothing"),
     (f"{TRANSVERSE} --force 0.1", "--force = '0.1'", "a force or a velocity, not both"),
     (f"{SHAKEN} --force 0.1 --stiffness 1", "--stiffness = '1'", "none beside a force"),
     (f"{SHAKEN} --force 0.1 --damping 1", "--damping = '1'", "none beside a force"),
-    (f"{SHAKEN} --force 0.1 --contacts 'load=0'", "--contacts = 'load=0'", "in 0.001..1000"),
-    (f"{SHAKEN} --force 0.1 --contacts 'phase=1;'", "--contacts = 'phase=1;'", "contact 2"),
     ("point elliptic:forward --velocity 1 --amplitude 1", "MOTION", "in it 'forward'"),
-    ("point continuous-bore --velocity 1 --contacts phase=1", "--contacts", "does not oscillate"),
     (f"{SHAKEN} --force 0.1 --model rigid", "--model = 'rigid'", "supports no force"),
     (f"{SHAKEN} --force 0.1 --method march", "--method = 'march'", "shipped with a force"),
     (f"{TRANSVERSE} --stiffness 1e7", "--stiffness = '1e7'", "at most 1e+06"),
@@ -72,10 +68,8 @@ GRAMMAR = [
 OUT_OF_RANGE = [
     (f"{SHAKEN} --velocity 1e-400", "--velocity = '1e-400'", NEARER_0),
     (f"{TRANSVERSE} --time-limit 1e400", "--time-limit = '1e400'", BEYOND),
-    (f"{TRANSVERSE} --contacts phase=1e-400", "--contacts", "'phase=1e-400'", NEARER_0),
     (f"{TRANSVERSE} --pressure power:exponent=1e400", "'exponent=1e400'", BEYOND, "power:key=0.5"),
     (f"{PREDICTED} --nu 0 --tolerance 1e-400", "--tolerance = '1e-400'", "below the range"),
-    (f"{PREDICTED} --nu 0 --contacts 'phase=0;phase=1e-400'", "--contacts", NEARER_0),
 ]
 
 # argparse takes the last of two values.

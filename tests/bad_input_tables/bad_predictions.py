@@ -56,11 +56,6 @@ CONTACTS = [
     ({"radius": None, "pressure": "hertz"}, "--contact-radius: needed with a pressure"),
     (SIZED | {"pressure": "rong"}, "--pressure = 'rong'"),
     (SIZED | {"contact_radius": "1e-200 m"}, "--contact-radius = '1e-200 m': outside the range"),
-    ({"contacts": "load=1;mass=1"}, "--contacts = 'load=1;mass=1'"),
-    ({"contacts": "load=2;load=1", "radius_across": "7 mm"}, "allowed are equal loads"),
-    ({"contacts": "phase=0"} | SEARCH, "--reduction = '50 %': allowed only without contacts"),
-    ({"motion": "continuous-bore", "contacts": "phase=0"} | STEADY, "does not oscillate"),
-    (PRESSED | {"load_amplitude": "6 N", "contacts": "load=1;load=1"}, "at most the load"),
 ]
 BODIES = [
     ({"material": None}, "--young: needed, or a material"),

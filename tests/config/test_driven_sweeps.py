@@ -128,35 +128,3 @@ def test_a_point_that_is_pulled_is_stored_and_found_again(tmp_path):
         assert plain(first) == plain(again)
         stored, fresh = plain(first), {k: v for k, v in plain(answer).items() if v is not None}
         assert {name: stored[name] for name in fresh} == fresh
-
-
-PAIR = {
-    "motion": "longitudinal",
-    "amplitude": [0.3],
-    "force": [0.2],
-    "contacts": "load=2,phase=-180;load=2",
-}
-
-
-def test_several_contacts_are_part_of_every_request_and_of_the_dataset(tmp_path):
-    configuration = configured(pair=PAIR)
-    sweep, store = configuration.drives["pair"], Store(tmp_path)
-    (request,) = batches.points_of(sweep).requests
-    assert request["contacts"] == "load=1,phase=180,amplitude=1;load=1,phase=0,amplitude=1"
-    points = [batches.answer(request, store)[0]]
-    assert points[0]["result"]["velocity"] == 0.0  # the force is below the static limit, 0.7^1.5
-    path = tmp_path / "pair.nc"
-    sweep_dataset.write_sweep(path, sweep, points, [], configuration.of_sweep("pair"))
-    with xr.open_dataset(path) as data:
-        assert data.attrs["contacts"] == PAIR["contacts"]
-        assert "mu_static" not in data and float(data["velocity"].squeeze()) == 0.0
-    stored = microslip.solve_stored(
-        "longitudinal", None, 0.3, force=0.2, contacts=PAIR["contacts"], results=tmp_path
-    )
-    assert stored.contacts == request["contacts"] and stored.converged
-    assert len(list(tmp_path.glob("points/*/*/*.json"))) == 1  # the stored result is used
-    with pytest.raises(load.ConfigError, match="pair.contacts: 'phase=': contact 1: in it"):
-        configured(pair=PAIR | {"contacts": "phase="})
-    unequal = {"motion": "normal", "contacts": "load=2;load=1"}
-    with pytest.raises(load.ConfigError, match="allowed are equal loads for normal"):
-        configured(pair=PAIR | unequal)

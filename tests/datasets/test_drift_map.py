@@ -110,7 +110,6 @@ BAD = [
     ({"motion": "longitudinal"}, "longitudinal under hertz"),
     ({"model": "mdr"}, "not allowed with model mdr, which has another threshold"),
     ({"amplitude": [0, 0.1], "force": [0.1, 0.5]}, "move nothing; allowed: a force above"),
-    ({"contacts": "phase=0;phase=180"}, "not allowed with force, contacts"),
     ({"force": None, "velocity": [0.1, 1], "stiffness": 1}, "not allowed with stiffness"),
 ]
 

@@ -8,7 +8,6 @@ from microslip.models.contact import LATERAL, TORQUE, energy_norm, forces, forwa
 from microslip.models.driven_body import Body
 from microslip.models.path import make_path
 from microslip.models.registry import MODELS
-from microslip.models.side_by_side import SideBySide
 from microslip.models.squares import contact as squares_contact
 from microslip.models.squares.contact import CartesianContact
 from microslip.models.squares.convolution import convolve, square_convolution, workspace
@@ -153,22 +152,6 @@ def test_a_pulled_march_is_that_of_all_squares(kind):
     assert other.body == pytest.approx(one.body, abs=1e-10)
     assert other.forces == pytest.approx(one.forces, abs=1e-10)
     assert whole(kind, other.state) == pytest.approx(one.state, abs=1e-10)
-
-
-@pytest.mark.parametrize("kind", KINDS)
-def test_they_stand_side_by_side(kind, rng):
-    """Displacements and mirror images of two contacts on one body."""
-    shares, extents = (0.7, 0.3), (1.25, 0.71)
-    one, other = (SideBySide([c, c], shares, extents) for c in both(kind, 6))
-    states = [some_state(kind, 6, rng) for _ in range(2)]
-    joined = np.concatenate(states, axis=-1)
-    full = np.concatenate([whole(kind, state) for state in states], axis=-1)
-
-    def spread(field):
-        return np.concatenate([whole(kind, part) for part in np.split(field, 2, -1)], axis=-1)
-
-    assert spread(other.displacement(joined)) == pytest.approx(one.displacement(full), abs=1e-13)
-    assert np.array_equal(spread(other.mirrored(joined)), one.mirrored(full))
 
 
 @pytest.mark.slow

@@ -19,7 +19,6 @@ from microslip import motions
 from microslip.app.cli import main
 from microslip.foundation.errors import InputError
 from microslip.motions import by_name
-from microslip.motions.body_contacts import BodyContact
 from microslip.motions.by_name import MOTIONS
 from microslip.motions.drive import Force, Spring
 from microslip.motions.named import Elliptic, Transverse, Zigzag
@@ -263,17 +262,9 @@ def test_numbers_of_a_motion_have_to_be_finite(value):
         Elliptic(phase=value)
 
 
-def test_contacts_of_a_problem_have_loads_over_their_mean():
-    with pytest.raises(InputError, match="mean"):
-        Problem(Transverse(), 0.1, 1.0, contacts=(BodyContact(load=2.0), BodyContact(load=1.0)))
-    assert Problem(Transverse(), 0.1, 1.0, contacts=(BodyContact(load=1.5), BodyContact(load=0.5)))
-
-
-@pytest.mark.parametrize("field", ["drive", "contacts"])
-def test_what_follows_one_prescribed_contact_refuses_a_drive_and_others(field):
-    changed = {"drive": Spring(1.0), "contacts": (BodyContact(), BodyContact(phase=90.0))}
-    problem = Problem(Transverse(), 0.1, 1.0, **{field: changed[field]})
+def test_what_follows_a_prescribed_contact_refuses_a_drive():
+    problem = Problem(Transverse(), 0.1, 1.0, drive=Spring(1.0))
     for question in (microslip.history, microslip.period):
         with pytest.raises(InputError) as raised:
             question(problem)
-        assert raised.value.argument == field
+        assert raised.value.argument == "drive"

@@ -15,7 +15,7 @@ from microslip.models.rings.contact import RadialContact
 from microslip.motions.by_name import motion_named
 from microslip.motions.problem import Problem
 from microslip.pressures.hertz import HERTZ
-from microslip.solver.discretise import Resolution, build_contact, path_of
+from microslip.solver.discretise import Resolution, contact_of, path_of
 from microslip.solver.simulate import simulate
 from microslip.theory import oscillating_load
 
@@ -152,7 +152,7 @@ def test_contact_that_is_lost_forgets():
     """After a moment without contact, the state does not depend on the start of the march."""
     name = motion_named("normal:lateral=0.7,phase=40")
     motion = Problem(name, 0.2, 1.3, 0.0)
-    contact = build_contact(motion, "radial", Resolution(16, 1, 32))
+    contact = contact_of(motion, "radial", Resolution(16, 1, 32))
     path = make_path(motion.displacement, np.linspace(0.0, 2 * np.pi, 129), depth=motion.depth)
     bound = contact.bounds(motion.depth(np.zeros(1)))[0]
     starts = np.zeros((2, 1, 16)), np.stack([bound, 0.0 * bound])[:, None]
@@ -173,7 +173,7 @@ def tractions_of(march, bounds):
 @pytest.mark.parametrize("name", ["normal:lateral=1", "normal:indentation=1,forward=0.6,phase=45"])
 def test_every_stage_keeps_within_the_bound_of_its_time(name, velocity):
     motion = Problem(motion_named(name), velocity, 0.9, 0.0)
-    contact = build_contact(motion, "radial", Resolution(12, 1, 24))
+    contact = contact_of(motion, "radial", Resolution(12, 1, 24))
     path = path_of(motion, contact, 24)
     march = contact.march(path, np.zeros((2, 1, 12)), 1e-9)
     bounds = contact.bounds_along(path)
@@ -188,7 +188,7 @@ def test_work_is_dissipated(place):
     name, velocity, amplitude = place
     motion = Problem(motion_named(name), velocity, amplitude, 0.0)
     resolution = Resolution(16, 1, 256)
-    contact, result = build_contact(motion, "radial", resolution), run(*place, "radial", 16, 256)
+    contact, result = contact_of(motion, "radial", resolution), run(*place, "radial", 16, 256)
     phase = path_of(motion, contact, 256).phase
     path = make_path(motion.displacement, phase, EULER, motion.depth)
     before = result.state
@@ -266,7 +266,7 @@ def test_half_a_period_suffices_where_it_is_mirrored():
     assert name.half_period_mirror
     assert not motion_named("normal:lateral=1").half_period_mirror
     motion = Problem(name, 0.1, 0.8, 0.0)
-    contact = build_contact(motion, "radial", Resolution(16, 1, 64))
+    contact = contact_of(motion, "radial", Resolution(16, 1, 64))
     phase = np.linspace(-0.25, 1.75, 513) * np.pi
     path = make_path(motion.displacement, phase, depth=motion.depth)
     state = np.zeros((2, 1, 16))

@@ -9,7 +9,7 @@ from microslip.models.path import make_path
 from microslip.motions.by_name import motion_named
 from microslip.motions.problem import Problem
 from microslip.pressures.hertz import HERTZ
-from microslip.solver.discretise import Resolution, build_contact
+from microslip.solver.discretise import Resolution, contact_of
 from microslip.solver.simulate import simulate
 from microslip.solver.static_run import simulate_static
 from microslip.theory import hertz, paper
@@ -119,7 +119,7 @@ def test_half_a_period_suffices_where_it_is_mirrored():
     assert name.half_period_mirror and name.half_disc
     assert not motion_named(TURNING).half_period_mirror
     motion = Problem(name, 0.1, 0.8, 0.2)
-    contact = build_contact(motion, "polar", Resolution(12, 8, 64))
+    contact = contact_of(motion, "polar", Resolution(12, 8, 64))
     path = make_path(motion.displacement, np.linspace(-0.25, 1.75, 257) * np.pi, depth=motion.depth)
     state = np.zeros((2, 8, 12))
     for _ in range(12):

@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from stubs.drives_stub import FORCES, drift, pairs, pulled
+from stubs.drives_stub import FORCES, drift, pulled
 from stubs.figures_stub import artists
 
 from microslip.report.figures import drawing
@@ -52,18 +52,3 @@ def test_the_points_of_all_drives_are_drawn():
     assert force.get_ydata() == pytest.approx(force.get_xdata() / (1 + force.get_xdata()))
     (level,) = artists(right, "velocity")
     assert level.get_ydata()[0] == pytest.approx(0.1 / 1.1)
-
-
-def test_a_pair_is_drawn_beside_one_contact_and_its_closed_form():
-    left, right = drawing.draw("pairs", pairs()).figure.axes
-    alone, other = artists(left, "computed")
-    soft, stiff, force = artists(right, "computed")
-    assert np.array_equal(alone.get_ydata(), other.get_ydata())
-    assert soft.get_ydata() == pytest.approx(0.5 * stiff.get_ydata())
-    assert stiff.get_label() == "constant velocity"
-    (line,) = artists(right, "antiphase")
-    velocity, bound = line.get_data()
-    # (2/pi) P^(2/3) at amplitude 1
-    assert velocity == pytest.approx(2.0 / np.pi * bound ** (2 / 3))
-    on_the_line = 2.0 / np.pi * force.get_ydata() ** (2 / 3)
-    assert force.get_xdata() == pytest.approx(1.1 * on_the_line)

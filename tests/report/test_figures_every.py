@@ -29,8 +29,7 @@ def arguments() -> dict[str, tuple[str, dict]]:
         stub.labelled(dataset, "y0 / u_lim")
     datasets = stub.studies() | {"continuous_bore": stub.fake_continuous_bore()}
     figures = {name: (name, stub.pulled() | datasets | paper) for name in drawing.FIGURES}
-    for name in ("drives", "pairs"):
-        figures[name] = name, stub.pulled()
+    figures["drives"] = "drives", stub.pulled()
     few = stub.fake_transverse(7)
     few["converged"][2, 2] = 0
     static = certified_stub.bore(velocity=[0], poisson=[0.1, 0.4])
@@ -51,7 +50,7 @@ def arguments() -> dict[str, tuple[str, dict]]:
 
 
 FIGURES = arguments()
-SOME = ("fig1_force_history", "fig5_transients", "pairs", "certified static", "lines", "coarse")
+SOME = ("fig1_force_history", "fig5_transients", "drives", "certified static", "lines", "coarse")
 SOME += ("coarse motion", "coarse motions")
 """Figures that are drawn in every run."""
 each = pytest.mark.parametrize(

@@ -59,14 +59,6 @@ def test_without_an_effect_of_the_vibration_the_energy_is_that_of_the_drag(motio
     assert result.energy_per_cycle_J == pytest.approx(3.0 * way, rel=1e-3)  # closed forms
 
 
-def test_several_contacts_dissipate_the_energy_of_each():
-    one = microslip.predict("longitudinal", **SHAKEN)
-    two = microslip.predict(
-        "longitudinal", **SHAKEN | {"load": "20 N"}, contacts="phase=0;phase=90"
-    )
-    assert two.energy_per_cycle_J == pytest.approx(2.0 * one.energy_per_cycle_J, rel=1e-9)
-
-
 def test_mindlin_and_deresiewicz_without_a_speed():
     """The loop of a sphere with the amplitude L mu F of the force dissipates
     9 (2 - nu) (mu F)^2 / (10 G a) (1 - (1 - L)^(5/3) - 5 L / 6 (1 + (1 - L)^(2/3))).

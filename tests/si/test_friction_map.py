@@ -64,7 +64,6 @@ def test_the_static_limit_and_a_search_use_the_map(friction):
         ("transverse", {"amplitude": "3 um", "tolerance": 1e-2}, "map", "error bound of the map"),
         ("transverse", {"speed": None, "force": "1 N"}, "force", "without a map"),
         ("transverse", {"drive_stiffness": "1 N/um"}, "drive_stiffness", "without a map"),
-        ("transverse", {"contacts": "phase=0;phase=180"}, "contacts", "without a map"),
         ("transverse", {"wear_coefficient": "1e-14 m^2/N"}, "wear_coefficient", "without a map"),
         ("transverse", {"map": {"motion": "transverse"}}, "map", "the dataset of a sweep"),
     ],

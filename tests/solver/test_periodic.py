@@ -11,7 +11,7 @@ from microslip.models.registry import MODELS
 from microslip.motions.named import Bore, Transverse
 from microslip.motions.problem import Problem
 from microslip.solver import discretise
-from microslip.solver.discretise import Resolution, build_contact
+from microslip.solver.discretise import Resolution, contact_of
 from microslip.solver.period_map import Goal, PeriodMap
 from microslip.solver.periodic import find_periodic_state
 from microslip.solver.simulate import simulate
@@ -42,7 +42,7 @@ POINTS = {
 }
 
 
-def contact_of(name, velocity, amplitude):
+def contact_at(name, velocity, amplitude):
     model, motion, nu, cells, angles = CASES[name]
     problem = Problem(motion, velocity, amplitude, nu)
     return MODELS[model].build(problem, cells, angles, problem.focus)
@@ -83,7 +83,7 @@ def test_found_state_is_that_of_the_plain_march(name, velocity, amplitude):
     motion = Problem(label, velocity, amplitude, nu)
     run = simulate(motion, model, resolution, TOLERANCE)
     assert run.converged and run.distance <= TOLERANCE
-    contact = build_contact(motion, model, resolution)
+    contact = contact_of(motion, model, resolution)
     path = discretise.path_of(motion, contact, STEPS)
     stands_still = 1e-7 if model == "cartesian" else 1e-9  # its steps are solved less accurately
     state, forces = plain_march(contact, path, 0.0 * forward_slip(contact), stands_still)
@@ -96,7 +96,7 @@ def test_found_state_is_that_of_the_plain_march(name, velocity, amplitude):
 def test_second_half_of_the_period_mirrors_the_first(name, integrator):
     """A march over the whole period makes no use of the symmetry."""
     motion, point = CASES[name][1], POINTS[name][1]
-    contact, path = contact_of(name, *point), path_of(name, *point, integrator)
+    contact, path = contact_at(name, *point), path_of(name, *point, integrator)
     cycle = PeriodMap(contact, path)
     result = find_periodic_state(cycle, forward_slip(contact), Goal(TOLERANCE, STEP_TOLERANCE))
     assert result.converged
@@ -113,7 +113,7 @@ def test_second_half_of_the_period_mirrors_the_first(name, integrator):
 
 @pytest.mark.parametrize("name", CASES)
 def test_verdict_is_that_of_the_plain_map(name):
-    contact, path = contact_of(name, *POINTS[name][1]), path_of(name, *POINTS[name][1])
+    contact, path = contact_at(name, *POINTS[name][1]), path_of(name, *POINTS[name][1])
     start = forward_slip(contact)
     enough = find_periodic_state(PeriodMap(contact, path), start, Goal(TOLERANCE, STEP_TOLERANCE))
     assert enough.converged and enough.residual <= enough.distance <= TOLERANCE

@@ -4,7 +4,6 @@ import numpy as np
 import xarray as xr
 
 from microslip.datasets.catalogue import DRIFT_FORMS, FORMS
-from microslip.theory.drift import antiphase_drift
 
 FORCES = np.linspace(0.1, 0.9, 9)
 
@@ -60,31 +59,4 @@ def pulled():
         "drive_body": dataset(
             ("mass", *dims), body, one | {"mass": mass, "stiffness": stiffness, "velocity": [0.1]}
         ),
-    }
-
-
-def pairs():
-    """Datasets of the figure of pairs: friction v / (1 + v), half of it for the pair on the softest
-    spring. Under a force the pair is 10 % faster than its closed form."""
-    velocity, stiffness = np.geomspace(1e-2, 10, 7), np.array([0.1, 1e6])
-    mu, amplitude = velocity / (1 + velocity), {"amplitude": [1.0]}
-    dims = ("stiffness", "amplitude", "velocity")
-
-    def springs(*rows):
-        values = np.stack(rows)[:, None]
-        every = {"mu_macro_error": 1e-3, "converged": 1}
-        every = {key: (dims, np.full(values.shape, value)) for key, value in every.items()}
-        coords = amplitude | {"stiffness": stiffness, "velocity": velocity, "poisson": 0.0}
-        return xr.Dataset({"mu_macro": (dims, values)} | every, coords)
-
-    walked = 1.1 * antiphase_drift(FORCES, 1.0)[None]
-    pulled = {
-        "velocity": (("amplitude", "force"), walked),
-        "velocity_error": (("amplitude", "force"), np.full(walked.shape, 1e-3)),
-        "converged": (("amplitude", "force"), np.ones(walked.shape)),
-    }
-    return {
-        "one_spring": springs(mu, mu),
-        "pair_spring": springs(0.5 * mu, mu),
-        "pair_force": xr.Dataset(pulled, amplitude | {"force": FORCES, "poisson": 0.0}),
     }

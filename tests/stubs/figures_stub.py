@@ -203,7 +203,7 @@ def studies() -> dict[str, xr.Dataset]:
 def pulled() -> dict[str, xr.Dataset]:
     """Datasets of the figures of drives."""
     maps = {f"drift_{motion}": drives_stub.drift(motion) for motion in ("transverse", "bore")}
-    return maps | drives_stub.pulled() | drives_stub.pairs()
+    return maps | drives_stub.pulled()
 
 
 def words(figure) -> str:

@@ -11,7 +11,7 @@ from microslip.models.reduced.slider import slider_contact
 from microslip.models.rings.contact import RadialContact
 from microslip.motions.named import Bore, Transverse
 from microslip.motions.problem import Problem
-from microslip.solver.discretise import Resolution, build_contact, path_of
+from microslip.solver.discretise import Resolution, contact_of, path_of
 from microslip.solver.method_names import method_named
 from microslip.solver.methods import _searches
 from microslip.solver.period_map import Goal, PeriodMap
@@ -68,7 +68,7 @@ def test_theta_method_rings_and_forgets():
 @pytest.mark.parametrize("model", ["radial", "polar"])
 def test_midpoint_tractions_leave_the_bound_and_shipped_ones_never_do(model):
     motion = Problem(Transverse(), 0.1, 1.0, 0.0)
-    contact = build_contact(motion, model, Resolution(8, 4, 16))
+    contact = contact_of(motion, model, Resolution(8, 4, 16))
     beyond = {}
     for name in ("midpoint", "shipped"):
         path = path_of(motion, contact, 16, method_named(name).integrator)
@@ -93,7 +93,7 @@ def test_stagnation_of_the_plain_march():
 def test_undamped_jacobi_never_gets_there():
     """All points correct the same slip at once, so the tractions jump from bound to bound."""
     motion = Problem(Transverse(), 0.1, 0.5, 0.0)
-    rings = build_contact(motion, "radial", Resolution(16, 1, 16))
+    rings = contact_of(motion, "radial", Resolution(16, 1, 16))
     contact = method_named("jacobi").dressed(rings)
     with pytest.raises(StepFailure, match="diverged"):
         contact.march(path_of(motion, contact, 16), forward_slip(contact), 1e-6)
@@ -105,7 +105,7 @@ def test_undamped_jacobi_never_gets_there():
 @pytest.mark.long
 def test_switching_is_right_in_one_direction_and_lost_where_slip_turns():
     motion = Problem(Transverse(), 0.1, 0.5, 0.0)
-    rings = build_contact(motion, "radial", Resolution(32, 1, 16))
+    rings = contact_of(motion, "radial", Resolution(32, 1, 16))
     contact = method_named("switching").dressed(rings)
     march = contact.march(straight(0.8, 16), np.zeros((2, 1, 32)), 1e-10)
     mindlin = hertz.mindlin_force(0.8)
@@ -206,7 +206,7 @@ def test_methods_agree_with_what_ships(method):
 def test_step_solvers_find_the_one_solution_of_a_step(method):
     """A step is a convex problem, so all solvers find the same tractions."""
     motion = Problem(Bore(), 0.2, 1.0, 0.3)
-    contact = build_contact(motion, "polar", Resolution(6, 4, 8))
+    contact = contact_of(motion, "polar", Resolution(6, 4, 8))
     path = path_of(motion, contact, 8)
     start = forward_slip(contact)
     one = contact.march(path, start, 1e-10).state

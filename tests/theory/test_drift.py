@@ -2,11 +2,9 @@
 
 import numpy as np
 import pytest
-from scipy.optimize import brentq
 
 from microslip.foundation.errors import InputError
-from microslip.theory.drift import antiphase_drift, bore_drift, transverse_drift
-from microslip.theory.hertz import mindlin_force
+from microslip.theory.drift import bore_drift, transverse_drift
 from microslip.theory.paper import bore_forward
 
 PHASES = (np.arange(2000) + 0.5) * np.pi / 2000
@@ -47,15 +45,3 @@ def test_ends(drift):
 def test_a_force_that_rounding_does_not_tell_from_full_friction_is_refused():
     with pytest.raises(InputError, match="force = 0.99999999999999: allowed are forces up to"):
         bore_drift(1.0 - 1e-14, 1.0)
-
-
-@pytest.mark.parametrize("force", [0.02, 0.3, 0.8])
-def test_two_spheres_that_work_against_each_other_move_from_their_static_limit_on(force):
-    """At the static limit the force of a first loading is 1 - force."""
-    limit = brentq(lambda amplitude: 1.0 - float(mindlin_force(amplitude)) - force, 0.0, 1.0)
-    assert antiphase_drift(force, limit) == pytest.approx(0.0, abs=1e-12)
-    assert antiphase_drift(force, 0.99 * limit) == 0.0
-    # beyond the limit the whole additional stroke is travel: 4 amplitudes in a period
-    grown = antiphase_drift(force, limit + 1.0) - antiphase_drift(force, limit)
-    assert 2.0 * np.pi * grown == pytest.approx(4.0)
-    assert np.isinf(antiphase_drift(1.0, 1.0))

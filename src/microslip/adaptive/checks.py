@@ -12,11 +12,10 @@ from microslip.foundation.arguments import (
     real,
 )
 from microslip.foundation.errors import InputError
-from microslip.motions.body_contacts import contacts_of, contacts_text
 from microslip.motions.by_name import motion_named
 from microslip.motions.drive import Drive, Force, Spring
 from microslip.motions.motion import Motion
-from microslip.motions.problem import Problem, contacts_refusal
+from microslip.motions.problem import Problem
 from microslip.pressures.by_name import pressure_named
 from microslip.pressures.hertz import HERTZ
 from microslip.pressures.pressure import Pressure
@@ -47,15 +46,12 @@ def checked_problem(
     ------
     InputError
         If an argument is out of range, if a Problem is combined with other arguments, or if the
-        Problem has a drive or several contacts.  The message names the argument.
+        Problem has a drive.  The message names the argument.
     """
     problem = _problem(motion, velocity, amplitude, poisson, pressure)
     if problem.drive is not None:
         allowed = "allowed is none here: the velocity is prescribed"
         raise InputError("drive", str(problem.drive), allowed)
-    if problem.contacts:
-        text = contacts_text(problem.contacts)
-        raise InputError("contacts", text, "allowed is none here: there is one contact")
     return problem
 
 
@@ -66,14 +62,13 @@ def checked_driven_problem(
     *,
     pressure: str | Pressure = HERTZ,
     poisson: float = 0.0,
-    contacts: str | None = None,
     **drive: float | None,
 ) -> Problem:
-    """Check the arguments for one or several contacts with any drive, and parse strings.
+    """Check the arguments for one contact with any drive, and parse strings.
 
     Parameters
     ----------
-    motion, velocity, amplitude, pressure, poisson, contacts
+    motion, velocity, amplitude, pressure, poisson
         See `microslip.solve`.  The velocity can be negative for self-propelled motions.
     **drive : float or None
         The arguments force, stiffness, mass and damping, see `microslip.solve`.
@@ -86,19 +81,12 @@ def checked_driven_problem(
     """
     more: dict[str, Any] = {}
     if isinstance(motion, Problem):
-        _refuse_beside_problem(contacts=contacts, **drive)
+        _refuse_beside_problem(**drive)
         if motion.drive is not None:
             _refuse_drive(motion)
     else:
         more["drive"] = checked_drive(velocity, **drive)
-        more["contacts"] = () if contacts is None else contacts_of(contacts)
-    problem = replace(
-        _problem(motion, velocity, amplitude, poisson, pressure, backward=True), **more
-    )
-    refusal = contacts_refusal(problem) if problem.contacts else ""
-    if refusal:
-        raise InputError("contacts", contacts or contacts_text(problem.contacts), refusal)
-    return problem
+    return replace(_problem(motion, velocity, amplitude, poisson, pressure, backward=True), **more)
 
 
 def _problem(

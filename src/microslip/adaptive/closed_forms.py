@@ -69,6 +69,18 @@ def of_closed_form(request: Request, exact: Exact) -> Result:
     )
 
 
+def solve_prescribed(request: Request) -> Result:
+    """Friction at a prescribed velocity: a closed form if there is one, otherwise runs of a
+    model."""
+    exact = exact_for(request)
+    if exact is not None:
+        return of_closed_form(request, exact)
+    # imported here because it loads compiled code
+    from microslip.adaptive.friction import solve_friction
+
+    return solve_friction(request)
+
+
 def no_vibration(problem: Problem) -> Exact | None:
     """Closed form for any model if the amplitude is 0, otherwise None."""
     still = problem.motion.periodic and problem.amplitude == 0.0

@@ -6,11 +6,10 @@ import math
 from dataclasses import replace
 from operator import attrgetter
 
-from microslip.adaptive.closed_forms import Exact, fast_sliding, of_closed_form
+from microslip.adaptive.closed_forms import Exact, fast_sliding, of_closed_form, solve_prescribed
 from microslip.adaptive.friction import ladder_of
 from microslip.adaptive.request import Request, driven_by, result_of_runs
 from microslip.adaptive.result import Result
-from microslip.adaptive.several import solve_each
 from microslip.adaptive.under_force import (
     CLOSEST_FORCE,
     Near,
@@ -28,11 +27,11 @@ from microslip.estimate.ladder import with_mass
 from microslip.estimate.refine import UNKNOWN, Levels, Refined, refine, run_tolerance
 from microslip.motions.drive import Force
 from microslip.motions.problem import Problem
-from microslip.solver.body_run import simulate_each
 from microslip.solver.budget import Spent
 from microslip.solver.discretise import Resolution, contact_of
 from microslip.solver.driven_run import Accuracy, simulate_driven
 from microslip.solver.run import Run, Settings
+from microslip.solver.simulate import simulate
 
 STEADY_ERROR = 1e-9
 """Error estimate of the velocity v of a steady motion under a force, divided by max(1, v)."""
@@ -66,7 +65,7 @@ def solve_driven(request: Request) -> Result:
         return _under_force(request)
     if not problem.motion.periodic or problem.velocity == 0.0 or not oscillates(problem):
         # under a constant force the length of the spring is constant
-        answer = solve_each(replace(request, problem=replace(problem, drive=None)))
+        answer = solve_prescribed(replace(request, problem=replace(problem, drive=None)))
         return replace(answer, **driven_by(drive))
     exact = _fast(request)
     if exact is not None:
@@ -83,7 +82,7 @@ def _fast(request: Request) -> Exact | None:
     """
     problem = request.problem
     imposed = request.cells is not None or request.steps is not None
-    if not request.chosen or imposed or request.tolerance is None or problem.parts:
+    if not request.chosen or imposed or request.tolerance is None:
         return None
     if problem.motion.name not in ("transverse", "bore"):
         return None
@@ -177,7 +176,7 @@ def _static(request: Request, force: float) -> Result:
 def _at_rest(request: Request, tolerance: float | None) -> Result:
     """Compute the static limit to a tolerance."""
     problem = replace(request.problem, velocity=0.0, drive=None)
-    return solve_each(replace(request, problem=problem, tolerance=tolerance))
+    return solve_prescribed(replace(request, problem=problem, tolerance=tolerance))
 
 
 def _without_runs(
@@ -256,7 +255,7 @@ def _near(request: Request) -> Near:
 
     def friction_at(velocity: float) -> float:
         there = replace(moving, velocity=velocity)
-        return simulate_each(there, request.model, coarse, COARSE_TOLERANCE, settings).mu
+        return simulate(there, request.model, coarse, COARSE_TOLERANCE, settings=settings).mu
 
     near = velocity_near(moving, force, friction_at)
     place = replace(moving, velocity=near.velocity)

@@ -18,7 +18,7 @@ from microslip.motions.motion import Motion
 from microslip.motions.problem import Problem
 from microslip.pressures.hertz import HERTZ
 from microslip.pressures.pressure import Pressure
-from microslip.solver.discretise import Resolution, build_contact
+from microslip.solver.discretise import Resolution, contact_of
 from microslip.solver.run import unsolved
 from microslip.solver.steady import steady_state
 
@@ -202,7 +202,7 @@ def traction_field(
 
 def _contact(problem: Problem, model: str, cells: int | None) -> Contact:
     name = choose_model(problem, model)
-    return build_contact(problem, name, Resolution(cells or CELLS, ANGLES, steps=0))
+    return contact_of(problem, name, Resolution(cells or CELLS, ANGLES, steps=0))
 
 
 def tractions_at_start(contact: Contact, start: str) -> np.ndarray:

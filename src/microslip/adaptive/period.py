@@ -19,7 +19,7 @@ from microslip.motions.motion import Motion
 from microslip.motions.problem import Problem
 from microslip.pressures.hertz import HERTZ
 from microslip.pressures.pressure import Pressure
-from microslip.solver.discretise import Resolution, build_contact, path_of
+from microslip.solver.discretise import Resolution, contact_of, path_of
 from microslip.solver.run import unsolved
 from microslip.solver.simulate import simulate
 from microslip.solver.snapshots import bounds_at_phases, frames
@@ -161,7 +161,7 @@ def period(
     run = simulate(problem, "polar", resolution, PERIOD_TOLERANCE)
     if run.state is None:
         raise NoPeriodicState(f"velocity = {velocity!r}: {run.reason}")
-    contact = build_contact(problem, "polar", resolution)
+    contact = contact_of(problem, "polar", resolution)
     assert isinstance(contact, PolarContact)
     path = path_of(problem, contact, steps // 2)
     tractions, forces, residual, solves = frames(contact, path, run.state, STEP_TOLERANCE)

@@ -7,9 +7,9 @@ from dataclasses import replace
 from typing import Any
 
 from microslip.adaptive.checks import checked_driven_problem
+from microslip.adaptive.closed_forms import solve_prescribed
 from microslip.adaptive.request import TOLERANCE, Request, request_for
 from microslip.adaptive.result import Result
-from microslip.adaptive.several import solve_each
 from microslip.foundation.errors import InputError
 from microslip.motions.motion import Motion
 from microslip.motions.problem import Problem
@@ -27,7 +27,6 @@ def solve(
     stiffness: float | None = None,
     mass: float | None = None,
     damping: float | None = None,
-    contacts: str | None = None,
     pressure: str | Pressure = HERTZ,
     poisson: float = 0.0,
     model: str = "auto",
@@ -61,11 +60,6 @@ def solve(
         spring moves at `velocity`.  Mass of the body, in units of mu F_z / (u_lim omega^2); it can
         also be combined with a force.  Damping of a dashpot parallel to the spring, in units of mu
         F_z / (u_lim omega).  F_z is the normal load without oscillation.
-    contacts : str or None
-        Contacts that the body rests on, such as "phase=0;phase=180".  Each contact has a load
-        relative to the others (default 1), a phase in degrees (default 0) and a fraction of the
-        amplitude (default 1).  Velocity and amplitude are in units of the u_lim of a contact under
-        the mean load.  Forces are divided by mu times the load of all contacts.
     pressure : str or Pressure
         Pressure, such as "hertz", "power:exponent=1" or "file:measured.csv", see
         microslip.pressures.by_name.
@@ -108,7 +102,6 @@ def solve(
         amplitude,
         pressure=pressure,
         poisson=poisson,
-        contacts=contacts,
         force=force,
         stiffness=stiffness,
         mass=mass,
@@ -130,7 +123,7 @@ def solve(
 
 def _answer(request: Request) -> Result:
     if request.problem.drive is None:
-        return solve_each(request)
+        return solve_prescribed(request)
     # imported here because it loads compiled code
     from microslip.adaptive.driven_contact import solve_driven
 

@@ -14,7 +14,6 @@ from microslip.adaptive.under_force import refuse_drive
 from microslip.estimate.estimate import Estimate
 from microslip.foundation.arguments import LARGEST, SMALLEST_TOLERANCE, count, is_real, real
 from microslip.foundation.errors import InputError
-from microslip.motions.body_contacts import contacts_text
 from microslip.motions.drive import Drive
 from microslip.motions.problem import Problem
 from microslip.solver import method_names
@@ -82,20 +81,15 @@ class Request:
     def point(self) -> dict:
         """The fields of a result.Result that are copied from the request."""
         problem = self.problem
-        several = {"contacts": contacts_text(problem.contacts)} if problem.contacts else {}
-        return (
-            several
-            | driven_by(problem.drive)
-            | {
-                "motion": problem.motion.name,
-                "pressure": problem.pressure.name,
-                "mean_velocity": Estimate(problem.velocity),
-                "amplitude": problem.amplitude,
-                "poisson": problem.poisson,
-                "tolerance": self.tolerance,
-                "method": self.method,
-            }
-        )
+        return driven_by(problem.drive) | {
+            "motion": problem.motion.name,
+            "pressure": problem.pressure.name,
+            "mean_velocity": Estimate(problem.velocity),
+            "amplitude": problem.amplitude,
+            "poisson": problem.poisson,
+            "tolerance": self.tolerance,
+            "method": self.method,
+        }
 
     @property
     def model_without_runs(self) -> str:

@@ -29,7 +29,7 @@ from microslip.motions.samples import SampledPath
 from microslip.pressures.by_name import pressure_named
 from microslip.pressures.hertz import HERTZ
 from microslip.pressures.pressure import Pressure
-from microslip.solver.discretise import build_contact
+from microslip.solver.discretise import contact_of
 from microslip.solver.snapshots import bounds_at_phases
 
 Progress = Callable[[int, int], None]
@@ -248,7 +248,7 @@ class _Marches:
 
     def _march(self, level: int) -> tuple[np.ndarray, np.ndarray]:
         problem = self.problem
-        contact = build_contact(problem, self.model, self.ladder.resolution(level))
+        contact = contact_of(problem, self.model, self.ladder.resolution(level))
         counts = _steps(problem, level)
         step_tolerance = STEP_SHARE * self.tolerance / (2 * counts.sum())
         state = tractions_at_start(contact, self.start)

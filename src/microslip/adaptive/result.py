@@ -45,8 +45,6 @@ class Result:
         Poisson's ratio.
     force, stiffness, mass, damping : float or None
         Parameters of the drive, see motions.drive.  None if the drive has no such part.
-    contacts : str or None
-        Contacts of the body, see motions.body_contacts.  None for a single contact.
     model : str
         Name of the contact model, or "closed-form".
     tolerance : float or None
@@ -104,7 +102,6 @@ class Result:
     stiffness: float | None = None
     mass: float | None = None
     damping: float | None = None
-    contacts: str | None = None
     friction: Estimate
     torque: Estimate | None = None
     dissipation: Estimate | None = None

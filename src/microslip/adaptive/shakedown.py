@@ -15,11 +15,11 @@ from operator import attrgetter
 from typing import Any
 
 from microslip.adaptive.checks import checked_problem
+from microslip.adaptive.closed_forms import solve_prescribed
 from microslip.adaptive.driven_contact import STATIC_TOLERANCE
 from microslip.adaptive.friction import ladder_of
 from microslip.adaptive.request import Request, request_for, result_of_runs
 from microslip.adaptive.result import ERRORS
-from microslip.adaptive.several import solve_each
 from microslip.adaptive.under_force import (
     is_even,
     oscillates,
@@ -213,7 +213,7 @@ def _threshold(request: Request) -> tuple[float, float, str]:
     if away:
         return math.nan, math.inf, away
     tolerance = min(request.tolerance or STATIC_TOLERANCE, STATIC_TOLERANCE)
-    static = solve_each(replace(request, chosen=True, tolerance=tolerance))
+    static = solve_prescribed(replace(request, chosen=True, tolerance=tolerance))
     return static.mu_macro, static.mu_macro_error, ""
 
 

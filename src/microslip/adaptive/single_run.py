@@ -20,7 +20,7 @@ from microslip.motions.named import Bore, Transverse
 from microslip.motions.problem import Problem
 from microslip.pressures.by_name import pressure_named
 from microslip.pressures.hertz import HERTZ
-from microslip.solver.discretise import Resolution, build_contact
+from microslip.solver.discretise import Resolution, contact_of
 from microslip.solver.method_names import method_named, missing
 from microslip.solver.run import Settings
 from microslip.solver.simulate import simulate
@@ -129,7 +129,7 @@ def measure_steps(model: str, cells: int, angles: int, poisson: float, steps: in
         the arrays of the contact in bytes.
     """
     problem = Problem(Transverse() if model == "radial" else Bore(), 0.1, 1.0, poisson)
-    contact = build_contact(problem, model, Resolution(cells, angles, steps))
+    contact = contact_of(problem, model, Resolution(cells, angles, steps))
     path = make_path(problem.displacement, half_period_phases(steps), EULER)
     start = forward_slip(contact)
     contact.march(make_path(problem.displacement, path.phase[:2], EULER), start, STEP_TOLERANCE)

@@ -64,17 +64,13 @@ def without_forward_motion(problem: Problem) -> Problem:
 
 
 def oscillates_forward(problem: Problem) -> bool:
-    """Whether the oscillation of any contact has a forward component."""
-    if problem.parts:
-        return any(oscillates_forward(part.problem) for part in problem.parts)
+    """Whether the oscillation has a forward component."""
     forward = problem.oscillation(LOOP)[0]
     return float(np.ptp(forward)) > RETURNED * max(problem.size, 1.0)
 
 
 def oscillates(problem: Problem) -> bool:
-    """Whether the motion or the normal load of any contact oscillates."""
-    if problem.parts:
-        return any(oscillates(part.problem) for part in problem.parts)
+    """Whether the motion or the normal load oscillates."""
     parts = problem.oscillation(LOOP)
     moves = max(float(np.ptp(part)) for part in parts) > RETURNED * max(problem.size, 1.0)
     return moves or (problem.depth is not None and problem.size > 0.0)
@@ -83,12 +79,8 @@ def oscillates(problem: Problem) -> bool:
 def is_even(problem: Problem) -> bool:
     """Whether the oscillation alone exerts no forward force at any time.
 
-    In this case, the threshold of motion equals the static limit.  Several contacts exert no
-    forward force if each of them exerts none.  The same is true if each contact has a partner that
-    exerts the opposite force.
+    In this case, the threshold of motion equals the static limit.
     """
-    if problem.parts:
-        return all(is_even(part.problem) for part in problem.parts) or problem.is_balanced
     motion, pressure = problem.motion, problem.pressure
     if oscillates_forward(problem) or not motion.half_disc:
         return False
@@ -102,8 +94,6 @@ def least_load(problem: Problem) -> float:
     if not problem.motion.periodic or problem.depth is None:
         return 1.0
     loads = problem.pressure.total(np.asarray(problem.depth(LOOP), dtype=float))
-    if problem.parts:
-        loads = np.array([part.share for part in problem.parts]) @ loads
     return max(float(loads.min()), 0.0) / problem.mean_load
 
 

@@ -56,7 +56,6 @@ CONDITIONS: dict[str, tuple[Callable[..., bool], str]] = {
         _share_a_point,
         "in all others one amplitude, and in the last one velocity, both from the first",
     ),
-    "pairs": (_have_one_amplitude, "equal amplitudes"),
 }
 """Condition on a figure's sweeps, and a description of this condition for messages."""
 

@@ -40,11 +40,6 @@ OPTIONS = {
         "(0)",
     ),
     "damping": ("C", f"damping parallel to the spring, divided by mu F_z / (u_lim omega){F_Z} (0)"),
-    "contacts": (
-        "TEXT",
-        "several contacts of one body, such as 'phase=0;phase=180'.  Each contact has a load "
-        "relative to the others (1), a phase in degrees (0) and an amplitude divided by A (1)",
-    ),
     "pressure": (
         "NAME",
         "hertz (a sphere), power:exponent=1 (a cone; any power), punch:flat=0.8 (rounded edge), "

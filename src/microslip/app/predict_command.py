@@ -51,11 +51,6 @@ GROUPS: dict[str, dict[str, tuple[str, str]]] = {
     },
     "load": {
         "load": ("F", "normal load, such as '10 N'"),
-        "contacts": (
-            "TEXT",
-            "the contacts of one body, such as 'phase=0;phase=180'.  The load and the drive act "
-            "on the body; load=... sets the fraction of each contact",
-        ),
     },
     "motion": {
         "amplitude": (

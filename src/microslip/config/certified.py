@@ -24,8 +24,7 @@ def map_of(sweep: Sweep, adaptive: "Adaptive") -> CertifiedMap:
     many = len(sweep.amplitude or ()) > 1
     if sweep.drives:
         names = [name for name, _, _ in sweep.drives]
-        names += ["contacts"] if sweep.contacts is not None else []
-        _demand(names == ["force"], f"with {', '.join(names)}", "a force alone, on one contact")
+        _demand(names == ["force"], f"with {', '.join(names)}", "a force alone")
         range_ = "with two amplitudes at least, which are its range, and one Poisson's ratio"
         _demand(many and len(sweep.poisson) == 1, "here", range_)
         largest = sweep.drives[0][1][-1]

@@ -65,6 +65,5 @@ def _problem(sweep: Sweep, velocity: float | None, end: int, **drive: float | No
         None if sweep.amplitude is None else sweep.amplitude[end],
         pressure=sweep.pressure,
         poisson=sweep.poisson[-1],
-        contacts=sweep.contacts,
         **drive,
     )

@@ -291,7 +291,7 @@ def _sweep(name: str, entry: Any, folders: Iterable, strict: bool) -> Sweep:
             raise Refusal("missing; required: force or stiffness")
         names = {role: _by_content(getattr(entry, role), role, folders, strict) for role in ROLES}
         more = {"title": entry.title or name, "drives": drives} | names
-        more |= {key: getattr(entry, key) for key in ("group", "contacts") if hasattr(entry, key)}
+        more |= {"group": entry.group} if hasattr(entry, "group") else {}
     sweep = Sweep(
         name=name,
         velocity=tuple(entry.velocity or ()),

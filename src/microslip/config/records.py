@@ -78,7 +78,6 @@ class Sweep:
     group: str | None = None  # figure that shows the sweep; None for sweeps of the paper
     title: str | None = None  # title on that figure
     drives: tuple = ()  # (argument of solve(), values, True for a dimension of the dataset)
-    contacts: str | None = None  # several contacts of one body, as in the configuration
 
     @property
     def spans_a_map(self) -> bool:
@@ -176,10 +175,8 @@ class Configuration:
         """Settings on which the dataset of a sweep depends, as a dict of JSON values."""
         names = HISTORIES_OF_SWEEP.get(name, ())
         sweep = asdict(self.grids[name])
-        if not sweep["drives"]:  # older datasets have neither drives nor contacts
+        if not sweep["drives"]:  # older datasets have no drives
             del sweep["drives"]
-        if sweep["contacts"] is None:
-            del sweep["contacts"]
         return {
             "sweep": sweep,
             "histories": {history: self.histories[history] for history in names},

@@ -319,9 +319,6 @@ class DriveSweep(_NamedSweep):
     velocity: Axis = _optional()
     """Velocity of the far end of the spring, in the unit of the motion. It is not allowed together
     with a force."""
-    contacts: Text | None = None
-    """Contacts of the body, such as "phase=0;phase=180". Each contact has a load, a phase in
-    degrees and an amplitude. The default is one contact."""
     force: NumberOrAxis = _optional()
     """Prescribed force P divided by mu times the mean normal load. It replaces the velocity. A
     number or an axis."""

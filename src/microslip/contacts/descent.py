@@ -11,7 +11,6 @@ forward force never decreases as d increases, and its slope is at most the stiff
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -69,13 +68,6 @@ class Descent(NamedTuple):
     def own(self) -> Descent:
         """Return a copy of this solver with separate scratch arrays."""
         return self._replace(length=self.length.copy(), sums=np.empty_like(self.sums))
-
-    @staticmethod
-    def joined(each: Sequence[Descent], extents: np.ndarray, weight: np.ndarray) -> Descent:
-        """Join the solvers of several equal contacts on one body (see models/side_by_side.py)."""
-        first, largest = each[0], float(extents.max())
-        length, sums = first.length / largest, np.empty_like(first.sums)
-        return first._replace(largest=first.largest * largest, length=length, sums=sums)
 
 
 @kernel

@@ -8,7 +8,7 @@ solver.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from typing import NamedTuple
 
 import numpy as np
@@ -65,12 +65,6 @@ class Matrices(NamedTuple):
     def own(self) -> Matrices:
         """Return the object itself, which has no scratch arrays."""
         return self
-
-    @staticmethod
-    def joined(each: Sequence[Matrices], extents: np.ndarray) -> Matrices:
-        """Join the matrices of several contacts on one body, see `scaled`."""
-        parts = [scaled(one.blocks, extent) for one, extent in zip(each, extents, strict=True)]
-        return Matrices(np.concatenate(parts, axis=1))
 
 
 def scaled(blocks: np.ndarray, factor: float) -> np.ndarray:

@@ -18,7 +18,6 @@ for a point that sticks, and |q| / (2 |y|) for a point that slips.  The best pen
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -74,12 +73,6 @@ class Resolvent(NamedTuple):
     def own(self) -> Resolvent:
         """Return the object itself, which has no scratch arrays."""
         return self
-
-    @staticmethod
-    def joined(each: Sequence[Resolvent], extents: np.ndarray, weight: np.ndarray) -> Resolvent:
-        """Join the solvers of several contacts on one body (see models/side_by_side.py)."""
-        penalties = [one.penalty * extent for one, extent in zip(each, extents, strict=True)]
-        return resolvent(np.concatenate(penalties), weight)
 
 
 def resolvent(penalty: np.ndarray, weight: np.ndarray) -> Resolvent:

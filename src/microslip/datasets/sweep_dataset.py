@@ -72,8 +72,6 @@ def write_sweep(
         about["single_runs_failed"] = "; ".join(reasons)
     if sweep.drives:
         about["drive"] = ", ".join(name for name, _, _ in sweep.drives)
-    if sweep.contacts is not None:
-        about["contacts"] = sweep.contacts
     of_points, versions = point_variables.variables(sweep, _axes(sweep), points)
     versions |= {canonical_json(record["versions"]) for record in histories}
     root = _root(sweep, of_points).assign_attrs(provenance(title, settings, versions, **about))

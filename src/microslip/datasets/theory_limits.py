@@ -30,8 +30,6 @@ def formulas(motion: str, pressure: str = "hertz") -> dict:
 def _forms(sweep: Sweep) -> dict[str, ClosedForm]:
     """Return the closed forms for a sweep.  With a drive, only the forms that depend on amplitude
     alone are returned."""
-    if sweep.contacts is not None:
-        return {}  # closed forms are valid for one contact
     forms = formulas(*solver_names(sweep))
     if sweep.drives:
         forms = {name: form for name, form in forms.items() if form.arguments == ("amplitude",)}
@@ -42,8 +40,6 @@ def _drift_forms(sweep: Sweep) -> dict[str, ClosedForm]:
     """Return the closed forms of the drift velocity, for a sweep over forces."""
     motion, pressure = solver_names(sweep)
     form = catalogue.DRIFT_FORMS.get(motion)
-    if sweep.contacts is not None:
-        return {}
     is_map = [(name, is_axis) for name, _, is_axis in sweep.drives] == [("force", True)]
     if form is None or not is_map or not (form.any_pressure or pressure == "hertz"):
         return {}

@@ -130,8 +130,6 @@ LOAD = Kind(start=24, steps=4)
 """Oscillating normal loads, under which the edge of the contact moves across the rings."""
 STATIC = Kind(start=32, steps=0)
 """Static limits, computed at turning points.  There, slip fronts cut through the cells."""
-COUPLED = LOAD._replace(start=STATIC.start)
-"""Several interacting contacts.  The set of sliding contacts can change within a step."""
 ANGLES_OF_ROTATION, ANGLES_OF_TRANSLATION = 0.5, 0.125
 """Number of angles on half the disc, divided by the level.  A rotation has its centre in the
 contact.  In a translation, the tractions depend on the angle only weakly, and only at nu > 0.
@@ -186,8 +184,6 @@ def _kind(problem: Problem, model: str) -> Kind:
         return ROTATION if motion.half_disc else WHOLE_DISC
     mirrored = problem.straight and problem.half_period_mirror
     slow = motion.periodic and problem.drift < SLOW_LOOP
-    if problem.parts and not mirrored:
-        return COUPLED
     return LOOP if slow and not mirrored else TRANSLATION
 
 

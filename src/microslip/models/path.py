@@ -159,11 +159,6 @@ class Path:
         """Displacement at the start and at every stage, (1 + steps stages, contacts, 3)."""
         return np.concatenate([self.positions[:1], self.stages.reshape(-1, 3)])[:, None]
 
-    @property
-    def places(self) -> np.ndarray:
-        """Displacement at every phase, shape (steps + 1, contacts, 3)."""
-        return self.positions[:, None]
-
     @cached_property
     def share(self) -> np.ndarray:
         """Duration of each step divided by the duration of the path, shape (steps,)."""
@@ -172,31 +167,6 @@ class Path:
     def mean(self, values: np.ndarray) -> np.ndarray:
         """Time average of values at the phases (first axis), by the trapezoidal rule."""
         return 0.5 * (self.share @ values[1:] + self.share @ values[:-1])
-
-
-@dataclass(frozen=True, eq=False)
-class BodyPath(Path):
-    """A Path of a body on several contacts, with the path of each contact relative to the body.
-
-    Attributes
-    ----------
-    each : tuple of path.Path
-        For each contact, its path relative to the path of the body, divided into the same steps.
-        Only these paths have a `depth`.
-    """
-
-    each: tuple[Path, ...] = ()
-
-    @cached_property
-    def motion(self) -> np.ndarray:
-        """Displacement of each contact at the start and at every stage, as in Path.motion."""
-        of_body = np.concatenate([self.positions[:1], self.stages.reshape(-1, 3)])[:, None]
-        return of_body + np.concatenate([one.motion for one in self.each], axis=1)
-
-    @property
-    def places(self) -> np.ndarray:
-        """Displacement of each contact at every phase, as in Path.places."""
-        return self.positions[:, None] + np.stack([one.positions for one in self.each], axis=1)
 
 
 def make_path(

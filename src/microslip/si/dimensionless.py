@@ -255,12 +255,12 @@ class RealDrive:
     mass: float | None = None
     damping: float | None = None
 
-    def groups(self, moving: MovingContact, contacts: int = 1) -> dict[str, float]:
+    def groups(self, moving: MovingContact) -> dict[str, float]:
         """Force, stiffness, mass and damping for microslip.solve, without None values.
 
-        The drive is divided by the number of contacts of the body.  The force is divided by mu
-        times the mean load, the stiffness by mu F_z / u_lim, the mass by mu F_z / (u_lim omega^2),
-        and the damping by mu F_z / (u_lim omega).  F_z is the load without oscillation.
+        The force is divided by mu times the mean load, the stiffness by mu F_z / u_lim, the mass by
+        mu F_z / (u_lim omega^2), and the damping by mu F_z / (u_lim omega).  F_z is the load
+        without oscillation.
         """
         contact, omega = moving.contact, moving.motion.turn
         stiffness = contact.mu * contact.load / contact.u_lim
@@ -271,4 +271,4 @@ class RealDrive:
             "damping": omega / stiffness,
         }
         values = ((name, getattr(self, name), unit) for name, unit in units.items())
-        return {name: value / contacts * unit for name, value, unit in values if value is not None}
+        return {name: value * unit for name, value, unit in values if value is not None}

@@ -45,7 +45,7 @@ def energy_fields(request: Request, answer: Result) -> dict[str, Any]:
         area = pressure_named(contact.pressure).area * contact.contact_radius**2
         volume = wear / contact.mu * energy
         fields |= columns_of("wear_volume_per_cycle", volume, suffix="_m3")
-        depth = 1.0 / (area * request.carriers.count) * volume
+        depth = 1.0 / area * volume
         fields |= columns_of("wear_depth_per_cycle", depth, suffix="_m")
     return fields
 

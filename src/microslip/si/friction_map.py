@@ -13,7 +13,7 @@ from microslip.foundation.errors import InputError
 
 MAP = "map"
 """Model name in a Result that comes from a map."""
-REFUSED = ("force", "drive_stiffness", "contacts", "wear_coefficient")
+REFUSED = ("force", "drive_stiffness", "wear_coefficient")
 """Arguments of `predict` that are not allowed with a map."""
 
 
@@ -30,7 +30,7 @@ class FrictionMap:
     Raises
     ------
     InputError
-        If the dataset has another motion or pressure, a drive, or several contacts.
+        If the dataset has another motion or pressure, or a drive.
     """
 
     def __init__(self, dataset: Any, motion: str, pressure: str = "hertz"):
@@ -41,9 +41,9 @@ class FrictionMap:
             what = kind if own[0] is None else f"{own[0]}, pressure {own[1]}"
             allowed = f"allowed is the dataset of a sweep of {motion}, pressure {pressure}"
             raise InputError("map", what, allowed)
-        if {"drive", "contacts"} & set(attributes):
-            allowed = "allowed is a map of one contact with a prescribed velocity"
-            raise InputError("map", motion, f"it has a drive or several contacts; {allowed}")
+        if "drive" in attributes:
+            allowed = "allowed is a map with a prescribed velocity"
+            raise InputError("map", motion, f"it has a drive; {allowed}")
         self.dataset, self.motion, self.pressure = dataset, motion, pressure
 
     def at(

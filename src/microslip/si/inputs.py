@@ -282,7 +282,7 @@ def _numbers(body: Material) -> str:
     return ", ".join(parts)
 
 
-def contact_of(inputs: Inputs, load: float | None = None, contacts: int = 1) -> TwoBodies:
+def contact_of(inputs: Inputs, load: float | None = None) -> TwoBodies:
     """The contact of the bodies.
 
     Parameters
@@ -290,9 +290,7 @@ def contact_of(inputs: Inputs, load: float | None = None, contacts: int = 1) -> 
     inputs : Inputs
         The bodies, the shape of the contact, mu and the load.
     load : float or None
-        Total load of all contacts, N, if it is not that of the inputs.
-    contacts : int
-        Number of contacts.  The returned contact has the mean load.
+        Load, N, if it is not that of the inputs.
 
     Raises
     ------
@@ -309,7 +307,7 @@ def contact_of(inputs: Inputs, load: float | None = None, contacts: int = 1) -> 
         raise InputError("radius", None, "needed, or a contact_radius")
     radii = () if sized else _radii(inputs)
     radius = 1.0 / sum(1.0 / one for one in radii) if radii else 1.0
-    plain = TwoBodies(body, counterbody, radius, load / contacts, mu, radii)
+    plain = TwoBodies(body, counterbody, radius, load, mu, radii)
     if sized:
         return _of_size(inputs, plain)
     _check_hertzian(plain, "counter_radius", inputs)

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import replace
 from inspect import signature
 from typing import Any
 
@@ -76,7 +75,6 @@ def predict(
     drive_stiffness: object = None,
     mass: object = None,
     damping: object = None,
-    contacts: object = None,
     hardness: object = None,
     density: object = None,
     counter_hardness: object = None,
@@ -143,12 +141,6 @@ def predict(
     drive_stiffness, mass, damping : quantity, optional
         Stiffness of a spring between the drive and the body, N/m; mass of the body, kg; damping of
         a dashpot parallel to the spring, N s/m.  A mass is also allowed with a force.
-    contacts : str, optional
-        Several contacts of equal shape under one body, as for microslip.solve: "phase=0;phase=180".
-        The argument `load` is the total load.  It is divided in proportion to the `load` of each
-        contact.  force, drive_stiffness, mass and damping apply to the body.  Amplitudes apply to a
-        contact whose `amplitude` is 1.  Results for one contact refer to a contact with the mean
-        load.  Warnings refer to the contact with the largest load.
     hardness, density, counter_hardness, counter_density : quantity, optional
         Hardness and density of the body and of the counterbody.  A hardness is a pressure, Pa, or a
         text such as "700 HV" or "60 HRC".  A density is in kg/m^3.  Hardnesses and densities are
@@ -223,9 +215,8 @@ def answer_request(request: Request) -> Prediction:
     parts |= _common(request, answer, threshold) | {"velocity": velocity}
     if request.motion.spins and not request.motion.amplitude:
         parts["velocity"] = None
-    most = replace(request, contact=request.carriers.most_loaded(request.contact))
-    parts["warnings"] = tuple(broken_assumptions(most))
-    parts["not_checked"] = tuple(unchecked(most.contact))
+    parts["warnings"] = tuple(broken_assumptions(request))
+    parts["not_checked"] = tuple(unchecked(request.contact))
     if answer.converged:
         parts |= energy_fields(request, answer)
     if request.motion.steady:
@@ -267,13 +258,12 @@ def _common(request: Request, answer: Result, threshold: Estimate | None) -> dic
         "kind": request.kind,
         "motion": request.motion.name,
         "pressure": contact.pressure,
-        "contacts": request.carriers.text,
         "contact_radius_m": contact.contact_radius,
         "indentation_m": contact.indentation,
         "largest_pressure_Pa": contact.largest_pressure,
         "u_lim_m": contact.u_lim,
         "poisson": contact.poisson,
-        "load_N": contact.load * request.carriers.count,
+        "load_N": contact.load,
         "speed_m_s": math.nan if request.motion.speed is None else request.motion.speed,
         "model": answer.model,
         "converged": answer.converged,
@@ -304,12 +294,11 @@ def _oscillation(request: Request, answer: Result, limit: Result | None) -> dict
     if groups:
         drive, spring = request.drive, Spring(**{"stiffness": 0.0} | groups)
         assert answer.amplitude is not None  # the motion oscillates
-        widest = answer.amplitude * max(request.carriers.widest, 1.0)
         fields |= groups | {
             "drive_stiffness_N_m": drive.stiffness,
             "mass_kg": drive.mass,
             "damping_N_s_m": drive.damping,
-            "regime": regime(motion.name, widest, spring),
+            "regime": regime(motion.name, answer.amplitude, spring),
             "natural_frequency": natural_frequency(spring),
         }
     return fields
@@ -356,8 +345,8 @@ def _way_to_rest(request: Request) -> dict[str, Any]:
     The displacement is computed for round contacts only, because other contacts would take minutes.
     """
     contact, drive = request.contact, request.drive_groups
-    if set(drive) != {"force"} or request.carriers.text is not None:
-        return {"displacement_reason": "computed for one contact without mass only"}
+    if set(drive) != {"force"}:
+        return {"displacement_reason": "computed without mass only"}
     if not pressure_named(contact.pressure).is_round:
         return {"displacement_reason": "computed for a round contact only"}
     point = request.solver_motion, request.groups[1], drive["force"]

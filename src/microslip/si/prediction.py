@@ -27,7 +27,7 @@ _NAMES = """
     time_to_1_mm_s time_to_1_mm_error_s time_to_contact_radius_s time_to_contact_radius_error_s
     displacement_m displacement_error_m cycles_to_rest displacement_reason force_threshold_N
     force_threshold_error_N safety_factor safety_factor_error regime natural_frequency pressure
-    forward_amplitude_m rotation_amplitude_rad load_amplitude_N phase_rad contacts torque_N_m
+    forward_amplitude_m rotation_amplitude_rad load_amplitude_N phase_rad torque_N_m
     torque_error_N_m drag_power_W drag_power_error_W vibration_power_W vibration_power_error_W
     dissipated_power_W dissipated_power_error_W energy_per_cycle_J energy_per_cycle_error_J
     wear_volume_per_cycle_m3 wear_volume_per_cycle_error_m3 wear_depth_per_cycle_m
@@ -81,10 +81,6 @@ class Prediction:
         The kind of the motion, for the printed text.
     motion, pressure : str
         The motion, and the pressure as in microslip.solve.
-    contacts : str or None
-        The contacts of the body as in microslip.solve; None for a single contact.  For several
-        contacts, forces and powers refer to the body.  Sizes and dimensionless groups refer to a
-        contact with the mean load.
     contact_radius_m, indentation_m, largest_pressure_Pa : float
         Contact radius and indentation, m, and largest pressure, Pa.
     u_lim_m : float
@@ -146,7 +142,6 @@ class Prediction:
     kind: RealMotionKind = field(compare=False, repr=False)
     motion: str
     pressure: str
-    contacts: str | None
     contact_radius_m: float
     indentation_m: float
     largest_pressure_Pa: float

@@ -25,7 +25,7 @@ from microslip.si.regimes import REGIMES
 
 UNDERSTOOD = (
     *("motion", "body", "counterbody", "radius", "counter_radius", "radius_across"),
-    *("contact_radius", "pressure", "load", "contacts", "mu", "speed"),
+    *("contact_radius", "pressure", "load", "mu", "speed"),
     *("force", "drive_stiffness", "mass", "damping"),
     *("amplitude", "forward_amplitude", "rotation_amplitude", "load_amplitude", "phase"),
     *("frequency", "rotation", "reduction", "map"),

@@ -27,7 +27,6 @@ from microslip.si.inputs import (
 )
 from microslip.si.motions import RealMotionKind, kind_of
 from microslip.si.quantities import read
-from microslip.si.several import Carriers, read_carriers
 
 LARGEST_TOLERANCE = 0.1
 """Largest allowed tolerance, absolute for mu_macro and relative for a speed."""
@@ -53,8 +52,6 @@ class Request(MovingContact):
         Arguments of `predict`.
     drive : RealDrive
         The drive of the body.
-    carriers : several.Carriers
-        All contacts of the body.  The load of `contact` is their mean load.
     sought : str or None
         Name of the quantity that a search determines.
     tolerance : float
@@ -67,7 +64,6 @@ class Request(MovingContact):
 
     inputs: Inputs
     drive: RealDrive
-    carriers: Carriers
     sought: str | None
     tolerance: float
     understood: dict[str, str]
@@ -94,13 +90,13 @@ class Request(MovingContact):
 
     @cached_property
     def still(self) -> float:
-        """Friction of all contacts without vibration, N: mu times the mean normal load."""
-        return self.full_friction * self.carriers.count
+        """Friction without vibration, N: mu times the mean normal load."""
+        return self.full_friction
 
     @cached_property
     def drive_groups(self) -> dict[str, float]:
-        """Force, stiffness, mass and damping for microslip.solve, for one contact."""
-        return self.drive.groups(self, self.carriers.count)
+        """Force, stiffness, mass and damping for microslip.solve."""
+        return self.drive.groups(self)
 
     @cached_property
     def map(self) -> FrictionMap | None:
@@ -120,16 +116,12 @@ class Request(MovingContact):
         return FrictionMap(dataset, str(self.solver_motion), self.contact.pressure)
 
     def problem(self) -> Problem:
-        """The dimensionless Problem in the limit of vanishing speed.
-
-        Raises InputError if the motion or the pressure does not allow several contacts.
-        """
-        settings: dict[str, Any] = {"contacts": self.carriers.text} | self.settings
-        return checked_driven_problem(self.solver_motion, 0.0, self.groups[1], **settings)
+        """The dimensionless Problem in the limit of vanishing speed."""
+        return checked_driven_problem(self.solver_motion, 0.0, self.groups[1], **self.settings)
 
     @property
     def settings(self) -> dict[str, Any]:
-        """Further arguments for microslip.solve, for one contact."""
+        """Further arguments for microslip.solve."""
         return {"poisson": self.contact.poisson, "pressure": self.contact.pressure}
 
     def solve(
@@ -164,8 +156,6 @@ class Request(MovingContact):
         settings = self.settings | drive | {"tolerance": tolerance}
         if poisson is not None:
             settings["poisson"] = poisson
-        if self.carriers.text is not None:
-            settings["contacts"] = self.carriers.text
         if velocity is not None:
             velocity = min(velocity, LARGEST["velocity"])
         size = self.groups[1] if amplitude is None else amplitude
@@ -222,10 +212,7 @@ def request_of(motion: str, arguments: Mapping[str, Any]) -> Request:
         tolerance = TOLERANCE if arguments["force"] is None else TOLERANCE_OF_SPEED
     limits: dict[str, Any] = {"low": SMALLEST_TOLERANCE, "high": LARGEST_TOLERANCE}
     accepted = read("tolerance", tolerance, "", low_open=False, **limits).si
-    carriers = read_carriers(arguments["contacts"])
-    if sought is not None and carriers.text is not None:
-        raise inputs.error("reduction", "allowed only without contacts")
-    contact = contact_of(inputs, ANY_LOAD if sought == "load" else None, carriers.count)
+    contact = contact_of(inputs, ANY_LOAD if sought == "load" else None)
     real, drive = motion_of(motion, inputs), drive_of(motion, inputs)
     if sought is not None and drive != RealDrive():
         raise inputs.error("reduction", "allowed only without a force and a drive_stiffness")
@@ -233,15 +220,9 @@ def request_of(motion: str, arguments: Mapping[str, Any]) -> Request:
     understood = {"motion": f"{motion}: the sphere {kind.description}"} | inputs.texts
     if real.stroke is not None:
         understood["amplitude"] += " times the samples"
-    request = Request(contact, real, inputs, drive, carriers, sought, accepted, understood, kind)
+    request = Request(contact, real, inputs, drive, sought, accepted, understood, kind)
     if sought is None:
         request.check_range()
-    if carriers.text is not None:
-        if (real.load_amplitude or 0.0) * carriers.widest > contact.load:
-            allowed = "allowed is at most the load with several contacts: above it the bodies part"
-            raise inputs.error("load_amplitude", allowed)
-        understood["contacts"] = " ".join(arguments["contacts"].split())
-        request.problem()  # raises InputError if several contacts are not allowed
     if request.map is not None:
         understood["map"] = "friction from a map in place of the solver"
     return request

@@ -38,9 +38,9 @@ def tolerance_of(request: Request, tolerance: float) -> float:
 def equals_static_limit(request: Request) -> bool | float | None:
     """Return True if the force threshold equals the static limit, else the value of the threshold.
 
-    The threshold equals the static limit if the oscillation exerts no forward force, or if the
-    forward forces of several contacts cancel.  Otherwise, a contact without mass follows the
-    forward oscillation.  If there is no other oscillation, the threshold is mu F_z.
+    The threshold equals the static limit if the oscillation exerts no forward force.  Otherwise, a
+    contact without mass follows the forward oscillation.  If there is no other oscillation, the
+    threshold is mu F_z.
 
     Returns
     -------

@@ -30,7 +30,7 @@ NUMBER = re.compile(r"[+−-]?[\d.,]+([eE][+−-]?\d+)?", re.A)
 ALLOWED = "allowed is a path, a DataFrame of pandas, or a mapping of names to sequences"
 LABELS = ("label", "name", "id", "sample", "comment")
 """Text columns that are copied to the output."""
-TEXTS = ("material", "pressure", "contacts", *LABELS)
+TEXTS = ("material", "pressure", *LABELS)
 """Text columns; all others are quantities."""
 EXAMPLES = {"speed": "mm/s", "forward": "um"}
 """Columns with a unit that a message can show as an example."""

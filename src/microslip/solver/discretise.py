@@ -3,18 +3,15 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
 from dataclasses import dataclass
 from functools import lru_cache
-from itertools import pairwise
-from typing import Any, Protocol
+from typing import Protocol
 
 import numpy as np
 
 from microslip.models.contact import Contact
 from microslip.models.path import (
     SDIRK2,
-    BodyPath,
     Integrator,
     Path,
     make_path,
@@ -24,12 +21,10 @@ from microslip.models.path import (
 )
 from microslip.models.registry import MODELS
 from microslip.models.rings.mesh import Focus
-from microslip.motions.problem import Part, Problem
+from microslip.motions.problem import Problem
 
 WEAKEST_FOCUS, STRONGEST_FOCUS, STATIC_FOCUS = 0.3, 1.0 - 2.0**-6, 0.9
 """Smallest and largest mesh.Focus.strength, and the value used for the static limit."""
-NEAREST_TURNS = 1e-6
-"""Phase difference in radians below which two turning points count as one."""
 
 
 @dataclass(frozen=True, order=True)
@@ -67,22 +62,6 @@ def focus_strength(drift: float) -> float:
     return float(np.clip(1.0 - layer, WEAKEST_FOCUS, STRONGEST_FOCUS))
 
 
-def contact_of(
-    problem: Problem, model: str, resolution: Resolution, focus: Focus | None = None
-) -> Contact:
-    """Build the contact of a problem, or all its contacts side by side; see build_contact."""
-    if not problem.contacts:
-        return build_contact(problem, model, resolution, focus)
-    parts, start = problem.parts, problem.start
-    from microslip.models.side_by_side import SideBySide  # imported here because it loads slowly
-
-    contacts: list[Any] = [
-        build_contact(part.problem, model, resolution, focus, start + part.lead) for part in parts
-    ]
-    shares, extents = [part.share for part in parts], [part.extent for part in parts]
-    return SideBySide(contacts, shares, extents)
-
-
 def _focus(problem: Problem) -> Focus | float | None:
     """Grading of the rings towards the radius at which slip starts."""
     radius = problem.focus
@@ -91,14 +70,13 @@ def _focus(problem: Problem) -> Focus | float | None:
     return Focus((radius,), focus_strength(problem.drift))
 
 
-def build_contact(
+def contact_of(
     problem: Problem,
     model: str,
     resolution: Resolution,
     focus: Focus | None = None,
-    start: float | None = None,
 ) -> Contact:
-    """Build the contact of a problem with a single contact.
+    """Build the contact of a problem.
 
     Parameters
     ----------
@@ -111,15 +89,12 @@ def build_contact(
         Resolution of the model.
     focus : mesh.Focus or None
         Grading of the rings.  By default, they are graded towards the radius at which slip starts.
-    start : float or None
-        Phase at which a period starts.  Defaults to the first turning point.
     """
     place = focus or _focus(problem)
     contact = MODELS[model].build(problem, resolution.cells, resolution.angles, place)
     if problem.depth is None:
         return contact
-    start = problem.start if start is None else start
-    return contact.at_indentation(problem.deepest, float(problem.depth(np.array(start))))
+    return contact.at_indentation(problem.deepest, float(problem.depth(np.array(problem.start))))
 
 
 class Graded(Protocol):
@@ -134,8 +109,6 @@ def path_of(problem: Problem, contact: Graded, steps: int, integrator: Integrato
     """Build the path of a problem, starting at a turning point.
 
     The path covers half a period if the second half is its mirror image, otherwise a whole period.
-    For several contacts, it is a BodyPath with steps graded towards the turning points of each
-    contact.
 
     Parameters
     ----------
@@ -159,53 +132,5 @@ def _path(problem: Problem, steps: int, grading: float, integrator: Integrator) 
     # on a loop the slip can reverse at any phase
     on_a_line = problem.straight and problem.motion.periodic
     width = turning_point_width(problem.drift, problem.stroke) if on_a_line else math.inf
-    if not problem.contacts:
-        phases = phases_between(problem.turns, steps, grading, width)
-        return make_path(problem.displacement, phases, integrator, problem.depth)
-    phases, drift = _body_phases(problem, steps, grading, width), problem.drift
-
-    def forward(phase: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        return drift * phase, np.zeros_like(phase), np.zeros_like(phase)
-
-    each = (
-        make_path(_beside(problem, part), phases, integrator, problem.depth and part.depth)
-        for part in problem.parts
-    )
-    return BodyPath(**vars(make_path(forward, phases, integrator)), each=tuple(each))
-
-
-def _beside(problem: Problem, part: Part) -> Callable:
-    """Displacement of a contact relative to the body, as a function of the phase."""
-
-    def displacement(phase: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        forward, lateral, angle = part.oscillation(phase)
-        if problem.follows:
-            forward = forward - _mean_oscillation(problem, phase)
-        return forward, lateral, angle
-
-    return displacement
-
-
-def _mean_oscillation(problem: Problem, phase: np.ndarray) -> np.ndarray:
-    """Mean of the contacts' forward oscillations, weighted by the contacts' stiffness."""
-    stiff = np.array([part.share / part.extent for part in problem.parts])
-    ahead = np.array([part.oscillation(phase)[0] for part in problem.parts])
-    return np.tensordot(stiff / stiff.sum(), ahead, axes=1)
-
-
-def _body_phases(problem: Problem, steps: int, grading: float, width: float) -> np.ndarray:
-    """Phases of a (half) period, from the first turning point of the first contact.
-
-    The turning points of all contacts are among the phases.
-    """
-    interval = np.pi if problem.half_period_mirror else 2.0 * np.pi
-    turns, start = [part.turns(problem.follows) for part in problem.parts], problem.start
-    inner = np.sort(np.concatenate([(turn - start) % interval for turn in turns]))
-    inside = inner[(inner > NEAREST_TURNS) & (inner < interval - NEAREST_TURNS)]
-    distinct = inside[np.diff(inside, prepend=0.0) > NEAREST_TURNS]
-    ends = start + np.concatenate([[0.0], distinct, [interval]])
-    pieces = [ends[:1]]
-    for one, other in pairwise(ends):
-        count = max(round(steps * (other - one) / np.pi), 1)
-        pieces.append(phases_between((one, other), count, grading, width)[1:])
-    return np.concatenate(pieces)
+    phases = phases_between(problem.turns, steps, grading, width)
+    return make_path(problem.displacement, phases, integrator, problem.depth)

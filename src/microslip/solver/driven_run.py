@@ -30,12 +30,11 @@ from microslip.models.driven_body import Body
 from microslip.models.path import Path
 from microslip.models.system_contact import SystemContact
 from microslip.motions.problem import Problem
-from microslip.solver.body_run import simulate_each
 from microslip.solver.discretise import Resolution, path_of
 from microslip.solver.period_map import MOST_MARCHES, DriftRate, Goal, PeriodicState, PeriodMap
 from microslip.solver.periodic import find_periodic_state
 from microslip.solver.run import Run, Settings, failed_run
-from microslip.solver.simulate import run_of_searches, step_share
+from microslip.solver.simulate import run_of_searches, simulate, step_share
 from microslip.states.search import Inertia
 
 MARCHES = 2 * MOST_MARCHES
@@ -208,7 +207,7 @@ class _DrivenSearch:
     def _at_prescribed_velocity(self, tolerance: float) -> Run:
         """The Run without a drive, at the prescribed velocity of the problem."""
         share = max(tolerance, LOOSEST_START) / self.problem.mean_load
-        return simulate_each(self.problem, self.model, self.resolution, share, self.settings)
+        return simulate(self.problem, self.model, self.resolution, share, settings=self.settings)
 
     def _state(self, tractions: np.ndarray, mean: float) -> np.ndarray:
         """Build a state from tractions whose mean force over a period is about `mean`."""

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, cast
+from typing import cast
 
 import numpy as np
 
@@ -10,9 +10,6 @@ from microslip.models.contact import Contact, GrowingContact
 from microslip.models.path import Path
 from microslip.motions.problem import Problem
 from microslip.solver.period_map import PeriodicState
-
-if TYPE_CHECKING:
-    from microslip.models.side_by_side import SideBySide
 
 
 def mean_forces(contact: Contact, problem: Problem, path: Path, forces: np.ndarray) -> np.ndarray:
@@ -31,24 +28,20 @@ def dissipated_energy(contact: Contact, path: Path, periodic: PeriodicState) -> 
 
     The elastic energy is the same at both ends of a period.  An oscillating normal load does no net
     work, because the load is a function of the indentation.  So the dissipated energy is the work
-    of the tangential forces on the rigid displacements of the contacts.
+    of the tangential forces on the rigid displacements of the contact.
 
     Parameters
     ----------
     contact : contact.Contact
-        The contact, or several contacts side by side.
+        The contact.
     path : path.Path
         Path over a period, or over half a period if the second half is the mirror image of the
         first.
     periodic : period_map.PeriodicState
         The periodic state.
     """
-    forces, places = periodic.forces[:, None], path.places
-    if places.shape[1] > 1:
-        assert periodic.fields is not None  # true for all compiled contacts
-        forces = cast("SideBySide", contact).forces_of_each(path, periodic.fields)
-    moves = np.diff(places, axis=0)
+    forces, moves = periodic.forces, np.diff(path.positions, axis=0)
     if periodic.body is not None:
-        moves[..., 0] += np.diff(periodic.body[:, :1], axis=0)
+        moves[:, 0] += np.diff(periodic.body[:, 0])
     work = 0.5 * np.vdot(forces[1:] + forces[:-1], moves)
     return float(work) * 2.0 * np.pi / (path.phase[-1] - path.phase[0])

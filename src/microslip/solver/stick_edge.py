@@ -83,7 +83,7 @@ def edge_focus(
     if not needed:
         return None
     # at nu = 0, since Poisson's ratio hardly changes the edges
-    limit = replace(problem, velocity=0.0, poisson=0.0, drive=None, contacts=())
+    limit = replace(problem, velocity=0.0, poisson=0.0, drive=None)
     radii = _search_of(limit).within(budget or Budget(), progress)
     return Focus(radii, focus_strength(drift)) if radii else None
 

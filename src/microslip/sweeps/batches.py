@@ -22,7 +22,6 @@ from microslip.config.records import HISTORIES_OF_SWEEP, Configuration, Sweep
 from microslip.foundation import source_digest
 from microslip.foundation.canonical import canonical_json, fingerprint, number, sha256
 from microslip.foundation.errors import CacheError, SolverError
-from microslip.motions.body_contacts import contacts_of, contacts_text
 from microslip.sweeps import evaluate
 from microslip.sweeps.store import Store, read
 
@@ -102,8 +101,6 @@ def points_of(sweep: Sweep) -> Batch:
     }
     if pressure != "hertz":  # omitted if default, so that names of older results remain valid
         common["pressure"] = pressure
-    if sweep.contacts is not None:
-        common["contacts"] = contacts_text(contacts_of(sweep.contacts))
     axes: dict[str, list] = {name: [*map(number, values)] for name, values, _ in sweep.drives}
     axes["poisson"] = [*map(number, sweep.poisson)]
     axes["amplitude"] = [None] if sweep.amplitude is None else [*map(number, sweep.amplitude)]

@@ -30,7 +30,6 @@ def solve_stored(
     stiffness: float | None = None,
     mass: float | None = None,
     damping: float | None = None,
-    contacts: str | None = None,
     pressure: str = "hertz",
     poisson: float = 0.0,
     model: str = "auto",
@@ -76,7 +75,6 @@ def solve_stored(
         amplitude,
         pressure=pressure,
         poisson=poisson,
-        contacts=contacts,
         **drive,
     )
     point = request_for(problem, model, tolerance, cells=cells, steps=steps, time_limit=time_limit)
@@ -98,7 +96,6 @@ def solve_stored(
         cells=point.cells,
         steps=point.steps,
         pressure=pressure,
-        contacts=contacts,
         drives=_drives(**drive),
     )
     (request,) = batches.points_of(grid).requests

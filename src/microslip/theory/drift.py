@@ -67,23 +67,3 @@ def _steady_bore(force: float) -> float:
         allowed = "allowed are forces up to 1 - 1e-13, and forces of at least 1"
         raise InputError("force", float(force), allowed)
     return brentq(lambda velocity: float(bore_forward(velocity)) - force, 0.0, _FASTEST, xtol=1e-14)
-
-
-def antiphase_drift(force: np.ndarray | float, amplitude: np.ndarray | float) -> np.ndarray | float:
-    """Mean velocity of a body on two spheres that oscillate forward in antiphase.
-
-    It is (2/pi) max(A - 1 + P^(2/3), 0). The body has no mass, nu = 0, and the loads are equal.
-    While one sphere slides at its friction bound, the other sphere sticks. The force on the
-    sticking sphere is 2 P - 1 times its bound, and the body moves with this sphere. When the
-    oscillation turns, the two spheres change roles, and the force of each changes by 2 - 2 P. By
-    Masing's rule, each contact deforms by 2 (1 - P^(2/3)), which is twice the displacement of a
-    first loading to 1 - P. One contact deforms forward and the other backward, so the body does not
-    move. It moves during the rest of the stroke. So the body drifts if P exceeds the static limit
-    of one sphere, (1 - A)^(3/2). A body on rigid spheres has the velocity (2/pi) A under any force.
-
-    The arguments, the result and the exceptions are those of `transverse_drift`. P = 0 gives the
-    limit of a small force.
-    """
-    force, amplitude = checked("force", force), checked("amplitude", amplitude)
-    travel = np.maximum(amplitude - 1.0 + force ** (2.0 / 3.0), 0.0)
-    return 2.0 / np.pi * np.where(force < 1.0, travel, np.inf)[()]

@@ -344,7 +344,7 @@ class Friction:
     def _refuse_outside(self, part: Map | None, velocity: float, amplitude: float) -> None:
         case = self._motion if self._pressure == "hertz" else f"pressure {self._pressure}"
         if not beyond.is_alone(self._dataset):
-            case = f"{case} under a spring or of several contacts"
+            case = f"{case} under a spring"
         advice = f"no limit of {case} is known: with a tolerance the solver is asked"
         if part is None:
             raise ValueError(f"velocity = {velocity:g}: the map has none such; {advice}")

@@ -26,9 +26,9 @@ def solve_and_store(folder: str, *point: Any, **settings: Any) -> Result:
 
 
 def drive_of(dataset: xr.Dataset) -> dict[str, object]:
-    """Return the drive and the contacts of a dataset as arguments of microslip.solve.
+    """Return the drive of a dataset as arguments of microslip.solve.
 
-    The result is {} for one contact at a prescribed velocity.  Raises InputError unless the dataset
+    The result is {} at a prescribed velocity.  Raises InputError unless the dataset
     has exactly one value of each argument.
     """
     names = [name for name in dataset.attrs.get("drive", "").split(", ") if name]
@@ -36,8 +36,7 @@ def drive_of(dataset: xr.Dataset) -> dict[str, object]:
         if name not in dataset.coords or dataset[name].ndim:
             allowed = "microslip.at needs one value to call the solver: keep it as a coordinate"
             raise InputError(name, None, allowed)
-    contacts = {"contacts": dataset.attrs["contacts"]} if "contacts" in dataset.attrs else {}
-    return {name: float(dataset[name]) for name in names} | contacts
+    return {name: float(dataset[name]) for name in names}
 
 
 @cache

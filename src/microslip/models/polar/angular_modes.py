@@ -15,7 +15,7 @@ from typing import NamedTuple
 import numpy as np
 
 from microslip.contacts.lanes import LANES, NOTHING, four, plus_multiple, put
-from microslip.contacts.operators import Matrices, multiply_rows, operator, packed, scaled, start
+from microslip.contacts.operators import Matrices, multiply_rows, operator, packed, start
 from microslip.contacts.splitting import PENALTIES, best_penalty
 from microslip.foundation.compiled import kernel
 from microslip.models.rings.influence import ring_influence
@@ -64,14 +64,6 @@ class Modes(NamedTuple):
         return self._replace(
             amplitudes=np.empty_like(self.amplitudes), images=np.empty_like(self.images)
         )
-
-    @staticmethod
-    def joined(each: Sequence[Modes], extents: np.ndarray) -> Modes:
-        """Join the operators of several contacts on one body (see models/side_by_side.py)."""
-        parts = [scaled(one.blocks, extent) for one, extent in zip(each, extents, strict=True)]
-        blocks, width = np.concatenate(parts, axis=1), each[0].amplitudes.shape[1]
-        to_modes, to_points = each[0].to_modes, each[0].to_points
-        return modes_of(to_modes, to_points, blocks, len(each), width // to_modes.shape[1])
 
 
 def modes_of(

@@ -19,6 +19,7 @@ from functools import lru_cache
 
 import numpy as np
 
+from microslip.contacts.operators import scaled
 from microslip.models import contact
 from microslip.models.polar.angular_modes import ROTATION, TRANSLATION, WHOLE, influence_modes
 from microslip.models.rings.contact import RadialContact, width_of
@@ -119,7 +120,7 @@ class PolarContact(SystemContact):
         out.forward_position = self.forward_position * radius
         out.lateral_position = self.lateral_position * radius
         out.bound, out.weight = loaded.bound, self.weight * radius**2
-        out.operators = self.operators.joined([self.operators], np.array([radius]))
+        out.operators = self.operators._replace(blocks=scaled(self.operators.blocks, radius))
         out.compliance = self.compliance * radius
         out.stiffness = self.stiffness * radius
         return out

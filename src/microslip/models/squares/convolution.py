@@ -12,7 +12,6 @@ both axes (quarter.py), and a half for fields with a half-turn or mirror symmetr
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from functools import lru_cache
 from typing import NamedTuple
 
@@ -244,11 +243,6 @@ class Convolved(NamedTuple):
     def own(self) -> Convolved:
         """Return a copy of this operator with separate scratch arrays."""
         return convolved(self.convolution, *self.traction.shape[1:])._replace(extents=self.extents)
-
-    @staticmethod
-    def joined(each: Sequence[Convolved], extents: np.ndarray) -> Convolved:
-        """Join the operators of several equal contacts on one body (see models/side_by_side.py)."""
-        return each[0]._replace(extents=extents)
 
 
 def convolved(convolution: Convolution, rows: int, columns: int) -> Convolved:

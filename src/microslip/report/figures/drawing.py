@@ -38,7 +38,6 @@ _DRAWN: dict[str, tuple[str, ...]] = {
     "poisson": ("poisson.draw", "transverse", "bore"),
     "drift_maps": ("drift.draw", "drift_transverse", "drift_bore"),
     "drives": ("drives.drives", "transverse", "drive_force", "drive_spring", "drive_body"),
-    "pairs": ("drives.pairs", "one_spring", "pair_spring", "pair_force"),
     "accuracy_profile": ("accuracy.profile", "accuracy_cost"),
     "accuracy_vs_cost": ("work_precision.draw", "accuracy_cost"),
     "accuracy_vs_work": ("work_precision.draw", "accuracy_cost"),

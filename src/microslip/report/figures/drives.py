@@ -1,4 +1,4 @@
-"""Figures of drives: friction against velocity for each drive, a mass on a spring, and pairs."""
+"""Figures of drives: friction against velocity for each drive, and a mass on a spring."""
 
 from __future__ import annotations
 
@@ -13,7 +13,6 @@ from microslip.config.quantities import DRIVES, VELOCITY
 from microslip.report.figures import panels
 from microslip.report.figures import style as look
 from microslip.report.figures.data import at_one_poisson, columns
-from microslip.theory.drift import antiphase_drift
 
 SPRINGS = ((look.BLUE, "s"), (look.GREEN, "^"), (look.ORANGE, "D"))
 """Colours and markers of the points, by ascending stiffness."""
@@ -34,31 +33,6 @@ def drives(
     left, right = figure.subplots(1, 2)
     _over_velocity(left, transverse, force, spring)
     _over_mass(right, transverse, body)
-    return figure
-
-
-def pairs(name: str, *datasets: xr.Dataset) -> Figure:
-    """Draw friction against the mean velocity, for one contact and two contacts in antiphase."""
-    one, pair, force = map(_one, datasets)
-    figure = look.new_figure(look.DOUBLE, 3.1)
-    left, right = figure.subplots(1, 2, sharex=True, sharey=True)
-    _springs(left, one, "velocity")
-    _springs(right, pair, "velocity")
-    _force(right, force)
-    forces = np.linspace(0.0, 1.0, 200, endpoint=False)
-    form = antiphase_drift(forces, float(force["amplitude"]))
-    ink: look.Ink = {"color": look.VERMILLION, "lw": 1.0, "ls": "--", "gid": "antiphase"}
-    right.plot(form, forces, label="its closed form", **ink)
-    velocity = pair["velocity"].values
-    amplitude = f"amplitude {float(pair['amplitude']):g}, along the motion"
-    panels.heading(left, f"one contact, {amplitude}")
-    panels.heading(right, "two in antiphase")
-    for axes in (left, right):
-        panels.logarithmic(axes, (velocity[0] / MARGIN, velocity[-1] * MARGIN))
-        axes.set_xlabel(look.axis(VELOCITY["transverse"]))
-    panels.unit_range(left)
-    left.set_ylabel(look.FRICTION_IN_TWO_LINES)
-    panels.legend_of_figure(figure, right.get_legend_handles_labels()[0])
     return figure
 
 
