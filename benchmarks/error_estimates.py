@@ -366,7 +366,11 @@ def main():
         return examine, options.seed, k, references.get(k), constants
 
     for end in [*range(options.first + EVERY, options.points, EVERY), options.points]:
-        numbers = range(options.first, end)
+        numbers = [
+            k
+            for k in range(options.first, end)
+            if "contacts" not in blind_points.point(options.seed, k)
+        ]
         resumable.add_lines(output, lines, numbers, jobs_of, options.workers)
         if options.markdown:
             text = summary(options.seed, [lines[k] for k in numbers])

@@ -27,8 +27,6 @@ SECTIONS = {
     "`accuracy`: a point": "StudyPoint",
     "`accuracy`: `map`": "ModelMap",
     "`stability`": "Stability",
-    "`propulsion`": "Propulsion",
-    "`propulsion`: a motion": "SelfPropelledMotion",
     "`claims`": "Claims",
 }
 """Pydantic models of the tables by heading."""

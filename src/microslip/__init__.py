@@ -45,8 +45,6 @@ _WHERE = {
     "fit": "microslip.si.fitting.fit",
     "Fit": "microslip.si.fitting.fitted",
     "to_xarray": "microslip.datasets.of_records",
-    "predict_propulsion": "microslip.si.propulsion",
-    "RealPropulsionLine": "microslip.si.propulsion",
     "open_map": "microslip.datasets.query.open_map",
     "texts": "microslip.datasets.netcdf",
     "history": "microslip.adaptive.history",
@@ -64,7 +62,7 @@ _WHERE = {
     "predict_iwan": "microslip.si.iwan",
     "shakedown": "microslip.adaptive.shakedown",
     "Shakedown": "microslip.adaptive.shakedown",
-    "PropulsionLine": "microslip.adaptive.propulsion",
+    "Propulsion": "microslip.adaptive.propulsion",
     "period": "microslip.adaptive.period",
     "Period": "microslip.adaptive.period",
 }

@@ -1,7 +1,7 @@
 """Bad options of `microslip predict`: an error message with the option, before any solve."""
 
 import pytest
-from bad_input_tables.bad_predictions import GOOD, PREDICTIONS, PROPULSIONS
+from bad_input_tables.bad_predictions import GOOD, PREDICTIONS
 
 from microslip.app import cli
 
@@ -28,8 +28,3 @@ def nothing_runs(monkeypatch):
 @pytest.mark.parametrize(("changed", "part"), PREDICTIONS, ids=repr)
 def test_a_contact_is_refused_in_one_line(changed, part, capsys):
     refused(changed, part, capsys)
-
-
-@pytest.mark.parametrize(("changed", "part"), PROPULSIONS, ids=repr)
-def test_a_propulsion_is_refused_in_one_line(changed, part, capsys):
-    refused(changed, part, capsys, "--propulsion")

@@ -1,7 +1,6 @@
 """The command line: output and exit codes, mostly without a process of its own."""
 
 import json
-import re
 
 import pytest
 from stubs.in_process import run
@@ -10,7 +9,6 @@ from stubs.point_contract import CONTRACT
 
 import microslip
 from microslip.app import cli, sweep_command
-from microslip.foundation.number_text import number_text
 from microslip.motions.by_name import MOTIONS
 
 TRANSVERSE = ("point", "transverse", "--velocity", "0.5", "--amplitude", "0.5")
@@ -56,31 +54,10 @@ def test_text_says_what_was_found():
     assert "closed-form" in process.stdout and "NOT CONVERGED" not in process.stdout
 
 
-def test_drive_says_what_the_function_does():
-    words = ("propulsion", "elliptic:forward_cycles=2,phase=0", "--amplitude", "1")
-    words += ("--points", "3", "--tolerance", "1e-2")
-    process = run(*words, "--json")
-    assert (process.returncode, process.stderr) == (0, "")
-    motion = "elliptic:forward_cycles=2,phase=0"
-    line = microslip.propulsion(motion, 1.0, points=3, tolerance=1e-2)
-    fields, expected = json.loads(process.stdout), line.to_dict()
-    for answer in (fields, expected):
-        answer.pop("solve_time_s")
-    assert fields == expected
-    text = run(*words).stdout
-    stall = number_text(line.stall_force, line.stall_force_error)
-    no_load = number_text(line.no_load_velocity, line.no_load_velocity_error)
-    assert f"stall_force = {stall}\nno_load_velocity = {no_load}\n" in text
-    last = text.splitlines()[-1]  # no load: a force of 0 within the error
-    assert re.split(r" {2,}", last.strip())[1].startswith("0 +- ")
-    assert len(text.splitlines()) == 8 and text.splitlines()[4].split()[0] == "velocity"
-
-
 @pytest.mark.parametrize(
     ("command", "words"),
     [
-        ("", ["point", "sweep", "predict", "propulsion", SPIN]),
-        ("propulsion", ["stall force", "no-load velocity", "--points"]),
+        ("", ["point", "sweep", "predict", SPIN]),
         ("point", [*MOTIONS, "mu F_z", "mu_apparent", SPIN]),
         ("sweep", [*sweep_command.TARGETS, "--cores"]),
         ("point transverse", ["--velocity", "v0 / (omega u_lim)", "--amplitude", "y0 / u_lim"]),

@@ -212,7 +212,7 @@ def test_a_table_suggests_its_own_options_only(capsys):
     with pytest.raises(SystemExit):
         run(capsys, "table --help")
     text = capsys.readouterr().out
-    assert "--speed" in text and "--force" not in text and "--propulsion" not in text
+    assert "--speed" in text and "--force" not in text
 
 
 def test_two_values_have_no_difference_from_interpolation(capsys):

@@ -161,7 +161,6 @@ def test_each_line_may_look_for_something_else(folder, capsys):
         (["--output", "found.txt"], "a name that ends in .csv or .nc"),
         (["--output", "contacts.csv"], "another file than the table"),
         (["--output", "nowhere/found.csv"], "a folder that can be written to"),
-        (["--propulsion"], "--table = 'contacts.csv': allowed without --propulsion"),
     ],
 )
 def test_a_bad_table_is_one_line_before_anything_is_solved(folder, capsys, words, message):
@@ -215,7 +214,6 @@ def test_a_point_of_a_range_without_a_prediction_is_named(folder, capsys):
     ("words", "said"),
     [
         (["--table", "contacts.csv"], "--amplitude = '0..0.4 um, 3': a range; allowed without"),
-        (["--propulsion"], "--amplitude = '0..0.4 um, 3': allowed without --propulsion"),
         (["--figure", "a.jpg"], "--figure = 'a.jpg': allowed is a name that ends in .png or .pdf"),
         (["--figure", "nowhere/a.png"], "--figure = 'nowhere/a.png': allowed is a file in a"),
         (["--output", "nowhere/a.nc"], "--output = 'nowhere/a.nc': allowed is a file in a folder"),

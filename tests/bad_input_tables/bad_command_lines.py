@@ -8,7 +8,6 @@ BORE = "point bore --velocity 0.5 --amplitude 0.5"
 STEADY = "point continuous-bore --velocity 0.5"
 SHAKEN = "point transverse --amplitude 0.5"
 SPUN = "point bore --velocity 0.5"
-DRIVEN = "propulsion elliptic:forward_cycles=2,phase=0"
 PREDICTED = (
     "predict transverse --young '210 GPa' --radius '5 mm' --load '10 N' --mu 0.3 "
     "--speed '1 mm/s' --amplitude '1 um' --frequency '20 kHz'"
@@ -99,21 +98,13 @@ NAMES = [
 ]
 
 OPTIONS = [
-    ("", "COMMAND is missing", "allowed: point, sweep, gc, predict, fit, propulsion"),
+    ("", "COMMAND is missing", "allowed: point, sweep, gc, predict, fit, response"),
     ("pont", "COMMAND = 'pont'", "did you mean point?"),
     ("--json", "--json", "COMMAND before other options"),
     ("point --poisson 0.3", "--poisson", "MOTION before other options"),
     ("point", "MOTION is missing", "transverse, longitudinal, zigzag, bore, continuous-bore,"),
     ("point bores --velocity 1", "MOTION = 'bores'", "did you mean bore?"),
     ("point transverse --speed 1 --amplitude 1", "option --speed;", "did you mean --velocity?"),
-    ("propulsion", "required: MOTION, --amplitude"),
-    (DRIVEN, "required: --amplitude"),
-    (f"{DRIVEN} --velocity 1 --amplitude 1", "unknown option --velocity;", "allowed: --help"),
-    (f"{DRIVEN} --amplitude 0", "--amplitude = '0'", "a number above 0"),
-    (f"{DRIVEN} --amplitude 1 --points 1", "--points = '1'", "at least 2"),
-    (f"{DRIVEN} --amplitude 1 --points 2.5", "--points = '2.5'", "a whole number"),
-    (f"{DRIVEN} --amplitude 1 --nu 0.3 --model radial", "--model = 'radial'", "elliptic"),
-    ("propulsion transverse --amplitude 1", "MOTION = 'transverse'", "a self-propelled motion"),
     ("predict transverse --velocity 1", "option --velocity;", "did you mean --speed?"),
     ("point transverse --amplitude 1", "--velocity: needed;", "or a force in its place"),
     ("point transverse --velocity 1", "required: --amplitude"),
@@ -122,11 +113,6 @@ OPTIONS = [
     (f"{TRANSVERSE} bore", "unrecognized arguments: bore"),
     (f"{PREDICTED} mm", "unrecognized arguments: mm", "allowed: options, each with one value"),
     (f"{PREDICTED} --nu 0.3 --radius-across '1 um'", "--radius-across = '1 um'", "of ratio"),
-    (
-        "predict elliptic:forward_cycles=2,phase=0 --propulsion --forward-amplitude '0.4 um'",
-        "--forward-amplitude = '0.4 um'",
-        "numbers after the name of the motion",
-    ),
     ("fit transverse a-file --map m.csv", "--map = 'm.csv'", "a path that ends in .nc"),
     ("fit transverse a-file --map nosuch.nc", "--map: nosuch.nc is not there"),
 ]

@@ -3,7 +3,6 @@
 A line starts with the key. Its parts are the value, the reason, and the allowed values.
 """
 
-import json
 import re
 
 import yaml
@@ -163,14 +162,6 @@ def changed(settings):
 SPACED = "{start: 1, stop: 2, count: %d}"
 GRID = f"{{linear: {SPACED}}}"
 CLOSE = "{linear: {start: 1, stop: 1.000001, count: 9}}"  # than the six stored digits
-EIGHT = {"motion": "elliptic:forward_cycles=2,phase=0", "amplitude": 1, "panel": "loops"}
-PROPULSION = "propulsion.motions"
-
-
-def lines(*changes):
-    """Self-propelled motions m0, m1, ..., each with a change of EIGHT."""
-    return {PROPULSION: json.dumps({f"m{i}": EIGHT | one for i, one in enumerate(changes)})}
-
 
 # Settings that are valid one by one, the key in the message, parts.
 TOGETHER = [
@@ -190,7 +181,7 @@ TOGETHER = [
     ),
 ]
 
-# Certified maps, resolutions in place of a tolerance, self-propelled motions.
+# Certified maps, resolutions in place of a tolerance.
 TOGETHER += [
     ({MAP: "{}"}, f"{MAP}.error", "missing; required: error"),
     ({MAP: "{error: 1.0e-3, tolerance: 1.0e-2}"}, f"{MAP}.tolerance", "less than the error"),
@@ -200,13 +191,6 @@ TOGETHER += [
     ({f"{T}.tolerance": "~"}, f"{T}.tolerance", "null", "cells and steps imposed"),
     ({f"{T}.tolerance": "~", f"{T}.cells": "8"}, f"{T}.tolerance", "or steps imposed"),
     ({f"{C}.tolerance": "~"}, f"{C}.tolerance", "null", "or cells imposed"),
-    (lines({"motion": "bore"}), f"{PROPULSION}.m0.motion", "'bore': allowed is a self"),
-    (lines(*[{}] * 9), f"{PROPULSION}.m8.panel", "loops has more than 8 lines"),
-    (
-        lines(*({"panel": f"p{i}"} for i in range(5))),
-        f"{PROPULSION}.m4.panel",
-        "p4 is one of more than 4; allowed: p0, p1, p2, p3",
-    ),
 ]
 
 # Files that are no configuration: their bytes, parts.

@@ -116,18 +116,5 @@ UNCERTAIN = [
 ]
 OTHERS = [
     ({"output": "found.nc"}, "--output = 'found.nc': allowed only with --table"),
-    ({"points": "3"}, "--points = '3': allowed only with --propulsion"),
 ]
 PREDICTIONS = OTHERS + MOTIONS + CONTACTS + BODIES + DRIVES + REDUCTIONS + UNCERTAIN
-
-SELF_PROPELLED = "elliptic:forward_cycles=2,phase=0"
-PROPELLED = {"motion": SELF_PROPELLED, "speed": None}
-PROPULSIONS = [
-    (PROPELLED | {"motion": "transverse"}, "MOTION = 'transverse': allowed is a self-propelled"),
-    (PROPELLED | {"speed": "1 mm/s"}, "--speed = '1 mm/s': not allowed with --propulsion"),
-    (PROPELLED | {"amplitude": "1 m"}, "times u_lim; allowed is at most"),
-    (PROPELLED | {"points": "1"}, "allowed is a whole number"),
-    (PROPELLED | {"load": "40 N +- 1 N"}, "read 'N' and stopped at '+- 1 N'"),
-    (PROPELLED | {"motion": "normal:forward=1,angle=1,phase=90"}, "without a rotation"),
-]
-"""Bad options of `microslip predict --propulsion`, in the form of PREDICTIONS."""

@@ -114,7 +114,7 @@ def test_the_default_configuration_is_that_of_the_paper():
     assert set(result.stability.methods) == set(method_names.names()) - {"paper", "aspher"}
     # Its studies equal the defaults.
     plain = config.from_mapping(PAPER)
-    for study in ("accuracy", "stability", "claims", "propulsion"):
+    for study in ("accuracy", "stability", "claims"):
         one, other = getattr(plain, study), getattr(result, study)
         methods = {"methods": other.methods} if hasattr(other, "methods") else {}
         assert one.model_copy(update=methods) == other

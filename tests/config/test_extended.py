@@ -188,25 +188,22 @@ def test_a_request_names_a_file_by_its_content_and_jobs_find_it(tmp_path, monkey
 
 
 def test_a_file_of_a_motion_is_handed_on_like_that_of_a_pressure(tmp_path, monkeypatch):
-    """Sweeps and self-propelled motions name it by its content, and jobs find it."""
+    """Sweeps name it by its content, and jobs find it."""
     (tmp_path / "stroke.csv").write_text("forward,lateral\n0,1\n1,0\n-0.5,-1\n-0.5,0\n")
-    line = {"motion": "file:stroke.csv", "amplitude": 1.0, "panel": "strokes"}
     mapping = {
         "sweeps": PAPER,
         "extended": {"stroke": CIRCLE | {"motion": "file:stroke.csv"}},
-        "propulsion": {"motions": {"stroke": line}},
     }
     result = load.from_mapping(mapping, folders=[tmp_path])
     name = motion_named(f"file:{tmp_path / 'stroke.csv'}").name
     requests = sweep.points_of(result.extended["stroke"]).requests
     assert {request["motion"] for request in requests} == {name}
-    assert result.propulsion.motions["stroke"].motion == name
     handed = load.with_defaults_and_paths(mapping, folders=[tmp_path])
     monkeypatch.setattr("microslip.foundation.named_files.PLACES", {})
     monkeypatch.chdir("/")
     load.remember_files(handed)
     assert motion_named(name).name == name
-    assert load.from_mapping(handed).propulsion == result.propulsion
+    assert load.from_mapping(handed).extended == result.extended
     with pytest.raises(load.ConfigError, match=r"extended.stroke.motion: .* cannot be read: No"):
         load.from_mapping(mapping)
 

@@ -31,15 +31,6 @@ def test_a_period_has_phases_and_points():
 
 
 @pytest.mark.slow
-def test_a_propulsion_line_has_velocities():
-    line = microslip.propulsion("elliptic:forward_cycles=2,phase=0", 1.0, points=2, tolerance=1e-2)
-    data = microslip.to_xarray(line)
-    assert data.force.dims == ("velocity",) and float(data.stall_force) == line.stall_force
-    assert data.efficiency.values.tolist() == line.efficiency.tolist()
-    assert data.attrs["motion"] == line.motion and "holding_force_low" not in data
-
-
-@pytest.mark.slow
 def test_a_prediction_keeps_its_texts():
     request = {"material": "steel", "radius": "5 mm", "load": "10 N", "mu": 0.3, "speed": "1 mm/s"}
     data = microslip.to_xarray(microslip.predict("continuous-bore", **request, rotation="10 rad/s"))

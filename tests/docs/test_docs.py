@@ -52,7 +52,6 @@ PAGES = sorted(
 LONG_PAGES = (
     "docs/explanation/motions_and_pressures.md",
     "docs/explanation/drives.md",
-    "docs/explanation/propulsion.md",
     "docs/how-to/certified_maps.md",
     "docs/how-to/contacts.md",
     "docs/how-to/export.md",

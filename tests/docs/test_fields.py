@@ -5,7 +5,7 @@ from pathlib import Path
 
 import pytest
 import xarray as xr
-from stubs import certified_stub, claims_stub, propulsion_stub, studies_stub
+from stubs import certified_stub, claims_stub, studies_stub
 from stubs.sweep_stub import Solver
 
 import microslip
@@ -43,8 +43,7 @@ RECORDS = {
     "A force history": microslip.History,
     "A period of the periodic state": microslip.Period,
     "Shakedown": microslip.Shakedown,
-    "The line of a self-propelled motion": microslip.PropulsionLine,
-    "A self-propelled motion, in units": microslip.RealPropulsionLine,
+    "A self-propelled motion": microslip.Propulsion,
 }
 
 
@@ -140,11 +139,6 @@ STUDIES = {
         studies_stub.stability_result,
     ),
     "claims": ("The check of the paper (`claims.nc`)", claims_stub, claims_stub.result),
-    "propulsion": (
-        "The study of propulsion (`propulsion.nc`)",
-        propulsion_stub,
-        propulsion_stub.propulsion_result,
-    ),
 }
 
 

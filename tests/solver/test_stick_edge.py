@@ -283,7 +283,7 @@ def test_the_work_of_a_search_counts_whether_it_was_done_before_or_not():
 
 
 @pytest.mark.slow
-def test_a_propulsion_line_and_a_shakedown_end_where_the_search_does():
+def test_propulsion_and_a_shakedown_end_where_the_search_does():
     line = microslip.propulsion("elliptic:forward_cycles=2,phase=10", 0.4444, most_work=1.0)
     assert not line.converged and "there is no error estimate yet" in line.reason
     rest = microslip.shakedown("normal:lateral=0.5", 0.4321, 0.05, most_work=1.0)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import xarray as xr
 from matplotlib.text import Text
-from stubs import claims_stub, drives_stub, propulsion_stub, studies_stub
+from stubs import claims_stub, drives_stub, studies_stub
 
 from microslip.studies import registry
 from microslip.theory import paper
@@ -189,13 +189,10 @@ def studies() -> dict[str, xr.Dataset]:
         registry.build(study, configuration, studies_stub.answered(result)[0])
         for study, result in answers.items()
     )
-    configured, results = propulsion_stub.configured(), propulsion_stub.propulsion_result
-    propulsion = registry.build("propulsion", configured, studies_stub.answered(results)[0])
     answer, configured = claims_stub.answered()[0], claims_stub.configured()
     return {
         "accuracy_cost": accuracy,
         "stability": stability,
-        "propulsion": propulsion,
         "claims": registry.build("claims", configured, answer),
     }
 

@@ -4,7 +4,7 @@ import json
 
 import pytest
 import xarray as xr
-from stubs import claims_stub, propulsion_stub, studies_stub
+from stubs import claims_stub, studies_stub
 
 from microslip.datasets import netcdf
 from microslip.foundation.canonical import canonical_json
@@ -14,7 +14,6 @@ STUDIES = {
     "accuracy": (studies_stub.configured, studies_stub.accuracy_result),
     "stability": (studies_stub.configured, studies_stub.stability_result),
     "claims": (claims_stub.configured, claims_stub.result),
-    "propulsion": (propulsion_stub.configured, propulsion_stub.propulsion_result),
 }
 
 

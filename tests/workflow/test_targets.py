@@ -7,7 +7,6 @@ import pytest
 import xarray as xr
 from stubs import studies_stub
 from stubs.figures_stub import words
-from stubs.propulsion_stub import DRIVING
 from stubs.workflow_project import Project, jobs_in
 
 import microslip
@@ -274,15 +273,3 @@ def test_editing_a_method_computes_its_trials_again_but_a_comment_does_not(studi
     assert project.planned(*TARGETS) == {}
     project.append("src/microslip/solver/methods/my_method.py", "\nSPARE = 1\n")
     assert project.planned("accuracy", "stability")["solve"] == 2
-
-
-def test_lines_of_self_propelled_motions_are_answered_in_batches(tmp_path):
-    """Three lines in jobs of two; two titles of one line share a request."""
-    project = Project(tmp_path)
-    project.configure({"sweeps": PAPER, "propulsion": DRIVING})
-    expected = {"warm_up": 2, "solve": 2, "collect": 1, "draw": 1, "propulsion": 1}
-    assert project.planned("propulsion") == expected
-    motions = DRIVING["motions"]
-    motions = motions | {"twin": motions["eight"] | {"title": "again"}}
-    project.configure({"sweeps": PAPER, "propulsion": DRIVING | {"motions": motions}})
-    assert project.planned("propulsion") == expected

@@ -28,7 +28,7 @@ def test_every_figure_has_a_caption_of_its_own(figure):
     assert rendered("figure", figure=figure) not in others
 
 
-DATASETS = ["bore", "circle", "certified_bore", "stability", "claims", "propulsion"]
+DATASETS = ["bore", "circle", "certified_bore", "stability", "claims"]
 
 
 @pytest.mark.parametrize("dataset", DATASETS)

@@ -7,7 +7,6 @@ bytes of studies.
   certified_NAME.nc  dims point, cell, node
   accuracy_cost.nc   dim trial; groups points, scaling, transverse_map, bore_map, profile
   stability.nc       dims (method, case); group axes
-  propulsion.nc      dims (line, point)
   claims.nc          dim claim; groups parts, checks, runs, static limit, patches
 Variables with other axes are in groups of the file.  An HTML page summarises the file.
 """

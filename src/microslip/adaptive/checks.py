@@ -137,30 +137,6 @@ def _refuse_beside_problem(**arguments: object) -> None:
             raise InputError(name, value, "allowed is none beside a Problem, which has its own")
 
 
-def checked_propulsion(
-    motion: str | Motion | Problem,
-    amplitude: float | None,
-    *,
-    pressure: str | Pressure = HERTZ,
-    poisson: float = 0.0,
-) -> Problem:
-    """Build the problem of a self-propelled motion at velocity 0; see `checked_problem`."""
-    problem = checked_problem(motion, None, amplitude, pressure=pressure, poisson=poisson)
-    if problem.velocity != 0.0:
-        raise InputError("velocity", problem.velocity, "allowed is 0: the answer is a line of them")
-    if not problem.propels:
-        allowed = (
-            "allowed is a self-propelled motion, such as elliptic:forward_cycles=2,phase=0 or "
-        )
-        raise InputError("motion", problem.motion.name, f"{allowed}normal:forward=1,phase=90")
-    if not problem.pressure.mirrored:
-        allowed = "allowed is one that is its own mirror image"
-        raise InputError("pressure", problem.pressure.name, allowed)
-    if problem.amplitude == 0.0:
-        raise InputError("amplitude", problem.amplitude, "allowed is a number above 0")
-    return problem
-
-
 def checked_drive(
     velocity: float | None,
     force: float | None = None,

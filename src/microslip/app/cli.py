@@ -16,7 +16,6 @@ COMMANDS = {
     "gc": "list or remove results that no configuration requests",
     "predict": "friction of a real contact, in SI units",
     "fit": "coefficient of friction and u_lim from measured friction",
-    "propulsion": "a self-propelled motion: stall force, no-load velocity, efficiency",
     "response": "forces of a contact that follows the path of a file",
     "fold": "one period of a motion from a long record, such as that of a vibrometer",
     "export": "an Iwan model or a friction table of a contact, for other programs",

@@ -17,7 +17,6 @@ TARGETS = {
     "accuracy": "accuracy and cost of all models and methods",
     "stability": "conditions under which methods fail",
     "claims": "check of the statements of the paper",
-    "propulsion": "force of self-propelled motions, from stall to no load",
     "explorer": "interactive page of the maps; a click on a point shows its period",
     "explorer_all": "the same page with all other sweeps of the configuration",
 }
@@ -94,6 +93,5 @@ def heading_of(configuration: Configuration, dataset: str) -> str:
         "Drives": configuration.drives,
         "Certified maps": configuration.certified,
         "The paper's claims": ["claims"],
-        "Self-propelled motions": ["propulsion"],
     }
     return next((text for text, names in headings.items() if dataset in names), "Methods")

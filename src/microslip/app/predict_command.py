@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import argparse
-from typing import Any
 
 from microslip.app import predicted_table
 from microslip.app.option_parser import StoreSpelling
@@ -80,10 +79,9 @@ GROUPS: dict[str, dict[str, tuple[str, str]]] = {
     "output": {
         "tolerance": (
             "T",
-            "largest accepted absolute error of mu_macro (1e-3; 1e-2 with --propulsion); with "
+            "largest accepted absolute error of mu_macro (1e-3); with "
             "--force, largest accepted relative error of the speed (1e-2)",
         ),
-        "points": ("N", "with --propulsion: number of points on the line, both ends included (9)"),
         "map": (
             "NAME",
             "certified map (a name, or a .nc file) of this motion, pressure and Poisson's ratio, "
@@ -102,18 +100,6 @@ GROUPS: dict[str, dict[str, tuple[str, str]]] = {
 """Options by heading in the help text.  Each option has a metavar and a help text."""
 WITH = {"output": "--table or a range", "figure": "a range"} | dict.fromkeys(FILE_FORMAT, "--table")
 """Options that require another option."""
-REFUSED = dict.fromkeys(
-    ("speed", "force", "reduction", "drive_stiffness", "mass", "damping"),
-    "the motion propels the body by itself",
-)
-REFUSED["rotation"] = "a self-propelled motion has no steady spin"
-REFUSED |= dict.fromkeys(("radius_across", "contact_radius", "pressure"), "the body is a sphere")
-REFUSED["map"] = "a map contains the friction at a speed"
-REFUSED |= dict.fromkeys(
-    ("forward_amplitude", "rotation_amplitude", "load_amplitude", "phase"),
-    "numbers after the name of the motion set the components and their phases",
-)
-"""Options of predict that --propulsion does not accept, and the reasons."""
 ABOUT_GROUPS = {
     "drive": "For an oscillating normal load there are two reference loads.  Stiffness, mass and "
     "damping are made dimensionless by mu times the load without oscillation, force and mu_macro "
@@ -144,13 +130,6 @@ def fill(parser: argparse.ArgumentParser) -> None:
     for title, options in GROUPS.items():
         group = parser.add_argument_group(title, ABOUT_GROUPS.get(title))
         add_options(group, options)
-        if title == "drive":
-            group.add_argument(
-                "--propulsion",
-                action="store_true",
-                help="compute the stall force, the no-load speed, the power and the efficiency of "
-                "a self-propelled motion, such as elliptic:forward_cycles=2,phase=0",
-            )
     add_answer(parser, _answer, group)
 
 
@@ -160,12 +139,9 @@ def _answer(options: argparse.Namespace) -> Answer:
 
     if speaks_of_file(options.motion) and (hint := read_stroke(options.motion).hint):
         complain(f"microslip predict: MOTION = {options.motion!r}: {hint}")
-    arguments = typed_options(options, wholes=("points",))
+    arguments = typed_options(options)
     ranges = {name: value for name, value in arguments.items() if is_range(name, value)}
     many = ranges if options.table is None else {"table": options.table}
-    for name, value in many.items():
-        if options.propulsion or "points" in arguments:
-            raise InputError(name, value, "allowed without --propulsion")
     if options.table is not None and ranges:
         raise InputError(*next(iter(ranges.items())), "a range; allowed without --table")
     source = "--table" if options.table is not None else "range" if ranges else "nothing"
@@ -175,21 +151,5 @@ def _answer(options: argparse.Namespace) -> Answer:
     if many:
         return predicted_table.answer(options, arguments)
     with elapsed_time("microslip predict"):
-        if options.propulsion:
-            return _propulsion(options.motion, arguments)
-        if "points" in arguments:
-            raise InputError("points", arguments["points"], "allowed only with --propulsion")
         prediction = predict(options.motion, **{"mu": None} | arguments)
     return Answer(prediction.to_dict(), str(prediction), prediction.converged)
-
-
-def _propulsion(motion: str, arguments: dict[str, Any]) -> Answer:
-    """Compute the force-speed line of a self-propelled motion."""
-    from microslip.si.propulsion import predict_propulsion
-
-    for name, reason in REFUSED.items():
-        if name in arguments:
-            raise InputError(name, arguments[name], f"not allowed with --propulsion: {reason}")
-    missing: dict[str, Any] = dict.fromkeys(("radius", "load", "amplitude", "frequency"))
-    line = predict_propulsion(motion, **missing | arguments)
-    return Answer(line.to_dict(), str(line), line.converged)

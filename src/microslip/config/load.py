@@ -142,8 +142,7 @@ def entries_with_files(filled: dict) -> dict[str, dict[str, dict]]:
 
     filled: configuration with all defaults.
     """
-    places = {key: filled[key] for key in ("extended", "drives")}
-    return places | {"propulsion.motions": filled["propulsion"]["motions"]}
+    return {key: filled[key] for key in ("extended", "drives")}
 
 
 def remember_files(filled: dict) -> None:
@@ -249,15 +248,6 @@ def from_mapping(
         entries |= members
     with _errors_at(f"{source}: extended"):
         _refuse_mixtures(list(families["extended"].values()))
-    lines = {}
-    for name, line in settings.propulsion.motions.items():
-        with _errors_at(f"{source}: propulsion.motions.{name}"):
-            motion = _by_content(line.motion, "motion", folders, ask_solver)
-            lines[name] = line.model_copy(update={"motion": motion})
-            if ask_solver:
-                from microslip.adaptive.checks import checked_propulsion
-
-                checked_propulsion(motion, line.amplitude, poisson=line.poisson)
     return Configuration(
         results=settings.results,
         **families,
@@ -268,7 +258,6 @@ def from_mapping(
         accuracy=settings.accuracy,
         stability=settings.stability,
         claims=settings.claims,
-        propulsion=settings.propulsion.model_copy(update={"motions": lines}),
         certified=maps,
     )
 

@@ -17,7 +17,7 @@ HISTORIES_OF_SWEEP = {
 """Single runs for figures in a sweep's dataset, keyed by the name of the sweep."""
 CERTIFIED = "certified_"
 """Prefix of the names of certified maps.  The figure of a map has the same name as its dataset."""
-RESERVED = (*MOTION_OF_SWEEP, "accuracy", "accuracy_cost", "stability", "claims", "propulsion")
+RESERVED = (*MOTION_OF_SWEEP, "accuracy", "accuracy_cost", "stability", "claims")
 RESERVED += tuple(f"{name}_histories" for name in MOTION_OF_SWEEP)
 RESERVED += tuple(f"{name}_periods" for name in MOTION_OF_SWEEP)
 RESERVED += tuple(f"{CERTIFIED}{name}" for name in MOTION_OF_SWEEP)
@@ -154,7 +154,6 @@ class Configuration:
     accuracy: Any  # settings.Accuracy, and so on
     stability: Any
     claims: Any
-    propulsion: Any
     certified: dict = field(default_factory=dict)  # name -> CertifiedMap
 
     @property

@@ -46,10 +46,8 @@ PLAIN = CONFIG | ConfigDict(use_attribute_docstrings=False)
 STUDIES: dict[str, dict] = json.loads(
     Path(__file__).with_name("study_defaults.json").read_text(encoding="utf-8")
 )
-POINTS, MOTIONS = STUDIES["accuracy"], STUDIES["propulsion"]
-"""Default points of the accuracy study, and default motions of the propulsion study, by name."""
-MOST_LINES, MOST_PANELS = 8, 4
-"""In the propulsion figure: largest number of lines in a panel, and largest number of panels."""
+POINTS = STUDIES["accuracy"]
+"""Default points of the accuracy study, by name."""
 
 
 class Settings(BaseModel):
@@ -527,47 +525,6 @@ class Stability(Settings):
     """Blocks of the atlas. Each block varies one quantity. The default is all blocks."""
 
 
-class SelfPropelledMotion(Settings):
-    """A self-propelled motion."""
-
-    motion: Text
-    """Motion: elliptic or normal, with its parameters, or file:FILE."""
-    amplitude: Positive
-    """Amplitude in the unit of the motion, above 0."""
-    poisson: Ratio = 0.0
-    """Poisson's ratio of the half-space."""
-    panel: Title
-    """Heading of the panels. Motions with the same heading share their panels."""
-    title: Title | None = None
-    """Title of the line, as plain text. The default is the name."""
-
-
-class Propulsion(Settings):
-    """Study of self-propelled motions. `snakemake propulsion` makes propulsion.nc and its
-    figure."""
-
-    tolerance: Tolerance = 1e-3
-    """Largest accepted error of a force divided by mu times the mean normal load."""
-    points: Annotated[int, Field(ge=2, le=1000), WHOLE] = 13
-    """Number of points on a line from stall to no load, including both ends."""
-    motions: Annotated[dict[PointName, SelfPropelledMotion], Field(min_length=1)] = _raw(MOTIONS)
-    """Motions by name. Each motion has a line."""
-
-    @model_validator(mode="after")
-    def _refuse_crowd(self) -> Self:
-        panels: dict[str, int] = {}
-        for name, motion in self.motions.items():
-            panel, key = motion.panel, f"motions.{name}.panel"
-            panels[panel] = panels.get(panel, 0) + 1
-            if panels[panel] > MOST_LINES:
-                allowed = f"has more than {MOST_LINES} lines; allowed: another panel"
-                raise Refusal(f"{panel} {allowed}", key)
-            if len(panels) > MOST_PANELS:
-                allowed = f"allowed: {', '.join(list(panels)[:-1])}"
-                raise Refusal(f"{panel} is one of more than {MOST_PANELS}; {allowed}", key)
-        return self
-
-
 class Claims(_Grid):
     """Test of the paper's statements: `snakemake claims` makes claims.nc and its figures."""
 
@@ -623,7 +580,5 @@ class Root(Settings):
     """Study of the cost of accuracy (see `snakemake accuracy`)."""
     stability: Stability = _raw({})
     """Study of method failures (see `snakemake stability`)."""
-    propulsion: Propulsion = _raw({})
-    """Study of self-propelled motions (see `snakemake propulsion`)."""
     claims: Claims = _raw({})
     """Test of the paper's statements (see `snakemake claims`)."""

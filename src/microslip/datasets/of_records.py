@@ -1,4 +1,4 @@
-"""Convert single results to datasets: points, histories, periods, propulsion lines, predictions."""
+"""Convert single results to datasets: points, histories, periods, predictions."""
 
 from __future__ import annotations
 
@@ -10,7 +10,6 @@ import xarray as xr
 
 from microslip.adaptive.history import History
 from microslip.adaptive.period import Period
-from microslip.adaptive.propulsion import PropulsionLine
 from microslip.adaptive.response import Response
 from microslip.adaptive.result import Result
 from microslip.foundation.errors import InputError
@@ -21,7 +20,6 @@ AXES: dict[type, tuple[str, ...]] = {
     Result: (),
     Prediction: (),
     History: ("phase",),
-    PropulsionLine: ("velocity",),
     Period: ("phase", "point"),
 }
 """Names of a dataset's axes, keyed by the class of the record."""
@@ -35,15 +33,15 @@ def to_xarray(record: Any) -> xr.Dataset:
 
     Parameters
     ----------
-    record : Result, Prediction, History, Period, PropulsionLine, Response or RealResponse
-        Result of solve, predict, history, period, propulsion, response or predict_response.
+    record : Result, Prediction, History, Period, Response or RealResponse
+        Result of solve, predict, history, period, response or predict_response.
 
     Returns
     -------
     xarray.Dataset
-        The dimension is `phase` for a History, `velocity` for a PropulsionLine, and `row` for a
-        response.  A Period has the dimensions `phase` and `point`.  Other results have no
-        dimension.  Fields that are None are omitted.
+        The dimension is `phase` for a History and `row` for a response.  A Period has the
+        dimensions `phase` and `point`.  Other results have no dimension.  Fields that are None are
+        omitted.
 
     Raises
     ------

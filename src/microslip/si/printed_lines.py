@@ -28,11 +28,6 @@ LEAST_SPEED = 0.1
 """Speeds in an answer have the largest unit in which the highest speed is at least this number."""
 NEWTONS = 1e-2, 1e4
 """Range of forces that are printed in a unit without a prefix, N."""
-REFERENCE_LOADS_OF_DRIVING = (
-    "u_lim and the contact radius belong to the load without oscillation (the reference load); "
-    "forces and powers belong to mu times the mean load"
-)
-"""Remark on a force-speed line for an oscillating normal load."""
 QUANTILES, FIRST_ORDER = "quantiles", "first order"
 """Methods of computing an interval.  QUANTILES solves the static friction for the draws.
 FIRST_ORDER assumes that the static friction is linear in each input."""

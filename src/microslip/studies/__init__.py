@@ -1,1 +1,1 @@
-"""Studies of accuracy and cost, stability of methods, claims of the paper, and propulsion."""
+"""Studies of accuracy and cost, stability of methods, and claims of the paper."""

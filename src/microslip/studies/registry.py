@@ -1,4 +1,4 @@
-"""All studies: cost of accuracy, failures of methods, the paper's claims, and propulsion.
+"""All studies: cost of accuracy, failures of methods, and the paper's claims.
 
 Each study is a package with two main modules. The first one (`accuracy_cost`, `stability`, `claims`
 or `propulsion`) makes the requests. It imports only light modules, because the workflow reads it at
@@ -22,7 +22,6 @@ DATASETS = {
     "accuracy": "accuracy_cost",
     "stability": "stability",
     "claims": "claims",
-    "propulsion": "propulsion",
 }
 """Name of each study's dataset and request module. The keys are names in the configuration."""
 

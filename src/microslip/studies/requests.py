@@ -7,7 +7,6 @@ are:
 - choice: a timed solve at a tolerance, with automatic selection of the model and resolution;
 - probe: an untimed solve with a given method;
 - point: a solve at a tight tolerance, used as the reference for the other requests;
-- propulsion: the force-velocity line of a self-propelled motion;
 - scaling: the cost of a step at one size.
 
 Timed requests (trial, choice, scaling) contain the name of the CPU. Therefore, times measured on

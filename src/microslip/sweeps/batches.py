@@ -44,7 +44,6 @@ FOLDERS = {
     "scaling": "scaling",
     "run": "runs",
     "patches": "patches",
-    "propulsion": "propulsion_lines",
 }
 """Folders of the store, keyed by kind of request.  Records of trials and scaling contain measured
 times."""

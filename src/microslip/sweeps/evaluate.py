@@ -168,13 +168,6 @@ def _patches(**arguments: Any) -> dict:
     return _result_or_reason(partial(patches, **arguments))
 
 
-def _propulsion(**arguments: Any) -> dict:
-    """Compute the force-velocity line of a self-propelled motion, from stall to no load."""
-    line = microslip.propulsion(**arguments).to_dict()
-    line.pop("solve_time_s")
-    return line
-
-
 _KINDS: dict[str, Callable[..., dict]] = {
     "point": _point,
     "history": _history,
@@ -186,7 +179,6 @@ _KINDS: dict[str, Callable[..., dict]] = {
     "scaling": _scaling,
     "run": _run,
     "patches": _patches,
-    "propulsion": _propulsion,
 }
 
 

@@ -46,7 +46,6 @@ _DRAWN: dict[str, tuple[str, ...]] = {
     "stability_atlas": ("atlas.draw", "stability"),
     "claims_static": ("claims.static", "claims"),
     "claims_patches": ("claims.patches", "claims"),
-    "propulsion": ("propulsion.draw", "propulsion"),
     "fit": ("fit.draw", "fit"),
     "curve": ("curve.draw", "curve"),
 }

@@ -1,1 +1,0 @@
-"""Study of self-propelled motions."""
