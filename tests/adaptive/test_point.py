@@ -1,7 +1,6 @@
 """`solve`: error estimate, limits, checks of the input, and fields of the result."""
 
 import math
-from unittest.mock import Mock
 
 import numpy as np
 import pytest
@@ -397,24 +396,3 @@ def test_what_has_no_periods_counts_none():
         microslip.solve("transverse", 0.5, 0.0),
     ):
         assert result.periods == 0 and result.steps_per_period == 0
-
-
-# Forces over the mean load
-
-
-def test_an_extrapolated_run_scales_its_tolerance_once(monkeypatch):
-    """Under an oscillating load both runs have the same tolerance over the mean load."""
-    from dataclasses import replace
-
-    from microslip.solver import simulate as module
-    from microslip.solver.method import SHIPPED
-
-    run = Mock(wraps=module._run)
-    monkeypatch.setattr(module, "_run", run)
-    method = replace(SHIPPED, extrapolated=True)
-    problem = Problem(motion_named("normal"), 0.3, 0.9, 0.0)
-    simulate(problem, "radial", Resolution(8, 1, 16), 1e-4, settings=module.Settings(method))
-    for call, steps in zip(run.call_args_list, (16, 8), strict=True):
-        motion, _, resolution, tolerance, *_ = call.args
-        assert resolution.steps == steps
-        assert tolerance / motion.mean_load == pytest.approx(1e-4)

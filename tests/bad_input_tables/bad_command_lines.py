@@ -7,6 +7,7 @@ TRANSVERSE = "point transverse --velocity 0.5 --amplitude 0.5"
 BORE = "point bore --velocity 0.5 --amplitude 0.5"
 STEADY = "point continuous-bore --velocity 0.5"
 SHAKEN = "point transverse --amplitude 0.5"
+GRADIENT = "projected-gradient"
 SPUN = "point bore --velocity 0.5"
 PREDICTED = (
     "predict transverse --young '210 GPa' --radius '5 mm' --load '10 N' --mu 0.3 "
@@ -87,11 +88,20 @@ NAMES = [
     (f"{TRANSVERSE} --model radial --poisson 0.3", "--model = 'radial'", "transverse", "nu"),
     (f"{BORE} --model radial", "--model = 'radial'", "does not apply to bore", "rotation"),
     (f"{BORE} --model slider", "--model = 'slider'", "does not apply to bore"),
-    (f"{TRANSVERSE} --method shiped", "--method = 'shiped'", "did you mean shipped?", "admm,"),
+    (
+        f"{TRANSVERSE} --method shiped",
+        "--method = 'shiped'",
+        "did you mean shipped?",
+        "projected-gradient,",
+    ),
     (f"{TRANSVERSE} --method ../euler", "--method = '../euler'", "allowed is one of shipped,"),
-    (f"{TRANSVERSE} --method admm:penalty=high", "'admm:penalty=high'", "admm:key=0.5"),
-    (f"{TRANSVERSE} --method admm:penalt=1", "penalt;", "allowed: penalty, relaxation"),
-    (f"{TRANSVERSE} --method admm:penalty=1,penalty=2", "penalty occurs twice", "once"),
+    (
+        f"{TRANSVERSE} --method projected-gradient:step=high",
+        "'projected-gradient:step=high'",
+        "projected-gradient:key=0.5",
+    ),
+    (f"{TRANSVERSE} --method {GRADIENT}:stap=1", "stap;", "allowed: step"),
+    (f"{TRANSVERSE} --method {GRADIENT}:step=1,step=2", "step occurs twice", "once"),
     (f"{TRANSVERSE} --method paper", "--method = 'paper'", "model cartesian"),
     (f"{STEADY} --method march", "--method = 'march'", "continuous-bore", "nothing oscillates"),
     (f"{BORE} --model rigid --method euler", "--method = 'euler'", "bore, model rigid"),
@@ -124,7 +134,11 @@ RESULTS = [
     (f"{TRANSVERSE} --results a-file", "--results", "a-file is not a folder", "a new name"),
     (f"{TRANSVERSE} --results /proc/none", "--results", "/proc/none", "another folder"),
     (f"{TRANSVERSE} --results {'x' * 300}", "--results", "xxx", "File name too long"),
-    (f"{TRANSVERSE} --results kept --method admm", "--method = 'admm'", "shipped with --results"),
+    (
+        f"{TRANSVERSE} --results kept --method projected-gradient",
+        "--method = 'projected-gradient'",
+        "shipped with --results",
+    ),
 ]
 
 COMMAND_LINES = [*NUMBERS, *GRAMMAR, *OUT_OF_RANGE, *TWICE, *NAMES, *OPTIONS, *RESULTS]

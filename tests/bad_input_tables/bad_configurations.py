@@ -77,15 +77,30 @@ KEYS = [
     ("histories.transients.velocity", "0", "0 is not allowed", "> 0"),
 ]
 
-ADMM = "admm:key=0.5"
+KEYED, HIGH = "projected-gradient:key=0.5", "projected-gradient:step=high"
 POINT = "accuracy.points.a"
 
 STUDIES = [
-    ("accuracy.methods", "admm", '"admm" is not allowed', "a list of text or null"),
+    (
+        "accuracy.methods",
+        "projected-gradient",
+        '"projected-gradient" is not allowed',
+        "a list of text or null",
+    ),
     ("accuracy.methods[1]", "full-newtn", "'full-newtn'", "did you mean full-newton?"),
     ("accuracy.methods[1]", "1", "1 is not allowed", "text"),
-    ("stability.methods", "[admm, admm]", "admm occurs twice", "different values"),
-    ("stability.methods[1]", "'admm:penalty=high'", "'admm:penalty=high'", ADMM),
+    (
+        "stability.methods",
+        "[projected-gradient, projected-gradient]",
+        "projected-gradient occurs twice",
+        "different values",
+    ),
+    (
+        "stability.methods[1]",
+        "'projected-gradient:step=high'",
+        "'projected-gradient:step=high'",
+        KEYED,
+    ),
     ("stability.tolerance", "0.5", "0.5 is not allowed", TOLERANCES),
     ("stability.axes", "[]", "[] is not allowed", "a list"),
     ("stability.axes[0]", "step", '"step" is not allowed; did you mean steps?', "slow-transverse"),
@@ -124,11 +139,11 @@ EXTENDED = [
 # Keys that GOOD lacks and that cases above change.
 STUDIED = """
 accuracy:
-  methods: [shipped, admm]
+  methods: [shipped, projected-gradient]
   points: {a: {motion: bore, velocity: 1, amplitude: 1}}
   map: {tolerance: [0.01, 0.001]}
 stability:
-  methods: [shipped, admm]
+  methods: [shipped, projected-gradient]
   axes: [edge]
 claims:
   tolerance: 0.01

@@ -196,21 +196,21 @@ def atlas(tmp_path):
 
 
 def test_the_atlas_holds_what_became_of_every_method(atlas, tmp_path):
-    assert list(atlas.method.values) == ["shipped", "admm", "euler"]
-    assert list(atlas.axis.values) == ["steps", "poisson", "penalty"]
-    assert list(dict.fromkeys(atlas.case_axis.values)) == ["steps", "poisson", "penalty"]
-    penalty = atlas.case_axis.values == "penalty"
-    values = [0.01, 0.1, 0.3, 1, 3, 10, 100]
-    assert atlas.case_value.values[penalty].tolist() == values
-    assert atlas.case_label.values[penalty].tolist() == [f"{v:g}" for v in values]
-    shipped, admm, euler = atlas.outcome.values
+    assert list(atlas.method.values) == ["shipped", "projected-gradient", "euler"]
+    assert list(atlas.axis.values) == ["steps", "poisson", "step-length"]
+    assert list(dict.fromkeys(atlas.case_axis.values)) == ["steps", "poisson", "step-length"]
+    step_length = atlas.case_axis.values == "step-length"
+    values = [0.25, 0.5, 1.0, 1.5, 2.0, 3.0, 4.0]
+    assert atlas.case_value.values[step_length].tolist() == values
+    assert atlas.case_label.values[step_length].tolist() == [f"{v:g}" for v in values]
+    shipped, gradient, euler = atlas.outcome.values
     assert (shipped == 1).all()
-    assert (admm == 1).all()
-    assert (euler == np.where(penalty, 0, 2)).all()
+    assert (gradient == 1).all()
+    assert (euler == np.where(step_length, 0, 2)).all()
     assert atlas.error.values[0] == pytest.approx(5e-4)
-    assert np.isnan(atlas.mu_macro.values[2][penalty]).all()
-    assert set(atlas.reason.values[2][~penalty]) == {"gave up"}
-    assert set(atlas.reason.values[2][penalty]) == {""}
+    assert np.isnan(atlas.mu_macro.values[2][step_length]).all()
+    assert set(atlas.reason.values[2][~step_length]) == {"gave up"}
+    assert set(atlas.reason.values[2][step_length]) == {""}
     assert (atlas.reference == 0.5).all()
     assert all(atlas.method_summary.values)
     with netCDF4.Dataset(tmp_path / "stability.nc") as raw:
@@ -227,7 +227,7 @@ def test_reports_count(accuracy, atlas):
     )
     assert list(registry.report("stability", atlas)) == [
         "shipped: 21 converged, 0 slow, 0 wrong, 0 diverged",
-        "admm: 21 converged, 0 slow, 0 wrong, 0 diverged",
+        "projected-gradient: 21 converged, 0 slow, 0 wrong, 0 diverged",
         "euler: 0 converged, 14 slow, 0 wrong, 0 diverged",
     ]
 
@@ -240,4 +240,4 @@ def test_the_digest_of_results_follows_what_was_asked():
         ).results_digest
 
     assert digest() == digest()
-    assert digest() != digest(methods=["shipped", "admm"])
+    assert digest() != digest(methods=["shipped", "projected-gradient"])

@@ -160,14 +160,14 @@ def test_scaling_shows_the_sizes_and_the_exponents(accuracy):
 def test_the_atlas_shows_every_outcome(stability):
     data = stability.copy(deep=True)
     data["outcome"][:] = np.arange(data["outcome"].size).reshape(data["outcome"].shape) % 5
-    data["outcome"].loc[{"method": "jacobi"}] = 0  # the method applies to no case
+    data["outcome"].loc[{"method": "midpoint"}] = 0  # the method applies to no case
     figure = drawing.draw("stability_atlas", {"stability": data})
     methods: list[str] = []
     for axes, axis in zip(figure.axes, data["axis"].values, strict=True):
         cases = data.isel(case=data["case_axis"].values == axis)
         labels = [label.get_text() for label in axes.get_yticklabels()]
         methods = labels if any(labels) else methods
-        assert methods[0] == "shipped" and "jacobi" not in methods
+        assert methods[0] == "shipped" and "midpoint" not in methods
         # As a dict, because sel has another keyword `method`.
         expected = cases["outcome"].sel({"method": methods}).values
         (mesh,) = artists(axes, "outcome")

@@ -176,13 +176,16 @@ POINTS = {
     "bore": {"motion": "bore", "velocity": 0.2, "amplitude": 1},
     "steady": {"motion": "continuous-bore", "velocity": 0.8},
 }
-METHODS = ["shipped", "euler", "paper", "full-newton", "jacobi", "march"]
-AXES = ["steps", "slow-bore", "critical-amplitude", "poisson", "rotation-centre", "penalty"]
+METHODS = ["shipped", "euler", "paper", "full-newton", "midpoint", "march"]
+AXES = ["steps", "slow-bore", "critical-amplitude", "poisson", "rotation-centre", "step-length"]
 
 
 def studies() -> dict[str, xr.Dataset]:
     """Datasets of all studies."""
-    stability = {"axes": AXES, "methods": ["shipped", "admm", "euler", "jacobi", "gauss-seidel"]}
+    stability = {
+        "axes": AXES,
+        "methods": ["shipped", "projected-gradient", "euler", "midpoint", "full-newton"],
+    }
     configuration = studies_stub.configured({"points": POINTS, "methods": METHODS}, stability)
     answers = {"accuracy": studies_stub.accuracy_result, "stability": studies_stub.stability_result}
     accuracy, stability = (

@@ -22,7 +22,10 @@ ACCURACY = {
         "tolerance": [0.01, 0.001],
     },
 }
-STABILITY = {"methods": ["shipped", "admm", "euler"], "axes": ["poisson", "penalty", "steps"]}
+STABILITY = {
+    "methods": ["shipped", "projected-gradient", "euler"],
+    "axes": ["poisson", "step-length", "steps"],
+}
 
 
 def configured(accuracy=(), stability=()):

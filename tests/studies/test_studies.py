@@ -61,7 +61,7 @@ def test_ladders_climb_in_all_directions_at_once_and_tighten(model):
 
 def test_other_methods_climb_less_high_on_the_model_that_auto_takes():
     for motion, model, count in (("transverse", "radial", 5), ("bore", "polar", 4)):
-        for method in ("full-newton", "admm:penalty=3"):
+        for method in ("full-newton", "projected-gradient:step=3"):
             assert ladders.models_for(method, motion, 0.0) == [model]
             assert len(ladders.ladder(model, method, 6)) == count
     assert ladders.models_for("shipped", "bore", 0.3) == ["rigid", "polar", "cartesian"]
@@ -151,20 +151,19 @@ def test_cases_can_be_asked():
 
 
 def test_numbers_of_a_method_are_varied_in_that_method_only():
-    study = configured(stability={"axes": ["penalty"]}).stability
+    study = configured(stability={"axes": ["step-length"]}).stability
     values = {
         method: [
             None if request is None else request["method"]
             for case in stability.cases(study)
             for request in [stability.probe(study, method, *case)]
         ]
-        for method in ("shipped", "admm", "admm:relaxation=1.5,penalty=7", "euler")
+        for method in ("shipped", "projected-gradient", "euler")
     }
     assert values["shipped"] == ["shipped"] * 7
     assert values["euler"] == [None] * 7
-    assert values["admm"][0] == "admm:penalty=0.01"
-    assert values["admm"][-1] == "admm:penalty=100"
-    assert values["admm:relaxation=1.5,penalty=7"][3] == "admm:relaxation=1.5,penalty=1"
+    assert values["projected-gradient"][0] == "projected-gradient:step=0.25"
+    assert values["projected-gradient"][-1] == "projected-gradient:step=4"
 
 
 def test_methods_have_the_numbers_that_blocks_vary():
@@ -309,7 +308,7 @@ def test_a_method_that_fails_is_data(monkeypatch, error):
     monkeypatch.setattr("microslip.adaptive.single_run.run_trial", fail)
     monkeypatch.setattr("microslip.solve", fail)
     probe = stability.probe(
-        configured().stability, "admm", *stability.cases(configured().stability)[0]
+        configured().stability, "projected-gradient", *stability.cases(configured().stability)[0]
     )
     for request in (trial_request(), probe):
         result = evaluate.computed(request)

@@ -499,9 +499,9 @@ class Accuracy(Settings):
     figures."""
 
     methods: Methods = _raw(None)
-    """Methods to compare, with parameters as in "admm:penalty=0.1". A method has the name of its
-    file in src/microslip/solver/methods, with hyphens. The name "shipped" means the method used by
-    microslip.solve. The default is all methods."""
+    """Methods to compare, with parameters as in "projected-gradient:step=0.5". A method has the
+    name of its file in src/microslip/solver/methods, with hyphens. The name "shipped" means the
+    method used by microslip.solve. The default is all methods."""
     points: Annotated[dict[PointName, StudyPoint], Field(min_length=1)] = _raw(POINTS)
     """Points at which all methods and models run, by name. Each point has a panel."""
     levels: Annotated[int, Field(ge=1, le=6), WHOLE] = 6

@@ -35,8 +35,6 @@ class Method:
         Function that replaces periodic.find_periodic_state.
     prepared : bool
         Whether the search starts near the static limit.  Otherwise it starts from full slip.
-    extrapolated : bool
-        Whether the result is extrapolated using a second run with half as many steps.
     run : callable or None
         Function that replaces the whole simulation, as in methods/paper.py.
     model : str
@@ -55,7 +53,6 @@ class Method:
     parameters: Mapping[str, float] = field(default_factory=dict)
     search: Callable | None = None
     prepared: bool = True
-    extrapolated: bool = False
     run: Callable | None = None
     model: str = ""
     resolution: tuple[int, int, int] | None = None

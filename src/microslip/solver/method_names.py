@@ -3,7 +3,7 @@
 The file `some_name.py` in the folder `methods` defines METHOD, a `method.Method`.  The method's
 name is `some-name` in `microslip.solve` and in configurations.  Files whose names start with an
 underscore contain shared code.  The name of a method can be followed by parameters, for example
-"admm:penalty=0.1,relaxation=1.5".  A method can require a package that microslip does not depend
+"projected-gradient:step=0.5".  A method can require a package that microslip does not depend
 on.  Studies omit the method if that package is not installed.
 
 Listing and checking names does not import the solver.

@@ -93,14 +93,9 @@ def simulate(
     try:
         if method.run is not None:
             return method.run(problem, model, resolution, absolute)
-        run = _run(problem, model, resolution, absolute, guess, settings)
+        return _run(problem, model, resolution, absolute, guess, settings)
     except StepFailure as failure:
         return failed_run(str(failure))
-    if method.extrapolated and run.converged:
-        half = replace(resolution, steps=max(resolution.steps // 2, 1))
-        plain = replace(settings, method=replace(method, extrapolated=False), tighter=False)
-        return _extrapolated(run, simulate(problem, model, half, tolerance, run, plain))
-    return run
 
 
 def _run(
@@ -130,22 +125,6 @@ def step_share(force_rate: float, steps: int, tighter: bool) -> float:
     slow_share = force_rate * np.pi * STEP_SHARE
     floor = TIGHTER * SLOW_STEP_SHARE if tighter else SLOW_STEP_SHARE
     return min(max(slow_share, floor), STEP_SHARE, MARCH_SHARE / steps)
-
-
-def _extrapolated(fine: Run, coarse: Run) -> Run:
-    """Extrapolate from two first-order runs; `coarse` has half as many steps as `fine`."""
-    return replace(
-        fine,
-        mu=2.0 * fine.mu - coarse.mu,
-        torque=2.0 * fine.torque - coarse.torque,
-        energy=2.0 * fine.energy - coarse.energy,
-        distance=2.0 * fine.distance + coarse.distance,
-        solver_residual=2.0 * fine.solver_residual + coarse.solver_residual,
-        periods=fine.periods + coarse.periods,
-        effort=fine.effort + coarse.effort,
-        converged=coarse.converged,
-        reason=coarse.reason,
-    )
 
 
 class _Search:

@@ -192,31 +192,6 @@ def march(period_map: PeriodMap, start: np.ndarray, goal: Goal) -> PeriodicState
     return marches.result(interval, distance, distance <= goal.tolerance)
 
 
-def equal_means(period_map: PeriodMap, start: np.ndarray, goal: Goal) -> PeriodicState:
-    """Search by the plain march until two successive mean forces agree within the tolerance."""
-    marches, state, last = Marches(period_map), start, float("inf")
-    for _ in range(goal.most_marches):
-        interval = marches(state, goal.step_tolerance)
-        mean = period_map.path.mean(interval.march.forces)[0]
-        change = abs(mean - last)
-        if change <= goal.tolerance:
-            break
-        state, last = interval.image, mean
-    return marches.result(interval, change, change <= goal.tolerance)
-
-
-def residual_alone(period_map: PeriodMap, start: np.ndarray, goal: Goal) -> PeriodicState:
-    """Search by Anderson acceleration until the residual of the plain map is small."""
-    marches = Marches(period_map)
-    accelerate, state = Anderson(marches.metric, DEPTH), start
-    for _ in range(goal.most_marches):
-        interval = marches(state, goal.step_tolerance)
-        if interval.residual <= goal.tolerance:
-            break
-        state = marches.admissible(accelerate(state, interval.image))
-    return marches.result(interval, interval.residual, interval.residual <= goal.tolerance)
-
-
 class Anderson:
     """Anderson acceleration of a map of tractions; `metric` holds the least-squares weights."""
 

@@ -36,7 +36,7 @@ def contest_of(method: str) -> str:
         return MODELS
     if parts.dress is not None:
         return "solvers of a step"
-    if parts.extrapolated or parts.integrator != shipped.integrator:
+    if parts.integrator != shipped.integrator:
         return "integrators"
     return "searches"
 

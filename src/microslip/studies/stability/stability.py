@@ -106,16 +106,6 @@ AXES = (
         _varied("amplitude", (0.5, 1.0, 2.0, 5.0, 20.0, 100.0), motion="zigzag", velocity=0.1),
     ),
     Axis(
-        *("penalty", "penalty", "transverse, v 0.1, A 1"),
-        _varied(None, (0.01, 0.1, 0.3, 1.0, 3.0, 10.0, 100.0), **_BASE),
-        parameters=(("admm", "penalty"),),
-    ),
-    Axis(
-        *("relaxation", "relaxation", "transverse, v 0.1, A 1"),
-        _varied(None, (0.5, 1.0, 1.5, 1.7, 1.9, 2.0, 2.1), **_BASE),
-        parameters=(("admm", "relaxation"), ("gauss-seidel", "relaxation")),
-    ),
-    Axis(
         *("step-length", "step length", "transverse, v 0.1, A 1"),
         _varied(None, (0.25, 0.5, 1.0, 1.5, 2.0, 3.0, 4.0), **_BASE),
         parameters=(("projected-gradient", "step"),),
@@ -181,7 +171,7 @@ def _point(overrides: dict) -> requests.Point:
 
 
 def _with_number(method: str, parameter: str, value: float) -> str:
-    """Return the name of a method with one parameter changed, such as "admm:penalty=0.1"."""
+    """Return a method with one parameter changed, such as "projected-gradient:step=0.5"."""
     name, numbers = split(method)
     numbers[parameter] = value
     return f"{name}:" + ",".join(f"{key}={number(n)}" for key, n in numbers.items())
