@@ -1,7 +1,7 @@
 """Friction of a vibrated Hertz contact, resolved by boundary elements.
 
-``solve`` computes the friction at one point, ``solve_stored`` also stores the result.  ``history``
-and ``traction_field`` compute forces and tractions in detail.  Importing the package is fast,
+``solve`` computes the friction at one point.  ``history`` and ``traction_field`` compute forces and
+tractions in detail.  Importing the package is fast,
 because a module is loaded only when one of its names is first used.
 """
 
@@ -37,7 +37,6 @@ _WHERE = {
     "Ellipse": "microslip.pressures.ellipse",
     "InputError": "microslip.foundation.errors",
     "warm_up": "microslip.adaptive.point",
-    "solve_stored": "microslip.sweeps.solve_stored",
     "predict": "microslip.si.predict",
     "predict_table": "microslip.si.table",
     "predict_grid": "microslip.si.grid",

@@ -9,7 +9,6 @@ import pytest
 import xarray as xr
 from stubs.new_process import output
 
-from microslip.app import cli
 from microslip.foundation import files
 from microslip.foundation.errors import CacheError
 from microslip.report.figures.data import loaded
@@ -43,7 +42,7 @@ def full(*_):
     ],
 )
 def test_a_folder_that_cannot_keep_results_is_refused_before_work(
-    name, part, tmp_path, monkeypatch, capfd
+    name, part, tmp_path, monkeypatch
 ):
     (tmp_path / "file").write_text("kept")
     (tmp_path / "link").symlink_to("nowhere/at/all")
@@ -56,12 +55,6 @@ def test_a_folder_that_cannot_keep_results_is_refused_before_work(
         batches.run_batch([REQUEST], Store(tmp_path / name))
     message = one_line(caught)
     assert str(tmp_path / name) in message and part in message and "another folder" in message
-    assert cli.main([*POINT, "--results", str(tmp_path / name)]) == 2
-    out, line = capfd.readouterr()
-    if name in ("file/new", "link"):  # the command checks the folder first
-        place = tmp_path / name.removesuffix("/new")
-        message = f"{place} is not a folder; allowed: a folder, or a new name"
-    assert out == "" and line == f"microslip point continuous-bore: --results: {message}\n"
     names = [p.name for p in tmp_path.rglob("*") if p.is_file()]
     assert sorted(names) == ["file", "points"]
 
@@ -74,15 +67,6 @@ def test_a_place_to_write_is_tried_once(tmp_path, monkeypatch):
     store.try_writing()
     with pytest.raises(CacheError, match="No space left"):
         Store(tmp_path / "new").try_writing()
-
-
-def test_an_answer_that_is_there_needs_no_place_to_write(tmp_path, monkeypatch, capsys):
-    command = [*POINT, "--json", "--results", str(tmp_path)]
-    assert cli.main(command) == 0
-    monkeypatch.setattr(files.os, "fsync", full)
-    assert cli.main(command) == 0
-    first, second = capsys.readouterr().out.splitlines()
-    assert first.partition('"solve_time_s"')[0] == second.partition('"solve_time_s"')[0]
 
 
 @pytest.mark.parametrize(
@@ -108,17 +92,15 @@ def test_files_and_folders_that_have_changed_places_are_refused(make, part, tmp_
 # Damaged files
 
 
-def test_a_damaged_point_is_computed_again_and_said(tmp_path, capsys, caplog):
-    command = [*POINT, "--results", str(tmp_path)]
-    assert cli.main(command) == 0
+def test_a_damaged_point_is_computed_again_and_said(tmp_path, caplog):
+    first, _ = batches.answer(REQUEST, Store(tmp_path))
     (path,) = tmp_path.glob("points/*/*/*.json")
     whole = path.read_bytes()
     path.write_bytes(whole[:100])
     with caplog.at_level(logging.WARNING):
-        assert cli.main(command) == 0
+        second, _ = batches.answer(REQUEST, Store(tmp_path))
     assert caplog.messages == [f"damaged result {path}: computed again"]
     assert path.read_bytes() == whole
-    first, second = capsys.readouterr().out.split("mu_macro = ")[1:]
     assert first == second
 
 

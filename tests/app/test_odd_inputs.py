@@ -37,7 +37,6 @@ GOOD = {
     "traction_field": {"motion": "continuous-bore", "velocity": 0.5},
     "propulsion": {"motion": "normal:forward=1,phase=90", "amplitude": 0.5},
     "shakedown": {"motion": "transverse", "amplitude": 0.5, "force": 0.1},
-    "solve_stored": {"motion": "transverse", "velocity": 0.5, "amplitude": 0.5},
     "open_map": {"name": "transverse"},
     "to_xarray": {},
     "Material": {"young": "210 GPa", "poisson": 0.3},

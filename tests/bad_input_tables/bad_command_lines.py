@@ -127,18 +127,4 @@ OPTIONS = [
     ("fit transverse a-file --map nosuch.nc", "--map: nosuch.nc is not there"),
 ]
 
-# Cases in the folder of tests/config/test_bad_input.py.
-RESULTS = [
-    (f"{TRANSVERSE} --results", "--results", "expected one argument"),
-    (f"{TRANSVERSE} --results ''", "--results: ''", "the name of a folder"),
-    (f"{TRANSVERSE} --results a-file", "--results", "a-file is not a folder", "a new name"),
-    (f"{TRANSVERSE} --results /proc/none", "--results", "/proc/none", "another folder"),
-    (f"{TRANSVERSE} --results {'x' * 300}", "--results", "xxx", "File name too long"),
-    (
-        f"{TRANSVERSE} --results kept --method projected-gradient",
-        "--method = 'projected-gradient'",
-        "shipped with --results",
-    ),
-]
-
-COMMAND_LINES = [*NUMBERS, *GRAMMAR, *OUT_OF_RANGE, *TWICE, *NAMES, *OPTIONS, *RESULTS]
+COMMAND_LINES = [*NUMBERS, *GRAMMAR, *OUT_OF_RANGE, *TWICE, *NAMES, *OPTIONS]

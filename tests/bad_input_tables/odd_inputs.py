@@ -61,10 +61,6 @@ CALLS += [
     ("traction_field", {"cells": 0}, "cells = 0: allowed is a whole number of at least 2"),
     ("traction_field", {"velocity": 0}, "velocity = 0.0"),
     ("traction_field", {"motion": "transverse", "amplitude": 1.0}, "motion = 'transverse'"),
-    *(
-        ("solve_stored", {"results": folder}, "is not allowed; allowed: the name of a folder")
-        for folder in (None, "~", "a\0b")
-    ),
     ("open_map", {"name": "transvers"}, "name = 'transvers': did you mean transverse? allowed"),
     ("to_xarray", {"record": 5}, "record = 5: allowed is one of Result,"),
     ("Material", {"young": HUGE}, "young = "),

@@ -8,7 +8,6 @@ from microslip.config import load
 from microslip.datasets import sweep_dataset
 from microslip.datasets.query import accessor
 from microslip.sweeps import batches
-from microslip.sweeps.evaluate import plain
 from microslip.sweeps.store import Store
 
 PAPER = {"transverse": {"velocity": [1], "amplitude": [1]}}
@@ -111,20 +110,3 @@ def test_a_dataset_over_springs_has_their_axis(tmp_path):
         answer = microslip.solve("transverse", 0.5, 1.0, stiffness=10, mass=2, tolerance=1e-2)
         assert float(point) == pytest.approx(answer.mu_macro, abs=1e-12)
         assert data.stiffness.attrs["formula"] == "k u_lim / (mu F_z)"
-
-
-def test_a_point_that_is_pulled_is_stored_and_found_again(tmp_path):
-    place = {"amplitude": 1.0, "tolerance": 1e-2}
-    pull = {"velocity": 0.1, "stiffness": 0.5, "damping": 0.1}
-    for drive in ({"force": 0.4}, {"force": 1.5}, pull):
-        first, again = (
-            microslip.solve_stored("transverse", results=tmp_path, **place, **drive).to_dict()
-            for _ in range(2)
-        )
-        answer = microslip.solve("transverse", **place, **drive).to_dict()
-        for one in (first, again, answer):
-            one.pop("solve_time_s")
-        assert first.keys() >= {*drive}
-        assert plain(first) == plain(again)
-        stored, fresh = plain(first), {k: v for k, v in plain(answer).items() if v is not None}
-        assert {name: stored[name] for name in fresh} == fresh

@@ -292,17 +292,22 @@ def test_a_file_that_is_no_python_counts_by_its_bytes_and_imports_nothing(packag
 
 
 SESSION = """
-import json, sys, warnings
+import json, sys
 from pathlib import Path
 import microslip
-from microslip.foundation import source_digest
+from microslip.sweeps import batches
+from microslip.sweeps.store import Store
 answers = []
+request = {"kind": "point", "motion": "transverse", "velocity": "100", "amplitude": "0.5"}
+request |= {"poisson": "0", "model": "auto", "tolerance": "0.001"}
 def ask():
-    with warnings.catch_warnings(record=True) as caught:
-        warnings.simplefilter("always")
-        answer = microslip.solve_stored("transverse", 100.0, 0.5, results=sys.argv[1])
-    said = [str(warning.message) for warning in caught]
-    return [answer.mu_macro, len(list(Path(sys.argv[1]).rglob("*.json"))), said]
+    said = []
+    try:
+        record, _ = batches.answer(request, Store(sys.argv[1]))
+    except batches.SourcesEdited as error:
+        record, said = error.record, [str(error)]
+    count = len(list(Path(sys.argv[1]).rglob("*.json")))
+    return [record["result"]["mu_macro"], count, said]
 path = Path(microslip.__file__).with_name("adaptive") / "choice.py"
 answers.append(ask())
 for file in Path(sys.argv[1]).rglob("*.json"):

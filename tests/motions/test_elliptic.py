@@ -143,14 +143,6 @@ def test_errors_are_within_their_estimates_by_finer_runs(velocity, amplitude):
     assert_agree(answer, finer)
 
 
-def test_equal_loops_share_a_stored_point_in_the_folder_of_the_motion(tmp_path):
-    one = microslip.solve_stored("elliptic:phase=30", 0.5, 0.5, results=tmp_path)
-    other = microslip.solve_stored("elliptic:phase=30.0,lateral=1", 0.5, 0.5, results=tmp_path)
-    assert one.mu_macro == other.mu_macro
-    (point,) = tmp_path.rglob("*.json")
-    assert point.relative_to(tmp_path).parts[:2] == ("points", "elliptic")
-
-
 def test_an_ellipse_without_a_lateral_part_is_the_longitudinal_motion():
     """Its phase lead only shifts the time, so the same closed form applies."""
     line = microslip.solve("elliptic:forward=0.5,lateral=0,phase=40", 0.1, 1.0)

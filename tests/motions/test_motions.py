@@ -224,11 +224,11 @@ def test_broken_files_in_the_package_do_not_end_other_commands(tmp_path):
     for folder in ("motions", "pressures", "solver/methods"):
         (tmp_path / "microslip" / folder / "unfinished.py").write_text("MOTION = replace(")
     command = [sys.executable, "-m", "microslip", "point", "longitudinal", "--velocity", "0.1"]
-    command += ["--amplitude", "0.5", "--results", "results"]
+    command += ["--amplitude", "0.5"]
     place = os.environ | {"PYTHONPATH": str(tmp_path)}
     process = subprocess.run(command, cwd=tmp_path, env=place, capture_output=True, text=True)
     assert (process.returncode, process.stderr) == (0, "")
-    command[command.index("--results") :] = ["--method", "unfinished"]
+    command += ["--method", "unfinished"]
     process = subprocess.run(command, cwd=tmp_path, env=place, capture_output=True, text=True)
     assert process.returncode == 2
     assert "unfinished.py cannot be imported: SyntaxError in line 1" in process.stderr

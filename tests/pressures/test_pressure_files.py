@@ -545,17 +545,6 @@ def test_one_file_by_many_paths_is_one_pressure(tmp_path, monkeypatch):
     assert pressure_named("file:p.csv,grid=samples").name == f"{records[0].name},grid=samples"
 
 
-def test_a_stored_point_is_found_by_any_path_and_says_none(tmp_path, monkeypatch):
-    monkeypatch.chdir(tmp_path)
-    name = csv(tmp_path / "p.csv", *2 * [np.array([0.0, 1.0])], np.ones((2, 2)))
-    (tmp_path / "link.csv").symlink_to(tmp_path / "p.csv")
-    for pressure in (name, "file:link.csv"):
-        microslip.solve_stored("transverse", 2.0, 0.5, pressure=pressure, tolerance=0.1)
-    (record,) = (tmp_path / "results" / "points").rglob("*.json")
-    assert "p.csv" not in record.read_text()
-    assert "file:sha256=" in record.read_text()
-
-
 @pytest.mark.slow
 def test_a_file_that_changes_is_another_pressure(tmp_path):
     name = csv(tmp_path / "p.csv")

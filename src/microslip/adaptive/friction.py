@@ -5,7 +5,6 @@ from __future__ import annotations
 from dataclasses import replace
 from functools import cache
 
-from microslip.adaptive.closed_forms import exact_for
 from microslip.adaptive.continuation import run_safely
 from microslip.adaptive.request import Request, result_of_runs
 from microslip.adaptive.result import Result
@@ -68,9 +67,3 @@ def solve_friction(request: Request) -> Result:
     unit = request.problem.largest_energy
     refined = refine(levels_for(request), request.accuracy, energy_unit=unit)
     return result_of_runs(request, refined, request.tolerance)
-
-
-def refuse_choice(request: Request) -> None:
-    """Raise InputError if a resolution would have to be chosen without a tolerance."""
-    if exact_for(request) is None:
-        ladder_of(request, request.accuracy)

@@ -9,7 +9,6 @@ from dataclasses import fields
 from typing import TYPE_CHECKING, Any
 
 from microslip.app.question import SPIN, Answer, add_answer, add_options, typed_options
-from microslip.foundation.errors import CacheError, InputError
 from microslip.foundation.number_text import number_text
 
 if TYPE_CHECKING:
@@ -61,15 +60,11 @@ OPTIONS = {
     "steps": ("N", "impose N steps per period (even)"),
     "time-limit": (
         "SECONDS",
-        "stop after this time, checked between two runs; the result is then not stored",
+        "stop after this time, checked between two runs",
     ),
     "method": (
         "NAME",
         "another numerical method, for comparison: a file name in microslip/solver/methods",
-    ),
-    "results": (
-        "FOLDER",
-        "look the result up in a folder of results, such as that of a sweep, and store it there",
     ),
 }
 """Options for all motions, each with a metavar and a help text."""
@@ -140,21 +135,11 @@ def _answer(options: argparse.Namespace) -> Answer:
     arguments = typed_options(options, (*REALS, *["tolerance"] * (not free)), WHOLES)
     if free:
         arguments["tolerance"] = None
-    stored = "results" in arguments
-    if stored and arguments.pop("method", "shipped") != "shipped":
-        allowed = "allowed is shipped with --results, which stores points of sweeps"
-        raise InputError("method", options.method, allowed)
     import microslip  # late: --help and bad options need no solver
 
-    if stored:
-        try:
-            result = microslip.solve_stored(options.motion, **arguments)
-        except CacheError as error:
-            raise CacheError(f"--results: {error}") from None
-    else:
-        with _bar() as bar:
-            progress = None if bar is None else lambda resolution: _show(bar, resolution)
-            result = microslip.solve(options.motion, **arguments, progress=progress)
+    with _bar() as bar:
+        progress = None if bar is None else lambda resolution: _show(bar, resolution)
+        result = microslip.solve(options.motion, **arguments, progress=progress)
     return Answer({"amplitude": None} | result.to_dict(), _as_text(result), result.converged)
 
 

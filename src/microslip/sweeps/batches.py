@@ -173,14 +173,12 @@ def group(request: dict) -> str:
     return "/".join([FOLDERS[request["kind"]], motion.partition(":")[0]])  # without numbers
 
 
-def answer(request: dict, store: Store, time_limit: float | None = None) -> tuple[dict, float]:
+def answer(request: dict, store: Store) -> tuple[dict, float]:
     """Return the record of a request, and the CPU time of the solver in seconds.
 
     The record is read from the store (0 seconds), or computed and stored.  It has the keys key,
     request, result and versions.  A result that is not final (see evaluate.is_final) is not stored.
     Raises CacheError if the record cannot be stored.
-
-    time_limit: time limit of a point, as in microslip.solve.
     """
     key = key_of(request)
     record = store.read(group(request), key)
@@ -188,7 +186,7 @@ def answer(request: dict, store: Store, time_limit: float | None = None) -> tupl
         return record, 0.0
     store.try_writing()
     started = time.process_time()
-    result = evaluate.computed(request, time_limit)
+    result = evaluate.computed(request)
     seconds = time.process_time() - started
     # Times are omitted so that equal requests have equal records, except in measurements of time.
     record = {"key": key, "request": request, "result": result, "versions": versions()}

@@ -33,17 +33,15 @@ LONG_ENOUGH = 2.0
 """Total CPU time of the readings, in seconds, after which no further reading is taken."""
 
 
-def computed(request: dict, time_limit: float | None = None) -> dict:
+def computed(request: dict) -> dict:
     """Compute the result of a request as a dict of values that JSON can represent.
 
-    time_limit: time limit of a point, as in microslip.solve.  If the solver raises SolverError or
-    InputError, the point is a gap in the dataset.  Then `converged` is False, `crashed` is True,
-    and `reason` is the error message in one line.  Any other exception is an error of the code or
-    the machine and propagates.
+    If the solver raises SolverError or InputError, the point is a gap in the dataset.  Then
+    `converged` is False, `crashed` is True, and `reason` is the error message in one line.  Any
+    other exception is an error of the code or the machine and propagates.
     """
-    limits = {} if time_limit is None else {"time_limit": time_limit}
     try:
-        return plain(_KINDS[request["kind"]](**arguments(request), **limits))
+        return plain(_KINDS[request["kind"]](**arguments(request)))
     except (SolverError, InputError) as error:
         log.debug("%s", request, exc_info=True)
         reason = " ".join(f"{type(error).__name__}: {error}".split())

@@ -7,12 +7,12 @@ import hashlib
 from collections.abc import Callable
 from dataclasses import replace
 from functools import partial
-from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
 import xarray as xr
 
+from microslip.adaptive.point import solve
 from microslip.datasets import certified_map
 from microslip.datasets.catalogue import FORMS
 from microslip.datasets.query import beyond, cells, inverse
@@ -34,7 +34,7 @@ from microslip.datasets.query.cells import Map
 from microslip.datasets.query.coordinates import coordinate_array, evaluate, grid_axes
 from microslip.datasets.query.drift import Drift
 from microslip.datasets.query.nodes import nodes_of, poisson_within, refuse_values, tables_at
-from microslip.datasets.query.solver import drive_of, solve_and_store
+from microslip.datasets.query.solver import drive_of
 from microslip.datasets.variables import variable
 from microslip.foundation.arguments import real
 from microslip.foundation.errors import InputError
@@ -127,9 +127,7 @@ class Friction:
             Poisson's ratio, within the range of the dataset.  It can be omitted if the dataset has
             only one Poisson's ratio.
         tolerance : number, optional
-            Points with a larger error bound are computed by the solver.  The results are stored
-            beside the dataset if it was opened by `open_map`.  If that folder is read-only, the
-            results are kept until Python ends.
+            Points with a larger error bound are computed by the solver.
 
         Returns
         -------
@@ -431,14 +429,12 @@ class Friction:
     ) -> None:
         """Replace results with an error above the tolerance by the solver's results, in place."""
         value, error, source = answer
-        path = self._dataset.encoding.get("source")
         settings = {"poisson": nu, "tolerance": tolerance, "pressure": self._pressure}
         settings |= drive_of(self._dataset)
-        folder = str(Path(path).parent) if path else "results"
         for k in np.flatnonzero(~(error <= tolerance)):
             velocity, amplitude = (float(part[k]) for part in point)
             size = None if np.isnan(amplitude) else amplitude
-            result = solve_and_store(folder, self._motion, velocity, size, **settings)
+            result = solve(self._motion, velocity, size, **settings)
             source[k] = SOLVER
             value[k], error[k] = np.nan, np.inf
             if result.converged:
