@@ -54,8 +54,7 @@ def main():
     parser.add_argument("--threads", type=int, default=1)
     options = parser.parse_args()
     dataset = microslip.open_map(options.map).load()
-    drifts = certified_map.is_of_drift(dataset)
-    accessor, value = (dataset.microslip, "velocity" if drifts else "mu_macro")
+    accessor, value = dataset.microslip, "mu_macro"
     few = accessor.at(**questions(dataset, options.chunk, options.chunk))
     dask.compute(few[value].mean())
     before, begun = memory(), time.process_time()

@@ -1,14 +1,11 @@
 """Unusual files and damaged files: the right result, or one line with the reason."""
 
-from pathlib import Path
-
 import pytest
 import yaml
 from bad_input_tables import odd_files as odd
 from bad_input_tables.odd_files import SWEEP
 from stubs.in_process import run_apart
 
-from microslip.app import cli
 from microslip.config import load
 from microslip.config.records import ConfigError
 from microslip.datasets.query.open_map import open_map
@@ -113,19 +110,6 @@ def test_a_damaged_dataset_without_a_stamp_is_one_line(case, tmp_path):
     with pytest.raises(CacheError) as caught:
         open_map(path)
     one_line(caught, [str(path)])
-
-
-@pytest.mark.parametrize(("arguments", "word"), odd.GC)
-def test_odd_arguments_of_gc(arguments, word, tmp_path, monkeypatch, capsys):
-    monkeypatch.chdir(tmp_path)
-    Path("long.yaml").write_text(f"{SWEEP % '[1]'}results: {'x' * 300}\n")
-    try:
-        code = cli.main(["gc", *arguments])
-    except SystemExit as ended:
-        code = ended.code
-    out, line = capsys.readouterr()
-    assert (code, out, line.count("\n")) == (2, "", 1)
-    assert word in line
 
 
 @pytest.mark.long

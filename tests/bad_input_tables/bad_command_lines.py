@@ -108,7 +108,7 @@ NAMES = [
 ]
 
 OPTIONS = [
-    ("", "COMMAND is missing", "allowed: point, sweep, gc, predict, fit, response"),
+    ("", "COMMAND is missing", "allowed: point, sweep, predict, fit, response"),
     ("pont", "COMMAND = 'pont'", "did you mean point?"),
     ("--json", "--json", "COMMAND before other options"),
     ("point --poisson 0.3", "--poisson", "MOTION before other options"),

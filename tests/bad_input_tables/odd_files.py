@@ -187,14 +187,3 @@ DAMAGES = {
     "cut off": lambda content: content[: len(content) // 2],
     "half of it zeros": lambda content: content[: len(content) // 2].ljust(len(content), b"\0"),
 }
-
-# Arguments of microslip gc, words of its message.
-GC = [
-    (["--configfile", "a\0b"], "not the name of a file"),
-    (["--configfile", "nosuch.yaml"], "--configfile: nosuch.yaml: cannot be read"),
-    (["--configfile", "long.yaml"], "is not there"),
-    (["--configfile", "/dev/null"], "is empty"),
-    (["--configfile"], "expected at least one argument"),
-    (["first.yaml"], "unrecognized arguments"),
-    (["--results", "r"], "unknown option --results"),
-]

@@ -150,7 +150,6 @@ def computed(tmp_path_factory):
     records = certified_stub.played(map_, lambda request: batches.answer(request, store)[0])
     netcdf.write(folder / f"{map_.name}.nc", certified_map.build(map_, records))
     # without computation
-    netcdf.write(folder / "certified_drift_transverse.nc", certified_stub.drifting())
     return folder
 
 

@@ -11,7 +11,6 @@ from stubs.sweep_stub import Solver
 import microslip
 from microslip.config import load
 from microslip.datasets import certified_map, sweep_dataset
-from microslip.datasets.query.drift import Drift
 from microslip.si.prediction import COLUMNS
 from microslip.si.response import UNITS
 from microslip.studies import registry
@@ -117,14 +116,6 @@ def test_every_variable_of_a_certified_map_is_in_its_table_and_no_other():
     data = certified_map.build(map_, certified_stub.played(map_, answer))
     title = "A certified map (`certified_transverse.nc`, `certified_bore.nc`)"
     assert set(section(title)) == set(map(str, data.variables))
-
-
-def test_every_variable_of_a_map_of_drift_and_of_its_answers_is_in_its_table_and_no_other():
-    data = certified_stub.drifting()
-    answer = Drift(data).at(0.5, 1.0)
-    names = set(data.variables) | set(answer.variables)
-    title = "A certified map of drift (`certified_drift_transverse.nc`)"
-    assert set(section(title)) == set(map(str, names))
 
 
 STUDIES = {

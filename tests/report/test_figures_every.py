@@ -42,7 +42,6 @@ def arguments() -> dict[str, tuple[str, dict]]:
         "fit": ("fit", {"fit": fit_stub.fitted()}),
         "certified": ("certified_bore", {"certified_bore": certified_stub.bore()}),
         "deep": ("certified_bore", {"certified_bore": certified_stub.bore(poisson=[0.1, 0.4])}),
-        "certified drift": ("certified_a", {"certified_a": certified_stub.drifting()}),
         "certified static": ("certified_bore", {"certified_bore": static}),
         **{f"{n} maps": ("extended_motions", stub.motions(n)) for n in (1, 5, 12)},
         "lines": ("extended_static", {"a": stub.static("a"), "b": stub.static("b")}),

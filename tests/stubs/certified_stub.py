@@ -1,6 +1,5 @@
 """A certified map, refined in one process without a workflow."""
 
-import numpy as np
 import xarray as xr
 
 import microslip
@@ -10,10 +9,8 @@ from microslip.datasets import certified_map, netcdf
 from microslip.si.friction_map import FrictionMap
 from microslip.sweeps import evaluate, map_refinement
 from microslip.sweeps.batches import key_of
-from microslip.theory.drift_threshold import threshold
 
 PAPER = {"transverse": {"velocity": [1], "amplitude": [1]}}
-DRIFT = {"motion": "transverse", "force": [0.05, 0.95], "amplitude": [0, 3]}
 
 
 def record(request, mu, error=1e-4):
@@ -72,31 +69,6 @@ def bore(**settings) -> xr.Dataset:
 
     axes = {"velocity": [0.01, 10], "amplitude": [0, 5], "adaptive": {"error": 0.02}}
     map_ = configured("bore", **axes | settings)
-    return built(map_, answer)
-
-
-def drift(force, amplitude):
-    """Velocity under a force: 0 up to the threshold, then proportional to the power 3/2 of the
-    excess, infinite at 1."""
-    least = threshold("transverse", amplitude)
-    share = np.clip((force - least) / np.where(least < 1.0, 1.0 - least, 1.0), 0.0, 1.0)
-    return amplitude * share**1.5 / np.sqrt(1.0 - share)
-
-
-def drifting(*, fails=lambda force, amplitude: False, **settings) -> xr.Dataset:
-    """Dataset of a map of this velocity; fails: places without a result."""
-
-    def answer(request):
-        place = [float(request[name]) for name in ("force", "amplitude")]
-        velocity = float(drift(*place))
-        error = {"mu_macro_error": 0.0, "velocity_error": 1e-4 * max(1.0, velocity)}
-        result = {"mu_macro": place[0], "velocity": velocity, "converged": True} | error
-        if fails(*place):
-            result = {"converged": False}
-        return {"key": key_of(request), "request": request, "result": result, "versions": {}}
-
-    drives = {"weights": DRIFT | {"adaptive": {"error": 1e-2}} | settings}
-    (map_,) = load.from_mapping({"sweeps": PAPER, "drives": drives}).certified.values()
     return built(map_, answer)
 
 

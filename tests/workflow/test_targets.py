@@ -10,7 +10,6 @@ from stubs.figures_stub import words
 from stubs.workflow_project import Project, jobs_in
 
 import microslip
-from microslip.app import leftovers
 from microslip.app.plan import Plan
 from microslip.config import load
 from microslip.datasets import netcdf
@@ -89,32 +88,6 @@ def test_a_looser_error_computes_nothing_anew(certified, tmp_path):
     assert data.error == 0.1
     assert data.points <= len(before)
     assert project.points() == before
-
-
-def test_nothing_of_a_map_is_left_over(certified):
-    results = certified.folder / "results"
-    plan = Plan(load.load(certified.folder / "tiny.yaml"))
-    assert not any(leftovers.find_leftovers(results, [plan]).values())
-    without = load.from_mapping({"sweeps": {"transverse": AXES}})
-    left = leftovers.find_leftovers(results, [Plan(without)])
-    assert len(left[leftovers.KINDS[0]]) == len(certified.points())
-    names = {path.name for path in left[leftovers.KINDS[2]]}
-    assert names == {
-        f"certified_transverse.{kind}" for kind in ("nc", "html", "png", "pdf", "json")
-    }
-
-
-def test_a_sweep_of_forces_makes_a_map_of_drift(tmp_path):
-    weights = {"motion": "transverse", "force": [0.1, 0.8], "amplitude": [0.5, 1.5]}
-    weights |= {"adaptive": {"error": 0.1}}
-    project = made(tmp_path, {"sweeps": PAPER, "drives": {"weights": weights}}, "drives")
-    data = microslip.open_map("certified_weights", project.folder / "results").load()
-    assert float(data.cell_error.max()) <= data.error == 0.1
-    answer = data.microslip.at(0.6, 1.2)
-    request = microslip.solve("transverse", amplitude=1.2, force=0.6, tolerance=1e-2)
-    off = abs(float(answer.velocity) - request.velocity)
-    assert off <= float(answer.velocity_error) + request.velocity_error
-    assert "Nothing to be done" in project.run("drives")
 
 
 # Other motions

@@ -1,6 +1,5 @@
 """The workflow, run by Snakemake in a copy of the project: jobs that run, and jobs that do not."""
 
-import re
 import shutil
 
 import pytest
@@ -67,7 +66,7 @@ def test_a_dry_run_says_how_much_there_is_to_solve(project):
     process = project.snakemake("--cores", 2, *RUN[1:], "--dry-run")
     assert process.returncode == 0
     (line,) = [line for line in process.stderr.splitlines() if line.startswith("To solve:")]
-    assert re.match(r"To solve: 4 points, about \d+ seconds on 2 cores\.$", line)
+    assert line == "To solve: 4 points."
 
 
 @pytest.mark.long

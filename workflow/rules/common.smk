@@ -187,16 +187,11 @@ def files_of_target(target):
 
 
 def report_work():
-    """Write the number of points to solve and an estimate of the time to standard error."""
-    try:
-        cores = min(workflow.cores, max(len(TO_SOLVE), 1))
-    except WorkflowError:  # jobs run elsewhere
-        cores = max(len(TO_SOLVE), 1)
+    """Write the number of points to solve to standard error."""
     names = [file.split("/")[1:] for file in TO_SOLVE]
-    work = [(group, PLAN.batches_in(group).get(Path(name).stem)) for group, name in names]
+    work = [PLAN.batches_in(group).get(Path(name).stem) for group, name in names]
     if work:
-        missing = not all(map(os.path.exists, compiled("rings", "angles", place=PLACE)))
-        print(*dry_run.summary(work, PLACE, cores, compiles=missing), sep="\n", file=sys.stderr)
+        print(*dry_run.summary(work, PLACE), sep="\n", file=sys.stderr)
     TO_SOLVE.clear()
 
 

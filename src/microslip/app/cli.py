@@ -13,7 +13,6 @@ from microslip.app.question import SPIN, respond
 COMMANDS = {
     "point": "macroscopic friction at one (velocity, amplitude)",
     "sweep": "the workflow: maps, datasets and figures, by Snakemake",
-    "gc": "list or remove results that no configuration requests",
     "predict": "friction of a real contact, in SI units",
     "fit": "coefficient of friction and u_lim from measured friction",
     "response": "forces of a contact that follows the path of a file",
@@ -21,7 +20,7 @@ COMMANDS = {
     "export": "an Iwan model or a friction table of a contact, for other programs",
 }
 """Commands, each with a help text.  The module NAME_command adds the options of a command."""
-OWN_PARSERS = {"sweep": "sweep_command", "gc": "leftovers"}
+OWN_PARSERS = {"sweep": "sweep_command"}
 """Commands that parse their words themselves, each with its module."""
 
 

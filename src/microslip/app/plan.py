@@ -165,12 +165,11 @@ class Plan:
         """Return the products of a target.  Raises ConfigError if the configuration has no data for
         it."""
         configuration = self.configuration
-        drift = [name for name, map_ in configuration.certified.items() if map_.force is not None]
         datasets = {
             "all": [*configuration.sweeps],
             "extended": [*configuration.extended],
-            "drives": [*configuration.drives, *drift],
-            "certified": [name for name in configuration.certified if name not in drift],
+            "drives": [*configuration.drives],
+            "certified": [*configuration.certified],
         } | {study: [dataset] for dataset, study in self.studies.items()}
         if target in datasets:
             inputs, paper = set(datasets[target]), set(configuration.sweeps)

@@ -243,8 +243,6 @@ def from_mapping(
                 if (adaptive := getattr(members[name], "adaptive", None)) is not None:
                     map_ = certified.map_of(sweep, adaptive)
                     maps[map_.name] = map_
-                    if ask_solver:
-                        certified.refuse_unsolvable(map_)
         entries |= members
     with _errors_at(f"{source}: extended"):
         _refuse_mixtures(list(families["extended"].values()))

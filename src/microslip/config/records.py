@@ -124,20 +124,12 @@ class CertifiedMap:
         return (ratios[0], ratios[-1]) if len(ratios) > 1 else ()
 
     @property
-    def force(self) -> float | None:
-        """The largest force of a drift map; None for a friction map."""
-        drives = {name: values for name, values, _ in self.sweep.drives}
-        return drives["force"][-1] if "force" in drives else None
-
-    @property
     def settings(self) -> dict:
         """Settings on which the points depend, as a dict of JSON values."""
         names = ("motion", "pressure", "model")
         settings = {name: getattr(self.sweep, name) for name in names}
         settings["poisson"] = self.poisson or self.sweep.poisson
         ranges: dict = {"velocity": self.velocity, "amplitude": self.amplitude}
-        if self.force is not None:
-            ranges["force"] = self.force
         return settings | ranges | {"error": self.error, "tolerance": self.tolerance}
 
 

@@ -296,8 +296,6 @@ class _NamedSweep(SteadySweep):
     """Amplitude in the unit of the motion. It is required unless the motion is steady."""
     tolerance: Tolerance = 1e-3
     """Largest accepted absolute error of mu_macro."""
-    adaptive: Adaptive | None = None
-    """Settings of a certified map over the same ranges (see below). By default, no map is made."""
 
 
 class ExtendedSweep(_NamedSweep):
@@ -308,6 +306,8 @@ class ExtendedSweep(_NamedSweep):
     group: PlainName
     """Group of the sweep. The figure extended_GROUP shows all sweeps of the group, either as maps
     or as lines."""
+    adaptive: Adaptive | None = None
+    """Settings of a certified map over the same ranges (see below). By default, no map is made."""
 
 
 class DriveSweep(_NamedSweep):

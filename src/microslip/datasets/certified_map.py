@@ -5,9 +5,7 @@
 A cell is a box in the scaled coordinates of sweeps.map_coordinates.  Friction in a cell is
 interpolated by the polynomial through its points: 5 along the velocity and 5 along the amplitude.
 If Poisson's ratio is a direction of the map, there are 3 points along it.  cell_error is an error
-bound for the cell.  A map of drift depends on force and amplitude, in the coordinates of
-sweeps.drift_coordinates, and its cells interpolate asinh(velocity).  Equal records give equal
-bytes.
+bound for the cell.  Equal records give equal bytes.
 """
 
 from __future__ import annotations
@@ -25,7 +23,6 @@ from microslip.datasets.variables import variable
 from microslip.foundation.canonical import canonical_json
 from microslip.sweeps import map_refinement
 from microslip.sweeps.batches import lookup
-from microslip.sweeps.drift_coordinates import DriftCoordinates, velocity_of
 from microslip.sweeps.map_cells import Cell
 from microslip.sweeps.map_coordinates import MapCoordinates
 
@@ -33,7 +30,6 @@ COORDINATES = "map_coordinates"
 """Attribute that contains the map's coordinates as JSON."""
 BORDERS = {
     "velocity": ("cell_left", "cell_right"),
-    "force": ("cell_left", "cell_right"),
     "amplitude": ("cell_low", "cell_high"),
     "poisson": ("cell_poisson_low", "cell_poisson_high"),
 }
@@ -62,26 +58,19 @@ def build(map_: CertifiedMap, records: Iterable[dict]) -> xr.Dataset:
     index = {node: i for i, node in enumerate(nodes)}
     degrees, places = coordinates.degrees, [coordinates.place(node) for node in nodes]
     values, errors = np.array([answers[node] for node in nodes]).T
-    drifts, name, text = map_.force is not None, "mu_macro", MU_MACRO.description
-    if drifts:
-        name, text = "velocity", "mean forward velocity"
-        values, errors = velocity_of(values, errors)
     cell_nodes = [[index[node] for node in cell.nodes(degrees)] for cell in cells.cells]
     axes: dict[str, tuple] = {
         name: ("point", np.array(axis))
         for name, axis in zip(coordinates.directions, zip(*places, strict=True), strict=True)
     }
     # Poisson's ratio and velocity are scalars, unless they are directions of the map.
-    axes = {"poisson": ((), map_.sweep.poisson[0])} | axes
-    if not drifts:
-        axes = {"velocity": ((), 0.0)} | axes
-    scaled = " of asinh(velocity)" if drifts else ""
+    axes = {"velocity": ((), 0.0), "poisson": ((), map_.sweep.poisson[0])} | axes
     dataset = xr.Dataset(
         {
-            name: variable("point", values, text),
-            f"{name}_error": variable("point", errors, f"estimated error of {name}"),
+            "mu_macro": variable("point", values, MU_MACRO.description),
+            "mu_macro_error": variable("point", errors, "estimated error of mu_macro"),
             **_borders(coordinates, cells.cells),
-            "cell_error": variable("cell", cells.errors, f"bound of the error{scaled} in the cell"),
+            "cell_error": variable("cell", cells.errors, "bound of the error in the cell"),
             "cell_node": (
                 ("cell", "node"),
                 np.array(cell_nodes, np.int32),
@@ -93,9 +82,8 @@ def build(map_: CertifiedMap, records: Iterable[dict]) -> xr.Dataset:
     sweep_dataset.describe_axes(dataset, map_.sweep)
     motion, pressure = solver_names(map_.sweep)
     versions = {canonical_json(record["versions"]) for record in records}
-    quantity = "drift" if drifts else "friction"
     about = sweep_dataset.provenance(
-        f"Certified {quantity} of a vibrated contact, motion {motion}",
+        f"Certified friction of a vibrated contact, motion {motion}",
         map_.settings,
         versions,
         motion=motion,
@@ -106,39 +94,27 @@ def build(map_: CertifiedMap, records: Iterable[dict]) -> xr.Dataset:
         directions=" ".join(coordinates.directions),
         degrees=np.array(degrees, np.int32),
     )
-    if drifts:
-        about["drive"] = "force"
     return dataset.assign_attrs(about | {COORDINATES: coordinates.to_json()})
 
 
 def report(dataset: xr.Dataset, name: str) -> Iterator[str]:
     """Yield lines of text: the number of points, the error bound of the map, and the number of
     cells with a larger error."""
-    drifts = is_of_drift(dataset)
-    values, errors = dataset["velocity" if drifts else "mu_macro"], dataset["cell_error"].values
-    failed, scale = int(values.isnull().sum()), " sqrt(1 + v^2)" if drifts else ""
+    failed, errors = int(dataset["mu_macro"].isnull().sum()), dataset["cell_error"].values
     converged = f"{failed} not converged" if failed else "all converged"
-    yield (
-        f"{name}: {dataset.points} points, {converged}; within {errors.max():.1e}{scale} everywhere"
-    )
+    yield f"{name}: {dataset.points} points, {converged}; within {errors.max():.1e} everywhere"
     over = int((errors > dataset.error).sum())
     if over:
         yield f"  {over} of {len(errors)} cells are not within {dataset.error:g}"
 
 
-def is_of_drift(dataset: xr.Dataset) -> bool:
-    """Return True for a certified map of the velocity under a force."""
-    return COORDINATES in dataset.attrs and "force" in dataset.attrs.get("directions", "").split()
-
-
-def coordinates_in(dataset: xr.Dataset) -> MapCoordinates | DriftCoordinates:
+def coordinates_in(dataset: xr.Dataset) -> MapCoordinates:
     """Read the coordinates of a map.  Raises KeyError or ValueError if the dataset has no
     coordinates of this kind."""
-    kind = DriftCoordinates if is_of_drift(dataset) else MapCoordinates
-    return kind.from_json(dataset.attrs[COORDINATES])
+    return MapCoordinates.from_json(dataset.attrs[COORDINATES])
 
 
-def _borders(coordinates: MapCoordinates | DriftCoordinates, cells: Sequence[Cell]) -> dict:
+def _borders(coordinates: MapCoordinates, cells: Sequence[Cell]) -> dict:
     """Return the variables with the lower and upper ends of the cells, in scaled coordinates."""
     ends, borders = np.array(cells), {}  # ends: (cell, lower or upper, direction)
     for i, direction in enumerate(coordinates.directions):

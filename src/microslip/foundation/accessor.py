@@ -41,10 +41,9 @@ class _AfterXarray:
 
 
 def _register(xarray: Any) -> None:
-    for name, function in (("microslip", "accessor"), ("friction", "Friction")):
+    def of_dataset(dataset: Any) -> Any:
+        return import_module("microslip.datasets.query.accessor").Friction(dataset)
 
-        def of_dataset(dataset: Any, function: str = function) -> Any:
-            return getattr(import_module("microslip.datasets.query.accessor"), function)(dataset)
-
+    for name in ("microslip", "friction"):
         if not hasattr(xarray.Dataset, name):  # the package may be imported anew
             xarray.register_dataset_accessor(name)(of_dataset)

@@ -16,14 +16,11 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 from itertools import product
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
 from microslip.sweeps.map_coordinates import MapCoordinates
-
-if TYPE_CHECKING:
-    from microslip.sweeps.drift_coordinates import DriftCoordinates
 
 SHARE = 0.1
 """Ratio of a cell's polynomial error to its surplus, calibrated by benchmarks/certified.py."""
@@ -90,19 +87,17 @@ class Refinement:
     missing: tuple[Node, ...]
 
 
-def first_cells(coordinates: MapCoordinates | DriftCoordinates) -> list[Cell]:
+def first_cells(coordinates: MapCoordinates) -> list[Cell]:
     """Create one cell for each patch of a map."""
     return [Cell(*patch) for patch in coordinates.patches]
 
 
-def refine_cells(
-    coordinates: MapCoordinates | DriftCoordinates, answers: Answers, error: float
-) -> Refinement:
+def refine_cells(coordinates: MapCoordinates, answers: Answers, error: float) -> Refinement:
     """Refine a map as far as the results at the nodes allow.
 
     Parameters
     ----------
-    coordinates : MapCoordinates or DriftCoordinates
+    coordinates : MapCoordinates
         Coordinates of the map.
     answers : mapping of Node to (float, float)
         Friction and its error at the solved nodes.

@@ -16,18 +16,15 @@ from microslip.config.extended import solver_names
 from microslip.config.records import CertifiedMap
 from microslip.foundation import named_files
 from microslip.sweeps.batches import answer, gather, points_of
-from microslip.sweeps.drift_coordinates import DriftCoordinates, scaled_velocity
 from microslip.sweeps.map_cells import Answers, Node, Refinement, refine_cells
 from microslip.sweeps.map_coordinates import MapCoordinates
 from microslip.sweeps.store import Store
 from microslip.theory.kinks import kinks_of
 
 
-def coordinates_of(map_: CertifiedMap) -> MapCoordinates | DriftCoordinates:
+def coordinates_of(map_: CertifiedMap) -> MapCoordinates:
     """Scaled coordinates of a certified map."""
     motion, pressure = solver_names(map_.sweep)
-    if map_.force is not None:
-        return DriftCoordinates(motion, map_.force, map_.amplitude)
     kinks = kinks_of(motion, pressure)
     return MapCoordinates(map_.velocity, map_.amplitude, kinks, map_.poisson)
 
@@ -47,9 +44,8 @@ def refine(
     Returns
     -------
     answers : dict of tuple to (float, float)
-        Value and error at each node.  They depend only on the records.  The value is friction or,
-        under a force, the scaled velocity.  If the point did not converge, the value is NaN and the
-        error is infinite.
+        Friction and its error at each node.  They depend only on the records.  If the point did
+        not converge, the value is NaN and the error is infinite.
     refinement : Refinement
         The cells.
     """
@@ -57,29 +53,22 @@ def refine(
     answers: dict[Node, tuple[float, float]] = {}
     while nodes := (state := refine_cells(coordinates, answers, map_.error)).missing:
         requests = [_request(map_, coordinates, node) for node in nodes]
-        for node, request, record in zip(nodes, requests, ask(requests), strict=True):
-            answers[node] = _answer(request, record["result"])
+        for node, record in zip(nodes, ask(requests), strict=True):
+            answers[node] = _answer(record["result"])
     return answers, state
 
 
-def _request(
-    map_: CertifiedMap, coordinates: MapCoordinates | DriftCoordinates, node: tuple[float, ...]
-) -> dict:
+def _request(map_: CertifiedMap, coordinates: MapCoordinates, node: tuple[float, ...]) -> dict:
     """Request for a node.  It equals a sweep's request for the same point."""
     place = dict(zip(coordinates.directions, coordinates.place(node), strict=True))
-    point: dict = {"velocity": (0.0,)}
-    if "force" in place:
-        point = {"velocity": (), "drives": (("force", (place.pop("force"),), True),)}
-    point |= {name: (value,) for name, value in place.items()}
+    point: dict = {"velocity": (0.0,)} | {name: (value,) for name, value in place.items()}
     (request,) = points_of(replace(map_.sweep, tolerance=map_.tolerance, **point)).requests
     return request
 
 
-def _answer(request: dict, result: dict) -> tuple[float, float]:
+def _answer(result: dict) -> tuple[float, float]:
     if not result.get("converged", False):
         return math.nan, math.inf
-    if "force" in request:
-        return scaled_velocity(result["velocity"], result["velocity_error"])
     return result["mu_macro"], result["mu_macro_error"]
 
 

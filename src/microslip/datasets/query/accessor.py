@@ -13,7 +13,6 @@ import numpy as np
 import xarray as xr
 
 from microslip.adaptive.point import solve
-from microslip.datasets import certified_map
 from microslip.datasets.catalogue import FORMS
 from microslip.datasets.query import beyond, cells, inverse
 from microslip.datasets.query.answers import (
@@ -32,7 +31,6 @@ from microslip.datasets.query.answers import (
 )
 from microslip.datasets.query.cells import Map
 from microslip.datasets.query.coordinates import coordinate_array, evaluate, grid_axes
-from microslip.datasets.query.drift import Drift
 from microslip.datasets.query.nodes import nodes_of, poisson_within, refuse_values, tables_at
 from microslip.datasets.query.solver import drive_of
 from microslip.datasets.variables import variable
@@ -59,11 +57,6 @@ class Maps(NamedTuple):
     poisson: float
     moving: Map | None
     still: Map | None
-
-
-def accessor(dataset: xr.Dataset) -> Friction | Drift:
-    """Return the accessor of a dataset: Drift for a certified map over forces, else Friction."""
-    return Drift(dataset) if certified_map.is_of_drift(dataset) else Friction(dataset)
 
 
 class Friction:

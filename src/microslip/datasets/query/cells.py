@@ -12,7 +12,6 @@ from microslip.datasets import certified_map
 from microslip.datasets.query.answers import LOST
 from microslip.datasets.query.interpolation import Axis, Table, lagrange
 from microslip.foundation.errors import InputError
-from microslip.sweeps.drift_coordinates import DriftCoordinates
 from microslip.sweeps.map_coordinates import MapCoordinates
 
 EDGE = 97
@@ -35,14 +34,13 @@ class CellTable:
 
     Attributes
     ----------
-    coordinates : MapCoordinates or DriftCoordinates
+    coordinates : MapCoordinates
         Scaled coordinates of the map.
     borders : numpy.ndarray, shape (k, directions, 2)
         Lower and upper ends of the cells, in scaled coordinates.
     nodes : numpy.ndarray, shape (k, 5, 5) or (k, 5, 5, 3)
         Friction at the nodes of each cell.  The axes are the cells, velocity and amplitude.
-        Poisson's ratio is the last axis if it is a direction of the map.  A map of drift has
-        asinh(velocity) instead of friction.
+        Poisson's ratio is the last axis if it is a direction of the map.
     bounds : numpy.ndarray, shape (k,)
         Error bound for each cell.
     ratios : numpy.ndarray, shape (1,) or (2,)
@@ -51,7 +49,7 @@ class CellTable:
         Poisson's ratio at which the map is evaluated, if Poisson's ratio is a direction of the map.
     """
 
-    coordinates: MapCoordinates | DriftCoordinates
+    coordinates: MapCoordinates
     borders: np.ndarray
     nodes: np.ndarray
     bounds: np.ndarray
@@ -140,24 +138,21 @@ def cells_of(dataset: xr.Dataset) -> CellTable:
     """
     coordinates = _coordinates_in(dataset)
     names = [certified_map.BORDERS[direction] for direction in coordinates.directions]
-    drifts = certified_map.is_of_drift(dataset)
-    quantity = "velocity" if drifts else "mu_macro"
-    names_needed = (quantity, f"{quantity}_error", "poisson", "cell_node", "cell_error")
+    names_needed = ("mu_macro", "mu_macro_error", "poisson", "cell_node", "cell_error")
     for name in (*names_needed, *sum(names, ())):
         if name not in dataset.variables:
             raise InputError(name, None, LOST)
-    values = dataset[quantity].values
+    values = dataset["mu_macro"].values
     cell_nodes = dataset["cell_node"].values.astype(int)
     if cell_nodes.max() >= len(values):
         raise InputError("point", len(values), "allowed are all points of the dataset")
     borders = np.stack([[dataset[name].values for name in pair] for pair in names])
-    interpolated = np.arcsinh(values) if drifts else values
-    nodes = interpolated[cell_nodes].reshape(-1, *(n + 1 for n in coordinates.degrees))
+    nodes = values[cell_nodes].reshape(-1, *(n + 1 for n in coordinates.degrees))
     bounds, ratios = dataset["cell_error"].values, coordinates.poisson or dataset["poisson"].values
     return CellTable(coordinates, borders.transpose(2, 0, 1), nodes, bounds, np.atleast_1d(ratios))
 
 
-def _coordinates_in(dataset: xr.Dataset) -> MapCoordinates | DriftCoordinates:
+def _coordinates_in(dataset: xr.Dataset) -> MapCoordinates:
     try:
         return certified_map.coordinates_in(dataset)
     except (KeyError, TypeError, ValueError):

@@ -1,7 +1,4 @@
-"""Figure of a certified map: friction, cells and points of the map, and error bounds of the cells.
-
-For a certified drift map, the figure shows the velocity under a force instead of friction.
-"""
+"""Figure of a certified map: friction, cells and points, and error bounds of the cells."""
 
 from __future__ import annotations
 
@@ -14,14 +11,11 @@ from matplotlib.figure import Figure
 from microslip.datasets import certified_map
 from microslip.datasets.query.accessor import Friction
 from microslip.datasets.query.cells import is_static
-from microslip.datasets.query.drift import Drift
 from microslip.report.figures import panels
 from microslip.report.figures import style as look
-from microslip.report.figures.drift import REST, THRESHOLD, velocity_bands, velocity_bar
 from microslip.report.figures.formulas import axis_label
 from microslip.report.figures.groups import CONTOURS
 from microslip.report.figures.map_panel import fill
-from microslip.sweeps.drift_coordinates import DriftCoordinates
 
 BOUND = "error estimate,\nthousandths  (dimensionless)"
 DIMENSIONLESS = "(dimensionless)"
@@ -38,56 +32,35 @@ def draw(name: str, dataset: xr.Dataset) -> Figure:
     A map with several Poisson's ratios is drawn at the smallest ratio. A map of the static limit is
     drawn as a line.
     """
-    if is_static(dataset) and not certified_map.is_of_drift(dataset):
+    if is_static(dataset):
         return _lines(dataset)
     figure = look.new_figure(look.DOUBLE, 3.1)
     left, right = figure.subplots(1, 2, sharex=True, sharey=True)
     poisson = float(dataset["poisson"].min())
-    if certified_map.is_of_drift(dataset):
-        across, bound = "force", r"error estimate divided by $\sqrt{1 + v^2}$"
-        _drift(left, right, dataset)
-    else:
-        across, bound = "velocity", "error estimate"
-        grid = Friction(dataset).on_grid(NODES, NODES, poisson=poisson)
-        grid = grid.assign(converged=np.isfinite(grid["mu_macro"]))
-        filled, *_ = fill(left, grid, lines=CONTOURS)
-        panels.colour_bar(filled, left, look.FRICTION, aspect=20, ticks=np.linspace(0, 1, 6))
-    errors = _show_cells(right, dataset, _points(dataset, poisson), across)
+    grid = Friction(dataset).on_grid(NODES, NODES, poisson=poisson)
+    grid = grid.assign(converged=np.isfinite(grid["mu_macro"]))
+    filled, *_ = fill(left, grid, lines=CONTOURS)
+    panels.colour_bar(filled, left, look.FRICTION, aspect=20, ticks=np.linspace(0, 1, 6))
+    errors = _show_cells(right, dataset, _points(dataset, poisson))
     panels.colour_bar(errors, right, BOUND, aspect=20)
     ratio = rf" at $\nu = {look.number(poisson)}$" if poisson or _is_deep(dataset) else ""
     panels.heading(left, f"{_points_of(dataset)}, {len(dataset['cell_error'])} cells")
-    panels.heading(right, bound + ratio)
+    panels.heading(right, "error estimate" + ratio)
     left.set_ylabel(axis_label(dataset, "amplitude", DIMENSIONLESS))
     for axes in (left, right):
-        axes.set_xlabel(axis_label(dataset, across, DIMENSIONLESS))
+        axes.set_xlabel(axis_label(dataset, "velocity", DIMENSIONLESS))
         panels.ticks_outside(axes)
     return figure
 
 
-def _drift(left: Axes, right: Axes, dataset: xr.Dataset) -> None:
-    """Draw the velocity as a function of force and amplitude, grey where the contact is at rest."""
-    coordinates = certified_map.coordinates_in(dataset)
-    assert isinstance(coordinates, DriftCoordinates)  # maps of drift have these coordinates
-    force = np.linspace(0.0, coordinates.force, NODES)
-    grid = Drift(dataset).on_grid(force, NODES)
-    amplitude = grid["amplitude"].values
-    filled, _ = velocity_bands(left, force, amplitude, grid["velocity"].values)
-    velocity_bar(filled, left)
-    threshold = np.minimum(grid["threshold"].values[:, 0], coordinates.force)
-    for axes in (left, right):
-        axes.fill_betweenx(amplitude, 0.0, threshold, **REST)
-    left.plot(threshold, amplitude, gid="threshold", **THRESHOLD)
-    left.set(xlim=(0.0, coordinates.force), ylim=coordinates.amplitude)
-
-
-def _show_cells(axes: Axes, dataset: xr.Dataset, at: xr.Dataset, across: str) -> PolyCollection:
+def _show_cells(axes: Axes, dataset: xr.Dataset, at: xr.Dataset) -> PolyCollection:
     """Draw cells in the colours of their error bounds, and the computed points.
 
-    at: dataset of the points; across: variable of the abscissa. Returns the artist of the cells.
+    at: dataset of the points. Returns the artist of the cells.
     """
     outlines, errors = _cells(dataset)
     ink: look.Ink = {"color": look.VERMILLION, "ms": 2.2, "clip_on": False, "gid": "points"}
-    axes.plot(at[across], at["amplitude"], ".", **ink)
+    axes.plot(at["velocity"], at["amplitude"], ".", **ink)
     shades = PolyCollection(outlines, array=1e3 * errors, cmap=look.COLOURMAP, gid="errors")
     shades.set(edgecolors="white", linewidths=0.6, clim=(0.0, 1e3 * float(dataset.attrs["error"])))
     axes.add_collection(shades)
