@@ -92,7 +92,7 @@ NAMES = [
         f"{TRANSVERSE} --method shiped",
         "--method = 'shiped'",
         "did you mean shipped?",
-        "projected-gradient,",
+        "march,",
     ),
     (f"{TRANSVERSE} --method ../euler", "--method = '../euler'", "allowed is one of shipped,"),
     (

@@ -432,8 +432,6 @@ Block = Literal[
     "centre",
     "rotation-centre",
     "reversal",
-    "penalty",
-    "relaxation",
     "step-length",
 ]
 
