@@ -76,17 +76,15 @@ GRID = "--load '10..20 N, 2' --speed '5..20 mm/s, 3' --amplitude '0.1..0.4 um, 3
 
 
 @pytest.fixture(scope="module")
-def files(tmp_path_factory):
-    """A table of three axes as CSV, and as text for Modelica."""
-    folder = tmp_path_factory.mktemp("table")
-    for name in ("friction.csv", "friction.txt"):
-        command = f"table transverse {VIBRATED} {GRID} --output {folder / name}"
-        assert cli.main(["export", *shlex.split(command)]) == 0
-    return pd.read_csv(folder / "friction.csv", comment="#"), (folder / "friction.txt").read_text()
+def frame(tmp_path_factory):
+    """A table of three axes."""
+    file = tmp_path_factory.mktemp("table") / "friction.csv"
+    command = f"table transverse {VIBRATED} {GRID} --output {file}"
+    assert cli.main(["export", *shlex.split(command)]) == 0
+    return pd.read_csv(file, comment="#")
 
 
-def test_a_table_has_the_predictions_with_their_errors(files):
-    frame, _ = files
+def test_a_table_has_the_predictions_with_their_errors(frame):
     axes, force = ["load [N]", "speed [m/s]", "amplitude [m]"], "friction_force [N]"
     columns = ["mu_apparent", "mu_apparent_error", force, "friction_force_error [N]"]
     assert list(frame.columns) == axes + columns and len(frame) == 18
@@ -96,44 +94,6 @@ def test_a_table_has_the_predictions_with_their_errors(files):
     alone = microslip.predict("transverse", **SAME, **quantities, frequency=2e4, tolerance=0.01)
     assert row[force] == pytest.approx(alone.friction_force_N, rel=1e-12)
     assert row["mu_apparent_error"] == pytest.approx(alone.mu_apparent_error, rel=1e-9)
-
-
-def tables_of(text):
-    """Tables of a file for Modelica: numbers in the order of rows, and # before comments."""
-    lines = [line.partition("#")[0].strip() for line in text.splitlines()[1:]]
-    words = " ".join(lines)
-    found = re.findall(r"double (\w+)\((\d+),(\d+)\)([^a-z(]*(?:e[^a-z(]*)*)", words)
-    return {
-        name: np.array(numbers.split(), float).reshape(int(rows), int(columns))
-        for name, rows, columns, numbers in found
-    }
-
-
-def test_tables_for_modelica_have_the_values_of_the_csv(files):
-    frame, text = files
-    assert text.startswith("#1\n")
-    tables = tables_of(text)
-    heads = {head.partition(" ")[0]: head for head in frame.columns[3:]}
-    assert tables.keys() == {f"{name}_{number}" for name in heads for number in (1, 2, 3)}
-    for name, head in heads.items():
-        values = frame[head].values.reshape(2, 3, 3)
-        for number in range(3):
-            table = tables[f"{name}_{number + 1}"]
-            assert table[1:, 0].tolist() == [10.0, 20.0]  # u1: load
-            assert table[0, 1:] == pytest.approx([0.005, 0.0125, 0.02])  # u2: speed
-            assert table[0, 0] == 0.0
-            assert table[1:, 1:] == pytest.approx(values[:, :, number], rel=1e-14)
-
-
-def test_one_axis_gives_one_table_with_columns(tmp_path, capsys):
-    file = tmp_path / "friction.txt"
-    axis = "--load '10 N' --amplitude '0.2 um' --speed '5..20 mm/s, 4'"
-    assert run(capsys, f"table transverse {VIBRATED} {axis} --output {file}")[0] == 0
-    (table,) = tables_of(file.read_text()).values()
-    assert table[:, 0] == pytest.approx([0.005, 0.01, 0.015, 0.02])
-    assert table[:, 3] == pytest.approx(10.0 * table[:, 1])  # force and coefficient of friction
-    code, out, _ = run(capsys, f"table transverse {VIBRATED} {axis} --json")
-    assert [row["mu_apparent"] for row in json.loads(out)] == pytest.approx(table[:, 1])
 
 
 def test_interpolated_friction_is_within_the_stated_difference(capsys):
@@ -167,7 +127,7 @@ STILL = f"{VIBRATED} --load '10 N' --speed '1 mm/s'"
         (f"iwan {STEEL} --load '1 N' --radius-across '8 mm'", ("--radius-across", "nu = 0")),
         ("iwan --output a.txt", ("--output = 'a.txt'", ".csv")),
         (f"table transverse {STILL}", ("--amplitude", "range")),
-        (f"table transverse {VIBRATED} {GRID} --output a.nc", ("--output = 'a.nc'", ".txt")),
+        (f"table transverse {VIBRATED} {GRID} --output a.nc", ("--output = 'a.nc'", ".csv")),
         (f"table sideways {VIBRATED} {GRID}", ("MOTION = 'sideways'",)),
         (f"table transverse {VIBRATED} {GRID} --map nowhere.nc", ("--map", "not there")),
         (

@@ -46,7 +46,7 @@ def test_the_dataset_names_every_computer_that_it_was_timed_on():
     def timed(request):
         result = accuracy_result(request)
         if "seconds" in result:
-            host = "a" if request["kind"] == "scaling" else "b"
+            host = "a" if request["kind"] == "choice" else "b"
             result["machine"] = {"cpu": "AMD EPYC 7B13", "host": host, "threads": 1}
         return result
 
@@ -131,21 +131,6 @@ def test_where_no_model_is_good_enough_the_map_is_empty():
     data = registry.build("accuracy", configured(), answered(result)[0])
     assert (data.bore_cheapest == "").all()
     assert np.isnan(data.bore_cheapest_seconds).all()
-
-
-def test_the_cost_of_a_step_and_its_exponents():
-    data = registry.build("accuracy", configured({"levels": 6}), answered(accuracy_result)[0])
-    assert list(data.scaling_model.values) == ["radial", "polar", "cartesian"]
-    polar = data.sel(scaling_model="polar")
-    assert list(polar.scaling_label.values[:4]) == ["8 x 8", "16 x 16", "32 x 32", "64 x 64"]
-    assert np.isnan(polar.scaling_seconds.values[4:]).all()
-    assert data.scaling_label.values[0, 0] == "16"
-    assert data.scaling_label.values[2, 5] == "512 x 512"
-    assert data.scaling_exponent_iterations.values == pytest.approx([0.5] * 3)
-    assert data.scaling_exponent_seconds.values == pytest.approx([2.0] * 3)
-    assert data.scaling_exponent_memory.values == pytest.approx([1.0] * 3)
-    assert data.scaling_seconds.attrs["units"] == "s"
-    assert data.scaling_memory.attrs["units"] == "byte"
 
 
 # Outcomes of probes

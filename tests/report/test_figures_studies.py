@@ -142,21 +142,6 @@ def test_the_map_colours_and_names_every_region_of_the_cheapest_model():
     assert axes.get_yscale() == "linear" and len(artists(axes, "region")) == 1
 
 
-def test_scaling_shows_the_sizes_and_the_exponents(accuracy):
-    data = accuracy.copy(deep=True)
-    data["scaling_exponent_memory"][1] = np.nan
-    data["scaling_iterations"][0, 1] = np.nan
-    figure = drawing.draw("scaling", {"accuracy_cost": data})
-    for axes, what in zip(figure.axes, ("iterations", "seconds", "memory"), strict=True):
-        for index, line in enumerate(artists(axes, what)):
-            x, y = (data[f"scaling_{n}"].values[index] for n in ("unknowns", what))
-            finite = np.isfinite(x) & np.isfinite(y)
-            np.testing.assert_array_equal(np.sort(line.get_xdata()), np.sort(x[finite]))
-            np.testing.assert_array_equal(np.sort(line.get_ydata()), np.sort(y[finite]))
-            exponent = float(data[f"scaling_exponent_{what}"][index])
-            assert (f"{exponent:.2f}" in line.get_label()) == np.isfinite(exponent)
-
-
 def test_the_atlas_shows_every_outcome(stability):
     data = stability.copy(deep=True)
     data["outcome"][:] = np.arange(data["outcome"].size).reshape(data["outcome"].shape) % 5

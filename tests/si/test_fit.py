@@ -16,7 +16,6 @@ from microslip.si.fitting.friction_models import SolvedFriction
 from microslip.si.fitting.measured import Measured
 from microslip.si.fitting.scales import Modulus, Points
 from microslip.si.materials import RIGID, Material
-from microslip.si.motions import MOTIONS
 from microslip.theory import paper
 
 MU, U_LIM, LOAD, FREQUENCY = 0.3, 2e-7, 10.0, 1e3
@@ -100,19 +99,17 @@ def test_rows_that_share_no_condition_have_no_curve(closed):
 # Dimensionless groups
 
 
-@pytest.mark.parametrize("motion", ["transverse", "bore"])
 @pytest.mark.parametrize("alike", [False, True])
-def test_rows_are_the_points_of_predict_under_every_load(motion, alike):
+def test_rows_are_the_points_of_predict_under_every_load(alike):
     load, size = np.array([5.0, 10.0, 40.0]), np.array([1e-7, 3e-7, 1e-6])
-    size = size if motion == "transverse" else size * 1e4
     speed, frequency = np.array([1e-3, 1e-2, 0.1]), np.array([10.0, 1e3, 2e4])
     rows = Measured(speed, size, frequency, load, load, load, "friction", {})
-    scale = Modulus(rows, 0.3, motion == "bore", alike, 5e-3)
+    scale = Modulus(rows, 0.3, alike, 5e-3)
     points = scale.points(0.25, 80e9)
     body = Material(2.0 * 80e9 * 1.3, 0.3)
     for k in range(3):
         contact = TwoBodies(body, body if alike else RIGID, 5e-3, load[k], 0.25)
-        real = RealMotion(motion, MOTIONS[motion].unit, speed[k], size[k], frequency[k])
+        real = RealMotion("transverse", "m", speed[k], size[k], frequency[k])
         expected = MovingContact(contact, real).groups
         assert (points.velocity[k], points.amplitude[k]) == pytest.approx(expected, rel=1e-12)
 
@@ -262,8 +259,7 @@ def test_a_table_that_cannot_be_used_is_refused(closed, change, message):
 @pytest.mark.parametrize(
     ("motion", "more", "message"),
     [
-        ("bore", {}, "radius"),
-        ("continuous-bore", {}, "allowed is one of transverse"),
+        ("bore", {}, "allowed is one of transverse"),
         ("transverse", {"counterbody": "same"}, "with a radius"),
         ("transverse", {"radius": "5 mm"}, "nu"),
         ("transverse", {"radius": "5 mm", "nu": 0.3, "counterbody": "glass"}, "rigid or same"),

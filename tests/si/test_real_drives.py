@@ -1,4 +1,4 @@
-"""Contacts in SI units under a force or on a spring: groups, scaling laws, limits, regimes."""
+"""Contacts in SI units under a force or on a spring: groups, scaling laws, limits."""
 
 import json
 import math
@@ -17,7 +17,7 @@ from microslip.si import drive_result, request
 from microslip.si.bodies import TwoBodies
 from microslip.si.dimensionless import MovingContact, RealDrive, RealMotion
 from microslip.si.materials import RIGID, Material
-from microslip.si.regimes import SAME, natural_frequency, regime
+from microslip.si.predict import natural_frequency
 from microslip.theory import paper
 
 BALL = {"radius": "5 mm", "load": "10 N", "mu": 0.3, "young": "210 GPa", "nu": 0.0}
@@ -95,7 +95,7 @@ def test_answers_know_no_units(pulls):
     for name, (length, time, mass) in dimensions.items():
         factor = LENGTH**length * TIME**time * MASS**mass
         assert one[name] is None or other[name] == pytest.approx(one[name] * factor, rel=1e-6), name
-    assert (one["outcome"], one["regime"]) == (other["outcome"], other["regime"])
+    assert one["outcome"] == other["outcome"]
 
 
 # Under a force
@@ -231,40 +231,6 @@ def test_a_steady_spin_gives_way_to_any_force():
 # Through a spring
 
 
-EDGES = [
-    ("velocity", "transverse", 0.5, 3.0, 15.1, 0.0),
-    ("velocity", "transverse", 0.3, 1.5, 0.03, 3.8),
-    ("velocity", "zigzag", 0.3, 1.5, 15.1, 0.0),
-    ("velocity", "longitudinal", 0.1, 1.0, 151.0, 0.0),
-    ("velocity", "longitudinal", 0.1, 1.0, 0.1, 151.0),
-    ("force", "transverse", 2.0, 10.0, 0.0029, 0.0),
-    ("force", "transverse", 1.28, 0.743, 1e-3, 0.0074),
-]
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize(
-    ("expected", "motion", "velocity", "amplitude", "stiffness", "mass"), EDGES
-)
-def test_at_the_edge_of_a_regime_friction_is_as_its_words_say(
-    expected, motion, velocity, amplitude, stiffness, mass
-):
-    """Drives just within a limit have the friction of the limit.
-
-    The friction at a constant velocity and under a constant force differ by more than SAME.  Under
-    a force along the vibration all of friction remains.
-    """
-    drive = Spring(stiffness, mass)
-    assert regime(motion, amplitude, drive) == expected
-    result = microslip.solve(motion, velocity, amplitude, stiffness=stiffness, mass=mass)
-    limits = {"velocity": microslip.solve(motion, velocity, amplitude).mu_macro, "force": 1.0}
-    if motion != "longitudinal":
-        limits["force"] = microslip.solve(motion, velocity, amplitude, stiffness=1e-4).mu_macro
-    assert result.converged
-    assert result.mu_macro == pytest.approx(limits[expected], abs=SAME)
-    assert abs(limits["velocity"] - limits["force"]) > SAME
-
-
 def test_a_body_beyond_what_the_solver_takes_swings_as_it_did():
     """Stiffness and mass are scaled by one factor, which keeps the natural frequency."""
     requests = drive_result.within_range({"stiffness": 4e9, "mass": 1e9, "damping": 3.0})
@@ -294,11 +260,8 @@ def test_a_refusal_of_the_solver_names_the_argument_of_predict(monkeypatch, argu
     assert error.allowed == "dimensionless 2e+06: allowed is at most 1e+06"
 
 
-def test_between_stiff_and_soft_it_may_resonate():
-    assert regime("transverse", 1.0, Spring(1.0, 1.0)) == "between"
-    # a spring and a mass in resonance with twice the vibration have no stiffness
-    assert regime("transverse", 1.0, Spring(400.0, 100.0)) == "between"
-    assert regime("transverse", 1.0, Spring(400.0, 100.0, 50.0)) == "velocity"
+def test_the_natural_frequency_is_that_of_the_mass_on_both_springs():
+    """sqrt((k + 3/2) / m): a sticking Hertz contact has the stiffness 3/2."""
     assert natural_frequency(Spring(2.5, 1.0)) == 2.0
     assert natural_frequency(Spring(2.5)) is None
 
@@ -320,10 +283,10 @@ def test_the_command_line_says_what_comes_of_a_force(capsys):
     away = said(capsys, *words, "--force", "4 N", code=1)
     assert "it runs away: friction holds at most 3 N" in away and "CONVERGED" not in away
     words += ["--speed", "1 mm/s", "--drive-stiffness", "10 N/um", "--mass", "20 g"]
-    assert "stiff or heavy: the velocity is nearly constant" in said(capsys, *words)
+    assert "natural frequency" in said(capsys, *words)
     result = json.loads(said(capsys, *words, "--json"))
     assert (result["mass_kg"], result["drive_stiffness_N_m"]) == (0.02, 1e7)
-    assert result["regime"] == "velocity" and result["outcome"] is None
+    assert result["outcome"] is None
 
 
 def test_a_contact_that_goes_along_with_the_vibration_has_the_threshold_of_what_is_left():

@@ -78,9 +78,6 @@ def untimed(request):
     """Results with errors of 0.1/cells^2, times of cells * 1e-3 s and work of cells^2. The slider
     has an error of 0.005 and takes 1e-5 s."""
     kind = request["kind"]
-    if kind == "scaling":
-        n = request["cells"] * request["angles"]
-        return {"unknowns": 2 * n, "iterations": n**0.5, "seconds": 1e-6 * n**2, "memory": 8 * n}
     if kind == "point":
         return {"mu_macro": mu_of(request), "mu_macro_error": 2e-4, "converged": True} | {
             "model": "radial",

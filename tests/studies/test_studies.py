@@ -113,11 +113,9 @@ def test_another_method_adds_jobs_and_changes_none(study):
 def test_what_takes_long_starts_first():
     long, short = registry.pieces("accuracy", configured({"levels": 6}))
     early = [request for piece in long for request in piece]
-    assert {request["kind"] for request in early} == {"point", "scaling", "trial"}
+    assert {request["kind"] for request in early} == {"point", "trial"}
     assert all(r["cells"] >= 64 for r in early if r["kind"] == "trial")
     assert all(len(piece) == 1 for piece in long if piece[0]["kind"] == "point")
-    largest = [piece for piece in long if piece[0].get("cells") == 512]
-    assert len(largest) == 2 and all(len(piece) == 1 for piece in largest)
     later = [request for piece in short for request in piece]
     assert not [r for r in later if r.get("model") == "cartesian" and r.get("cells", 0) >= 64]
 
@@ -197,14 +195,13 @@ def test_a_time_is_the_median_after_a_first_call(monkeypatch):
     assert (clock.calls, seconds) == (6, pytest.approx(0.2))
 
 
-@pytest.mark.parametrize("kind", ["trial", "choice", "scaling"])
+@pytest.mark.parametrize("kind", ["trial", "choice"])
 def test_times_say_on_which_computer_they_were_measured(monkeypatch, kind):
     Trials(monkeypatch)
     study = configured().accuracy
     request = {
         "trial": trial_request(),
         "choice": study_requests.choice(study.points["mid"], 1e-3, 1),
-        "scaling": accuracy_cost.scaling(study, "radial")[0],
     }[kind]
     monkeypatch.setenv("OPENBLAS_NUM_THREADS", "3")
     machine = evaluate.computed(request)["machine"]
@@ -244,7 +241,7 @@ class Trials(Solver):
     def __init__(self, monkeypatch, **settings):
         super().__init__(monkeypatch, **settings)
         self.asked = []
-        for name in ("applies", "run_trial", "measure_steps"):
+        for name in ("applies", "run_trial"):
             monkeypatch.setattr(f"microslip.adaptive.single_run.{name}", getattr(self, name))
 
     def applies(self, motion, poisson, model, method, pressure="hertz"):
@@ -256,10 +253,6 @@ class Trials(Solver):
         mu = velocity / (1 + velocity + (amplitude or 0)) + 1 / settings["cells"] ** 2
         work = np.int64(settings["cells"] * settings["angles"] * settings["steps"])
         return {"mu_macro": mu, "converged": True, "reason": "", "effort": work, "unknowns": 4}
-
-    def measure_steps(self, model, cells, angles, poisson, steps):
-        n = cells * angles
-        return {"unknowns": 2 * n, "iterations": 3.0, "seconds": 1e-6 * n**2, "memory": 8 * n**3}
 
 
 def trial_request(**changes):

@@ -5,7 +5,7 @@ bytes of studies.
   NAME.nc            a sweep: dims (amplitude, velocity), as far as the motion has them, after
                      mass, damping, stiffness, poisson if these are axes; force replaces velocity
   certified_NAME.nc  dims point, cell, node
-  accuracy_cost.nc   dim trial; groups points, scaling, transverse_map, bore_map, profile
+  accuracy_cost.nc   dim trial; groups points, transverse_map, bore_map, profile
   stability.nc       dims (method, case); group axes
   claims.nc          dim claim; groups parts, checks, runs, static limit, patches
 Variables with other axes are in groups of the file.  An HTML page summarises the file.

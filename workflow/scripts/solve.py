@@ -2,7 +2,7 @@
 certified map.
 
 Output: the records of the batch in the order of the requests, as JSON lines.  All numbers in them
-are dimensionless, except times (s) and memory (byte) of trials and scaling.  As soon as a record is
+are dimensionless, except times (s) of trials.  As soon as a record is
 computed, it is also stored in a folder of batches.FOLDERS.
 """
 

@@ -1,4 +1,4 @@
-"""Single runs of a model and a method at one resolution, and the cost of a step.
+"""Single runs of a model and a method at one resolution.
 
 Single runs are used to compare methods.  The results do not include an estimate of the
 discretisation error.
@@ -6,27 +6,16 @@ discretisation error.
 
 from __future__ import annotations
 
-import time
-from statistics import median
-
-import numpy as np
-
 from microslip.adaptive.choice import method_refusal
-from microslip.models.contact import forward_slip
-from microslip.models.path import EULER, half_period_phases, make_path
 from microslip.models.registry import MODELS
 from microslip.motions.by_name import motion_named
-from microslip.motions.named import Bore, Transverse
 from microslip.motions.problem import Problem
 from microslip.pressures.by_name import pressure_named
 from microslip.pressures.hertz import HERTZ
-from microslip.solver.discretise import Resolution, contact_of
+from microslip.solver.discretise import Resolution
 from microslip.solver.method_names import method_named, missing
 from microslip.solver.run import Settings
 from microslip.solver.simulate import simulate
-
-STEP_TOLERANCE = 1e-6
-"""Step tolerance in measurements of the cost, as a force divided by mu F_z."""
 
 
 def applies(
@@ -104,59 +93,3 @@ def run_trial(
         "work": effort.work,
         "effort": effort.updates,
     }
-
-
-def measure_steps(model: str, cells: int, angles: int, poisson: float, steps: int) -> dict:
-    """Measure the cost of a backward Euler step.
-
-    The march starts from full slip and covers half a period.  The motion is transverse for rings
-    and bore for all other models.  The time is the median of three marches.  A first march compiles
-    the code.
-
-    Parameters
-    ----------
-    model : str
-        Name in models.registry.MODELS.
-    cells, angles, steps : int
-        Numbers of rings, of angular points, and of steps in half a period.
-    poisson : float
-        Poisson's ratio.
-
-    Returns
-    -------
-    dict
-        Number of unknowns, iterations per step, CPU time per step in seconds, and memory used by
-        the arrays of the contact in bytes.
-    """
-    problem = Problem(Transverse() if model == "radial" else Bore(), 0.1, 1.0, poisson)
-    contact = contact_of(problem, model, Resolution(cells, angles, steps))
-    path = make_path(problem.displacement, half_period_phases(steps), EULER)
-    start = forward_slip(contact)
-    contact.march(make_path(problem.displacement, path.phase[:2], EULER), start, STEP_TOLERANCE)
-    times = []
-    for _ in range(3):
-        began = time.process_time()
-        march = contact.march(path, start, STEP_TOLERANCE)
-        times.append(time.process_time() - began)
-    return {
-        "unknowns": march.state.size,
-        "iterations": march.iterations / march.solves,
-        "seconds": median(times) / march.solves,
-        "memory": held_bytes(contact),
-    }
-
-
-def held_bytes(thing: object) -> int:
-    """Size in bytes of all arrays that an object refers to, directly or indirectly."""
-    sizes, stack = {}, [thing]
-    while stack:
-        one = stack.pop()
-        if isinstance(one, np.ndarray):
-            base = one if one.base is None else one.base
-            if isinstance(base, np.ndarray):
-                sizes[id(base)] = base.nbytes
-        elif isinstance(one, list | tuple):
-            stack += one
-        elif type(one).__module__.startswith("microslip"):
-            stack += vars(one).values()
-    return sum(sizes.values())

@@ -3,11 +3,10 @@
 from __future__ import annotations
 
 import argparse
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from microslip.app import modelica_text
 from microslip.app.option_parser import StoreSpelling
 from microslip.app.predict_command import GROUPS
 from microslip.app.predicted_table import problem_text
@@ -44,7 +43,7 @@ IWAN_OPTIONS = {
 TABLE_OPTIONS = {
     "tolerance": ("T", "largest accepted absolute error of mu_macro (1e-3)"),
     "map": GROUPS["output"]["map"],
-    "output": ("FILE", "write a .csv file, or a .txt file for Modelica.Blocks.Tables"),
+    "output": ("FILE", "write a .csv file"),
 }
 NO_FRICTION = ("force", "reduction")
 """Options of predict that are left out, because their answer is not the friction."""
@@ -120,7 +119,7 @@ def _iwan(options: argparse.Namespace) -> Answer:
     frame = pd.DataFrame({heading(name, one): getattr(model, name) for name, one in units.items()})
     plain = {name: getattr(model, name).tolist() for name in units}
     plain |= {"error": model.error, "error_on_any_path": model.error_on_any_path}
-    return _answer(options, plain, frame, comments, {})
+    return _answer(options, plain, frame, comments)
 
 
 def _table(options: argparse.Namespace) -> Answer:
@@ -129,7 +128,7 @@ def _table(options: argparse.Namespace) -> Answer:
     from microslip.si.grid import grid_of, interpolation_errors
     from microslip.si.table import predictions
 
-    refuse_output(options.output, endings=(".csv", ".txt"))
+    refuse_output(options.output, endings=(".csv",))
     if options.speed is None:
         raise InputError("speed", None, "needed")
     if options.mass is not None and options.drive_stiffness is None:
@@ -158,9 +157,7 @@ def _table(options: argparse.Namespace) -> Answer:
     frame = dataset.to_dataframe().reset_index()
     plain = frame.to_dict("records")
     frame.columns = [heading(name, dataset[name].attrs["units"]) for name in frame.columns]
-    text = modelica_text.text_of(dataset, comments)
-    writers = {".txt": lambda file: file.write_text(text, encoding="utf-8")}
-    return _answer(options, plain, frame, comments, writers)
+    return _answer(options, plain, frame, comments)
 
 
 def _interpolation_text(errors: Mapping[str, float | None]) -> str:
@@ -188,7 +185,6 @@ def _answer(
     plain: Any,
     frame: pd.DataFrame,
     comments: Sequence[str],
-    writers: dict[str, Callable],
 ) -> Answer:
     """Write the --output file, or print the table as CSV with six digits."""
     if options.output is None:
@@ -200,5 +196,5 @@ def _answer(
             stream.writelines(f"# {one}\n" for one in comments)
             frame.to_csv(stream, index=False, lineterminator="\n")
 
-    write_output(options.output, {".csv": write_csv} | writers)
+    write_output(options.output, {".csv": write_csv})
     return Answer(plain, "\n".join(comments), True)

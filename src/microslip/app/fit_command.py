@@ -16,11 +16,11 @@ from microslip.app.question import (
     write_files,
 )
 from microslip.app.terminal import complain
-from microslip.si.motions import SINGLE
+from microslip.si.motions import FIT_MOTIONS
 
 OPTIONS = {
     "speed": ("V", "forward speed of all rows, such as '1 mm/s', in place of a column"),
-    "amplitude": ("A", "half stroke of all rows, such as '1 um'; an angle for bore"),
+    "amplitude": ("A", "half stroke of all rows, such as '1 um'"),
     "frequency": ("F", "frequency of all rows, such as '20 kHz'"),
     "load": ("L", "normal load of all rows, such as '10 N'"),
     "nu": ("NU", "Poisson's ratio of the elastic body (0, or that of the map)"),
@@ -48,7 +48,7 @@ def fill(parser: argparse.ArgumentParser) -> None:
         "Exit codes: 0 both numbers determined; 1 only mu determined, or unreadable lines left "
         "out; 2 bad input, or neither number determined."
     )
-    motions = ", ".join(SINGLE)
+    motions = ", ".join(FIT_MOTIONS)
     text = f"the motion: {motions}"
     parser.add_argument("motion", action=StoreSpelling, metavar="MOTION", help=text)
     parser.add_argument("measured", action=StoreSpelling, metavar="CSV", help="the table")

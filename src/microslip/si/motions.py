@@ -99,8 +99,8 @@ MOTIONS = {
         "slides forward and spins steadily about the contact normal", needed=("rotation",)
     ),
 }
-SINGLE = tuple(name for name, kind in MOTIONS.items() if kind.unit)
-"""Motions with one oscillation."""
+FIT_MOTIONS = ("transverse", "longitudinal", "zigzag")
+"""Motions for which `microslip.fit` is possible."""
 
 
 def kind_of(motion: Any) -> RealMotionKind:

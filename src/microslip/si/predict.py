@@ -26,7 +26,6 @@ from microslip.si.prediction import (
     columns_of,
 )
 from microslip.si.reduction import reduce_friction
-from microslip.si.regimes import natural_frequency, regime
 from microslip.si.request import Request, request_of
 from microslip.si.static_limit import force_threshold, static_limit
 from microslip.si.uncertain import with_uncertainty
@@ -293,15 +292,25 @@ def _oscillation(request: Request, answer: Result, limit: Result | None) -> dict
     groups = {name: one for name, one in request.drive_groups.items() if name != "force"}
     if groups:
         drive, spring = request.drive, Spring(**{"stiffness": 0.0} | groups)
-        assert answer.amplitude is not None  # the motion oscillates
         fields |= groups | {
             "drive_stiffness_N_m": drive.stiffness,
             "mass_kg": drive.mass,
             "damping_N_s_m": drive.damping,
-            "regime": regime(motion.name, answer.amplitude, spring),
             "natural_frequency": natural_frequency(spring),
         }
     return fields
+
+
+CONTACT_STIFFNESS = 1.5
+"""Stiffness 2 G* a of a sticking Hertz contact, divided by mu F_z / u_lim."""
+
+
+def natural_frequency(drive: Spring) -> float | None:
+    """Natural frequency of the body on its spring and the sticking contact, divided by the
+    frequency of the vibration.  It is None without a mass."""
+    if drive.mass == 0.0:
+        return None
+    return math.sqrt((drive.stiffness + CONTACT_STIFFNESS) / drive.mass)
 
 
 def _under_force(request: Request, answer: Result, threshold: Estimate | None) -> dict[str, Any]:

@@ -26,7 +26,7 @@ _NAMES = """
     speed_error_m_s velocity_error displacement_per_cycle_m displacement_per_cycle_error_m
     time_to_1_mm_s time_to_1_mm_error_s time_to_contact_radius_s time_to_contact_radius_error_s
     displacement_m displacement_error_m cycles_to_rest displacement_reason force_threshold_N
-    force_threshold_error_N safety_factor safety_factor_error regime natural_frequency pressure
+    force_threshold_error_N safety_factor safety_factor_error natural_frequency pressure
     forward_amplitude_m rotation_amplitude_rad load_amplitude_N phase_rad torque_N_m
     torque_error_N_m drag_power_W drag_power_error_W vibration_power_W vibration_power_error_W
     dissipated_power_W dissipated_power_error_W energy_per_cycle_J energy_per_cycle_error_J
@@ -228,8 +228,6 @@ class Oscillating(Prediction):
         Stiffness of the spring (N/m), mass (kg) and damping (N s/m).  A missing part is None.
     stiffness, mass, damping : float or None
         Dimensionless stiffness, mass and damping, as in microslip.solve.
-    regime : str or None
-        A key of regimes.REGIMES; None without a spring and a mass.
     natural_frequency : float or None
         Natural frequency of the mass on the spring and the sticking contact, divided by the
         frequency of the oscillation; None without a mass.
@@ -255,7 +253,6 @@ class Oscillating(Prediction):
     stiffness: float | None = None
     mass: float | None = None
     damping: float | None = None
-    regime: str | None = None
     natural_frequency: float | None = None
 
 

@@ -21,7 +21,6 @@ from microslip.si.printed_lines import (
     speed_unit,
     unit_for,
 )
-from microslip.si.regimes import REGIMES
 
 UNDERSTOOD = (
     *("motion", "body", "counterbody", "radius", "counter_radius", "radius_across"),
@@ -168,8 +167,8 @@ class _Texts(dict[str, Any]):
         lines += show("found", sentence + "; all other lines are for {sought_exact}")
         for name in ("force", "stiffness", "mass", "damping"):
             lines += show(name, f"dimensionless {{{name}}}")
-        lines += show("groups", REFERENCE_LOADS, bool(record.load_amplitude_N and record.regime))
-        lines += show("regime", REGIMES.get(record.regime, ""), record.regime is not None)
+        driven = record.stiffness is not None or record.mass is not None
+        lines += show("groups", REFERENCE_LOADS, bool(record.load_amplitude_N and driven))
         mass = "{natural_frequency_Hz}, of the mass on a contact that sticks"
         lines += show("natural frequency", mass)
         lines += self._outcome() if forced else self._friction()

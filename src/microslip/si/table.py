@@ -23,7 +23,7 @@ MOST_CASES = 100_000
 NAMES = {name: False for name in NOTHING if name != "map"}
 """Allowed columns of a file.  Each column is an argument of `predict`, and needs no unit in the
 heading."""
-TEXTS = ("outcome", "regime", "sought", "interval_method")
+TEXTS = ("outcome", "sought", "interval_method")
 """Text columns.  Every other column without values is numeric."""
 
 

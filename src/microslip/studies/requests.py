@@ -7,9 +7,8 @@ are:
 - choice: a timed solve at a tolerance, with automatic selection of the model and resolution;
 - probe: an untimed solve with a given method;
 - point: a solve at a tight tolerance, used as the reference for the other requests;
-- scaling: the cost of a step at one size.
 
-Timed requests (trial, choice, scaling) contain the name of the CPU. Therefore, times measured on
+Timed requests (trial, choice) contain the name of the CPU. Therefore, times measured on
 different CPUs have different keys and are not drawn in one chart.
 """
 
@@ -102,9 +101,3 @@ def reference(point: AnyPoint, tolerance: float | None = None) -> dict:
         tolerance = RINGS_TOLERANCE if rings else TOLERANCE
     kind = {"kind": "point", "model": "auto", "tolerance": number(tolerance)}
     return of_point(point) | kind | {"cells": None, "steps": None}
-
-
-def scaling(model: str, cells: int | None, angles: int, steps: int | None) -> dict:
-    """Return the request for the cost of a step, measured over a period of `steps` steps."""
-    sizes = {"cells": cells, "angles": angles, "steps": steps}
-    return {"kind": "scaling", "cpu": cpu_model(), "model": model, "poisson": "0"} | sizes

@@ -41,11 +41,10 @@ FOLDERS = {
     "trial": "trials",
     "choice": "trials",
     "probe": "probes",
-    "scaling": "scaling",
     "run": "runs",
     "patches": "patches",
 }
-"""Folders of the store, keyed by kind of request.  Records of trials and scaling contain measured
+"""Folders of the store, keyed by kind of request.  Records of trials contain measured
 times."""
 
 

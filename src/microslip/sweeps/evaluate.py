@@ -146,12 +146,6 @@ def _probe(**arguments: Any) -> dict:
     return _refusal(*place) or {"applies": True} | _point(**arguments)
 
 
-def _scaling(**arguments: Any) -> dict:
-    from microslip.adaptive import single_run
-
-    return single_run.measure_steps(**arguments) | {"machine": machine.describe()}
-
-
 def _run(**arguments: Any) -> dict:
     """Run at one resolution.  Times are not measured, so that equal requests have equal results."""
     from microslip.adaptive import single_run
@@ -174,7 +168,6 @@ _KINDS: dict[str, Callable[..., dict]] = {
     "trial": _trial,
     "choice": _choice,
     "probe": _probe,
-    "scaling": _scaling,
     "run": _run,
     "patches": _patches,
 }

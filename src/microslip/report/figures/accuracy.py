@@ -1,4 +1,4 @@
-"""Figures of the accuracy study: performance profiles, and step cost against number of unknowns."""
+"""Figures of the accuracy study: performance profiles."""
 
 from __future__ import annotations
 
@@ -9,18 +9,11 @@ from matplotlib.figure import Figure
 
 from microslip.report.figures import panels
 from microslip.report.figures import style as look
-from microslip.report.figures.data import columns
 
 NAMES = {"auto": "chosen by tolerance", "paper": "paper's run"}
 """Labels of competitors whose names need an explanation."""
 LEAST_RANGE = 10.0
 """The axis of a profile extends at least to this ratio."""
-GROWTH = {
-    "iterations": "iterations per step  (dimensionless)",
-    "seconds": "time per step (s)",
-    "memory": "memory (bytes)",
-}
-"""Quantities of the panels of `scaling`, with their labels."""
 
 
 def profile(name: str, dataset: xr.Dataset) -> Figure:
@@ -66,38 +59,3 @@ def _profile(axes: Axes, contest: xr.Dataset, of_models: bool) -> None:
     axes.set_xlabel(r"CPU time divided by the smallest  $t/t_\mathrm{best}$")
     panels.logarithmic(axes, (1.0, high))
     panels.unit_range(axes)
-
-
-def scaling(name: str, dataset: xr.Dataset) -> Figure:
-    """Draw a panel for each quantity, with a curve for each model and its fitted exponent."""
-    figure = look.new_figure(look.DOUBLE, 3.1)
-    grid = figure.subplots(1, len(GROWTH), sharex=True)
-    for axes, (quantity, label) in zip(grid, GROWTH.items(), strict=True):
-        _growth(axes, dataset, quantity)
-        axes.set(xlabel="unknowns  $N$  (dimensionless)", ylabel=label)
-        panels.legend_above(axes, "fitted growth", ncols=1)
-    return figure
-
-
-def _growth(axes: Axes, dataset: xr.Dataset, quantity: str) -> None:
-    """Draw a quantity of every model against the number of unknowns."""
-    axes.set(xscale="log", yscale="log")
-    for index, model in enumerate(dataset["scaling_model"].values.astype(str)):
-        of_model = dataset.isel(scaling_model=index).sortby("scaling_unknowns")
-        x, y = columns(of_model, "scaling_unknowns", f"scaling_{quantity}")
-        finite = np.isfinite(x) & np.isfinite(y)
-        exponent = float(of_model[f"scaling_exponent_{quantity}"])
-        growth = rf"  $N^{{{exponent:.2f}}}$" if np.isfinite(exponent) else ""
-        color, marker, _ = look.model(model)
-        ink: look.Ink = {"color": color, "marker": marker, "ms": 4.0}
-        ink |= {"ls": look.LINES[index % 4][2]}
-        axes.plot(x[finite], y[finite], label=f"{model}{growth}", gid=quantity, **ink)
-        if quantity == "iterations" and finite.any():
-            last = np.flatnonzero(finite)[-1]
-            size = str(of_model["scaling_label"].values[last])
-            text: look.Ink = {"fontsize": look.SMALLEST, "ha": "right", "va": "bottom"}
-            text |= {"textcoords": "offset points", "gid": "size"}
-            axes.annotate(size, (x[last], y[last]), (-2, 3), **text)
-    axes.margins(0.06, 0.14)
-    for axis in (axes.xaxis, axes.yaxis):
-        panels.logarithmic_ticks(axis)

@@ -42,7 +42,6 @@ _DRAWN: dict[str, tuple[str, ...]] = {
     "accuracy_vs_cost": ("work_precision.draw", "accuracy_cost"),
     "accuracy_vs_work": ("work_precision.draw", "accuracy_cost"),
     "model_map": ("model_map.draw", "accuracy_cost"),
-    "scaling": ("accuracy.scaling", "accuracy_cost"),
     "stability_atlas": ("atlas.draw", "stability"),
     "claims_static": ("claims.static", "claims"),
     "claims_patches": ("claims.patches", "claims"),

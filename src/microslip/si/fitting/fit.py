@@ -15,7 +15,7 @@ from microslip.si.fitting.friction_models import FrictionModel, MapFriction, Sol
 from microslip.si.fitting.measured import Measured, read_measured
 from microslip.si.fitting.scales import Modulus, Scale
 from microslip.si.inputs import read_argument
-from microslip.si.motions import SINGLE
+from microslip.si.motions import FIT_MOTIONS
 from microslip.si.quantities import read
 
 TOLERANCE, LARGEST_TOLERANCE = 1e-3, 0.02
@@ -54,7 +54,7 @@ def fit(
     Parameters
     ----------
     motion : str
-        "transverse", "longitudinal", "zigzag" or "bore"; a bore needs a radius.
+        "transverse", "longitudinal" or "zigzag".
     measured : path, mapping or pandas DataFrame
         A CSV file with a heading line such as `speed [mm/s],amplitude [um],friction [N]`, or
         columns with such names.  Columns without a unit are in SI units.  The columns are speed,
@@ -93,8 +93,8 @@ def fit(
         If the table cannot be read, if it has too few rows or a single condition, or if the rows do
         not determine mu.
     """
-    if not isinstance(motion, str) or motion not in SINGLE:
-        raise InputError("motion", motion, f"allowed is one of {', '.join(SINGLE)}")
+    if not isinstance(motion, str) or motion not in FIT_MOTIONS:
+        raise InputError("motion", motion, f"allowed is one of {', '.join(FIT_MOTIONS)}")
     shared = {"speed": speed, "amplitude": amplitude, "frequency": frequency, "load": load}
     rows = read_measured(motion, measured, decimal=decimal, encoding=encoding, **shared)
     _refuse_undetermined(rows)
@@ -145,8 +145,6 @@ def _scale(
     if ratio is not None:
         texts["nu"] = ratio.text
     if radius is None:
-        if motion == "bore":
-            raise InputError("radius", None, "bore needs it: its amplitude is an angle")
         if counterbody is not None:
             raise InputError("counterbody", counterbody, "allowed with a radius")
         return Scale(rows, 0.0 if ratio is None else ratio.si), texts
@@ -157,7 +155,7 @@ def _scale(
     texts["counterbody"] = "rigid (default)" if counterbody is None else counterbody
     size = read_argument("radius", radius)
     texts["radius"] = size.text
-    return Modulus(rows, ratio.si, motion == "bore", counterbody == "same", size.si), texts
+    return Modulus(rows, ratio.si, counterbody == "same", size.si), texts
 
 
 def _fits(problem: estimate.LeastSquares) -> list[estimate.Best]:

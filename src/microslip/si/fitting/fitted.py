@@ -65,7 +65,7 @@ class Fit:
     left_out : tuple of str
         Unreadable lines of the table, with the reasons.  The fit ignores these lines.
     speed_m_s, amplitude_si, frequency_Hz, row_load_N : np.ndarray, shape (rows,)
-        Conditions of each row.  The amplitude is in m, or in rad for a bore.
+        Conditions of each row.  The amplitude is in m.
     velocity, amplitude : np.ndarray, shape (rows,)
         Dimensionless velocity and amplitude of each row at the best fit, as in microslip.solve.
     measured, measured_error : np.ndarray, shape (rows,)
@@ -140,7 +140,7 @@ class Fit:
 
         names = ("measured", "measured_error", "fitted", "fitted_error", "standard_error")
         units = dict.fromkeys(names, "N" if self.quantity == "friction" else "1")
-        units["amplitude_si"] = "rad" if self.motion == "bore" else "m"
+        units["amplitude_si"] = "m"
         variables: dict[str, tuple] = {}
         attributes: dict[str, str] = {}
 

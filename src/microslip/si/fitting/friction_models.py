@@ -21,10 +21,7 @@ from microslip.si.fitting.scales import LEAST, MOST, Points
 from microslip.si.friction_map import FrictionMap
 
 SLOWEST, FASTEST = 1e-3, 20.0
-"""Smallest and largest ratio of velocity to amplitude in the coarse map.  For a bore, smallest and
-largest velocity."""
-PROVED = ("transverse", "bore")
-"""Motions whose maps can be evaluated outside the tabulated range, for Poisson's ratio 0."""
+"""Smallest and largest ratio of velocity to amplitude in the coarse map."""
 NODES_A_DECADE = {"amplitude": 5, "ratio": 4}
 """Number of nodes of the coarse map per decade."""
 COARSE = {"poisson": 0.0, "tolerance": 5e-3}
@@ -54,7 +51,7 @@ class MapFriction:
         self._map, self._poisson = FrictionMap(dataset, motion), poisson
         axes = (dataset[name] for name in ("velocity", "amplitude"))
         self._ends = [(float(axis.where(axis > 0.0).min()), float(axis.max())) for axis in axes]
-        self._proved = motion in PROVED and poisson == 0.0
+        self._proved = motion == "transverse" and poisson == 0.0
 
     def at(self, points: Points) -> np.ndarray:
         """mu_macro at any points, shape (n,)."""
@@ -87,8 +84,7 @@ class SolvedFriction:
     """Friction from the solver and a coarse map.  The axes of the map are the logarithms of
     amplitude and ratio.
 
-    The ratio is the velocity divided by the amplitude, which does not depend on u_lim.  For a
-    bore, the ratio is the velocity.
+    The ratio is the velocity divided by the amplitude, which does not depend on u_lim.
 
     Parameters
     ----------
@@ -147,8 +143,7 @@ class SolvedFriction:
         velocity, amplitude = points
         moving = amplitude > 0.0
         size = np.clip(amplitude, LEAST, MOST)
-        over = 1.0 if self._motion == "bore" else amplitude
-        ratio = np.divide(velocity, over, out=np.full_like(size, FASTEST), where=moving)
+        ratio = np.divide(velocity, amplitude, out=np.full_like(size, FASTEST), where=moving)
         return np.log(size), np.log(np.clip(ratio, SLOWEST, FASTEST))
 
     def _coarse(self, points: Points) -> np.ndarray:
@@ -160,10 +155,9 @@ class SolvedFriction:
         from scipy.interpolate import RectBivariateSpline
 
         sizes, ratios = (np.exp(axis) for axis in self._axes)
-        over = np.ones_like(sizes) if self._motion == "bore" else sizes
         values = [
-            [_solution(self._motion, ratio * unit, size, **COARSE)[0] for ratio in ratios]
-            for size, unit in zip(sizes, over, strict=True)
+            [_solution(self._motion, ratio * size, size, **COARSE)[0] for ratio in ratios]
+            for size in sizes
         ]
         return RectBivariateSpline(*self._axes, np.array(values), s=0)
 

@@ -27,7 +27,7 @@ COLUMNS = {name: QUANTITIES[name] for name in CONDITIONS} | {
     "mu": Range("", low=-math.inf),
     "mu_error": Range(""),
 }
-"""SI units of the allowed columns.  The amplitude of a bore is in rad."""
+"""SI units of the allowed columns."""
 MOST_ROWS = 10_000
 """Largest number of rows."""
 
@@ -39,7 +39,7 @@ class Measured:
     Attributes
     ----------
     speed, amplitude, frequency, load : np.ndarray
-        Conditions of each row, in m/s, m (rad for a bore), Hz and N.
+        Conditions of each row, in m/s, m, Hz and N.
     value, error : np.ndarray
         Measured friction and its standard error, N or dimensionless.  An unknown error is NaN.
     quantity : str
@@ -94,7 +94,7 @@ def read_measured(
     Parameters
     ----------
     motion : str
-        One of motions.SINGLE.
+        One of motions.FIT_MOTIONS.
     source : path, mapping or pandas DataFrame
         The file, or columns by name.  A heading can have a unit, as in "speed [mm/s]".  A column
         without one is in SI units.

@@ -15,7 +15,6 @@ import numpy as np
 from microslip.si.bodies import TwoBodies
 from microslip.si.fitting.measured import Measured
 from microslip.si.materials import RIGID, Material
-from microslip.theory import hertz
 
 LEAST, MOST = 0.03, 20.0
 """Smallest and largest dimensionless amplitude that a fit resolves.  At smaller amplitudes, nearly
@@ -84,15 +83,12 @@ class Modulus(Scale):
 
     Attributes
     ----------
-    spin : bool
-        True for a bore, whose amplitude is an angle.
     alike : bool
         True if both bodies have this modulus, False if the second one is rigid.
     radius : float
         Radius of relative curvature, m.
     """
 
-    spin: bool
     alike: bool
     radius: float
     unit = "Pa"
@@ -103,18 +99,6 @@ class Modulus(Scale):
         body = Material(2.0 * scale * (1.0 + self.poisson), self.poisson)
         other = body if self.alike else RIGID
         return TwoBodies(body, other, self.radius, self.mean_load, mu)
-
-    def points(self, mu: float, scale: float, rows: Measured | None = None) -> Points:
-        """Velocity and amplitude of each row.  By default, the rows are those of the fit."""
-        rows = self.rows if rows is None else rows
-        if not self.spin:
-            return super().points(mu, scale, rows)
-        contact, share = self.contact(mu, scale), rows.load / self.mean_load
-        arc = rows.amplitude * contact.contact_radius * share ** (1.0 / 3.0)
-        moving = arc > 0.0  # at an angle of 0 the velocity has no effect
-        velocity = np.divide(rows.speed, rows.omega * arc, out=np.zeros_like(arc), where=moving)
-        size = arc / (contact.u_lim * share ** (2.0 / 3.0))
-        return Points(velocity, np.asarray(hertz.bore_amplitude(size, self.poisson)))
 
     @property
     def bounds(self) -> tuple[float, float]:

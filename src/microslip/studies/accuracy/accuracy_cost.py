@@ -28,17 +28,8 @@ far more accurate."""
 TRUTH_SHARE = 0.1
 """Tolerance of a map's references, divided by the map's tightest tolerance."""
 
-SCALING_SIZES = {
-    "radial": [(n, 1) for n in (16, 32, 64, 128, 256, 512)],
-    "polar": [(n, n) for n in (8, 16, 32, 64)],
-    "cartesian": [(n, 1) for n in (16, 32, 64, 128, 256, 512)],
-}
-"""Sizes of each model as (cells, angles). The setting `levels` limits the number of sizes."""
-SCALING_STEPS = 16
 LARGE = 64
 """A run with at least this many squares along a side takes as long as all coarser runs together."""
-SIZES_PER_JOB = 4
-"""This many of the smallest sizes share one job. Each larger size has its own job."""
 
 
 def trials(study: Accuracy, point: AnyPoint) -> Iterator[tuple[int, dict]]:
@@ -85,19 +76,10 @@ def map_truth(study: Accuracy, point: Point) -> dict:
     return requests.reference(point, TRUTH_SHARE * min(study.map.tolerance))
 
 
-def scaling(study: Accuracy, model: str) -> list[dict]:
-    """Return the requests for the sizes of a model, at least two."""
-    sizes = SCALING_SIZES[model][: max(study.levels, 2)]
-    return [requests.scaling(model, cells, angles, SCALING_STEPS) for cells, angles in sizes]
-
-
 def pieces(study: Accuracy) -> tuple[list, list]:
     """Return the slow jobs and the fast jobs as two lists. A job is a list of requests."""
     places = study.points.values()
     long = [[request] for request in map(truth, places) if request is not None]
-    for model in SCALING_SIZES:
-        sizes = scaling(study, model)
-        long += [[request] for request in reversed(sizes[SIZES_PER_JOB:])] + [sizes[:SIZES_PER_JOB]]
     shipped: list[list[dict]] = []
     others: dict[str, list[dict]] = {}
     for point in places:
@@ -128,10 +110,3 @@ def _map_row(study: Accuracy, points: list[Point]) -> list[dict]:
         for point in points
         for request in (map_truth(study, point), *map_trials(study, point))
     ]
-
-
-def size_label(request: dict) -> str:
-    """Return the size of a mesh as text: "64" for rings, else, for example, "64 x 64"."""
-    across = {"radial": None, "cartesian": request["cells"]}
-    second = across.get(request["model"], request["angles"])
-    return f"{request['cells']}" if second is None else f"{request['cells']} x {second}"

@@ -1,4 +1,4 @@
-"""Build the dataset accuracy_cost: errors and costs of trials, model maps, and step costs."""
+"""Build the dataset accuracy_cost: errors and costs of trials, and model maps."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from microslip.config.settings import Accuracy
 from microslip.datasets.variables import variable
 from microslip.studies.accuracy import accuracy_cost as study
 from microslip.studies.accuracy import profiles
-from microslip.studies.accuracy.fronts import cheapest, confirmed, exponent, on_front
+from microslip.studies.accuracy.fronts import cheapest, confirmed, on_front
 from microslip.studies.ladders import exact_model
 from microslip.studies.requests import AnyPoint, Point
 from microslip.studies.tables import Answers, finished, table, value_of
@@ -27,7 +27,6 @@ MEASURED = (
 
 GROUPS = {
     "points": ("Points of the trials, and their references", ("point",)),
-    "scaling": ("Cost of a step on finer grids", ("scaling_model", "scaling_size")),
 } | {
     f"{motion}_map": (
         f"Cheapest model within the tolerance, motion {motion}",
@@ -104,7 +103,6 @@ def build(settings: Accuracy, answer: Callable) -> xr.Dataset:
     variables = table("point", about_points, POINT_COLUMNS)
     variables |= table("trial", ((row,) for row in trials), TRIAL_COLUMNS)
     variables |= profiles.variables(trials, list(points), tolerances)
-    variables |= _scaling(settings, answers)
     for motion in study.MAP_MOTIONS:
         variables |= _map(settings, motion, answers)
         for name, values in (
@@ -115,8 +113,6 @@ def build(settings: Accuracy, answer: Callable) -> xr.Dataset:
             variables[f"{motion}_{name}"] = variable(f"{motion}_{name}", values, long_name)
     within = "largest error of mu_macro that the map allows"
     variables["map_tolerance"] = variable("map_tolerance", tolerances, within)
-    models = list(study.SCALING_SIZES)
-    variables["scaling_model"] = variable("scaling_model", models, "contact model", str)
     title = "Accuracy and cost of methods for the friction of a vibrated Hertz contact"
     if answers.machines:
         variables |= table("machine", ((one,) for one in answers.machines), MACHINE_COLUMNS)
@@ -237,36 +233,3 @@ def _candidates(
         error.append(abs(value_of(result, "mu_macro") - truth) if converged else np.inf)
     models = [model for model, *_ in trials]
     return trials, confirmed(models, error, exact_model(point.motion, point.poisson))
-
-
-SCALING: dict[str, tuple] = {
-    "unknowns": ("tractions that a step solves for",),
-    "iterations": ("iterations of the step solver in a step",),
-    "seconds": ("median CPU time of a step", float, "s"),
-    "memory": ("memory of the arrays of the contact", float, "byte"),
-}
-"""Results for each size of a model: name -> (long_name, type, units)."""
-
-
-def _scaling(settings: Accuracy, answers: Answers) -> dict:
-    """Return the cost of a step for each size of each model, and the fitted exponents."""
-    dims = ("scaling_model", "scaling_size")
-    requests = [study.scaling(settings, model) for model in study.SCALING_SIZES]
-    shape = (len(requests), max(map(len, requests)))
-    values = {name: np.full(shape, np.nan) for name in SCALING}
-    labels = np.full(shape, "", object)
-    for i, row in enumerate(requests):
-        for j, request in enumerate(row):
-            result = answers(request)
-            labels[i, j] = study.size_label(request)
-            for name in SCALING:
-                values[name][i, j] = value_of(result, name)
-    variables = {
-        f"scaling_{name}": variable(dims, values[name], *about) for name, about in SCALING.items()
-    }
-    variables["scaling_label"] = variable(dims, labels, "size of the grid", str)
-    for name in ("iterations", "seconds", "memory"):
-        fitted = [exponent(*row) for row in zip(values["unknowns"], values[name], strict=True)]
-        long_name = f"exponent of {name} over unknowns, fitted to the larger half of the sizes"
-        variables[f"scaling_exponent_{name}"] = variable("scaling_model", fitted, long_name)
-    return variables

@@ -55,19 +55,3 @@ def confirmed(models: list[str], error: ArrayLike, exact: str) -> np.ndarray:
         if model != exact:
             out[levels[-1]] = np.inf
     return out
-
-
-def exponent(sizes: np.ndarray, values: np.ndarray) -> float:
-    """Fit the exponent p in values ~ sizes^p.
-
-    The fit is linear in the logarithms and uses the larger half of the sizes. sizes, values: arrays
-    of shape (n,). Returns NaN if fewer than two sizes have a positive value.
-    """
-    sizes, values = np.asarray(sizes, float), np.asarray(values, float)
-    good = np.isfinite(sizes) & np.isfinite(values) & (sizes > 0) & (values > 0)
-    order = np.argsort(sizes[good])
-    sizes, values = sizes[good][order], values[good][order]
-    half = slice(min(sizes.size // 2, max(sizes.size - 2, 0)), None)
-    if sizes.size < 2:
-        return np.nan
-    return float(np.polyfit(np.log(sizes[half]), np.log(values[half]), 1)[0])
