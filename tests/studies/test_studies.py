@@ -365,14 +365,6 @@ def test_the_cheapest_is_within_the_tolerance():
     assert fronts.cheapest([], [], 1.0) is None
 
 
-@given(st.floats(-3, 3), st.integers(2, 9))
-def test_exponents_of_power_laws(power, count):
-    sizes = 3.0 * 2.0 ** np.arange(count)
-    assert fronts.exponent(sizes[::-1], 0.7 * sizes[::-1] ** power) == pytest.approx(
-        power, abs=1e-9
-    )
-
-
 # Under a pressure
 
 CONE = "power:exponent=1"
