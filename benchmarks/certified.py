@@ -31,7 +31,7 @@ import xarray as xr
 from tqdm import tqdm
 
 import microslip
-from microslip.datasets.query.cells import cells_of
+from microslip.datasets.cells import cells_of
 from microslip.sweeps.map_cells import surpluses_of
 
 TRUTH = {"transverse": 0.1, "bore": 0.2}
@@ -143,14 +143,15 @@ def of_map(dataset):
 
 def of_uniform_grid(dataset, count):
     """Line of a uniform grid, with error estimates at the centres of the grid cells."""
-    grid = dataset.microslip.on_grid(count, count)
+    ends = [(float(dataset[n].min()), float(dataset[n].max())) for n in ("velocity", "amplitude")]
+    grid = dataset.microslip.at(np.geomspace(*ends[0], count), np.linspace(*ends[1], count))
     grid["mu_macro_error"] = xr.zeros_like(grid.mu_macro_error) + dataset.tolerance
     grid["converged"] = xr.ones_like(grid.mu_macro, bool)
     middles = {
         "velocity": np.sqrt(grid.velocity.values[1:] * grid.velocity.values[:-1]),
         "amplitude": 0.5 * (grid.amplitude.values[1:] + grid.amplitude.values[:-1]),
     }
-    estimate = grid.drop_vars("source").microslip.at(**middles).mu_macro_error.values
+    estimate = grid.microslip.at(**middles).mu_macro_error.values
     nodes = [axis.ravel() for axis in np.meshgrid(grid.velocity.values, grid.amplitude.values)]
     seconds = cost(dataset, *nodes, np.full(count * count, float(dataset["poisson"])))
     return of_grid(dataset, f"{count} x {count}, uniform", count * count, estimate, seconds)

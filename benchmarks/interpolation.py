@@ -41,15 +41,12 @@ def omitted(dataset):
 
 
 def places(dataset, points, rng):
-    """Random (velocities, amplitudes) by region: on the map and outside each of its sides."""
+    """Random (velocities, amplitudes) on the map."""
     v, a = dataset["velocity"].values, dataset["amplitude"].values
-    first, last, top, few = np.log10(v[0]), np.log10(v[-1]), a[-1], points // 4
+    first, last, top = np.log10(v[0]), np.log10(v[-1]), a[-1]
     spread = rng.uniform
     return {
         "on the map": (10 ** spread(first, last, points), spread(0, top, points)),
-        "slower": (10 ** spread(first - 2, first, few), spread(0, top, few)),
-        "faster": (10 ** spread(last, last + 1, few), spread(0, top, few)),
-        "larger amplitudes": (10 ** spread(first, last, few), top * 10 ** spread(0, 1, few)),
     }
 
 

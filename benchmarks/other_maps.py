@@ -27,7 +27,7 @@ from tqdm import tqdm
 
 from microslip.config import load
 from microslip.datasets import certified_map
-from microslip.datasets.query.accessor import Friction
+from microslip.datasets.accessor import Map
 from microslip.sweeps import batches, evaluate, map_refinement
 from microslip.sweeps.batches import answer
 from microslip.sweeps.store import Store
@@ -91,7 +91,7 @@ def judged(name, error, options, store):
     map_ = map_of(name, error)
     records = records_of(map_, store)
     data = certified_map.build(map_, records)
-    friction = Friction(data)
+    friction = Map(data)
     rows = []
     for request in tqdm(points_of(map_, options.places, options.seed), desc=map_.name, leave=False):
         true = answer(request, store)[0]["result"]

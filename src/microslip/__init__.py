@@ -44,7 +44,7 @@ _WHERE = {
     "fit": "microslip.si.fitting.fit",
     "Fit": "microslip.si.fitting.fitted",
     "to_xarray": "microslip.datasets.of_records",
-    "open_map": "microslip.datasets.query.open_map",
+    "open_map": "microslip.datasets.open_map",
     "texts": "microslip.datasets.netcdf",
     "history": "microslip.adaptive.history",
     "History": "microslip.adaptive.history",

@@ -8,7 +8,7 @@ from stubs.in_process import run_apart
 
 from microslip.config import load
 from microslip.config.records import ConfigError
-from microslip.datasets.query.open_map import open_map
+from microslip.datasets.open_map import open_map
 from microslip.foundation.errors import InputError
 from microslip.foundation.files import CacheError
 from microslip.pressures.by_name import pressure_named

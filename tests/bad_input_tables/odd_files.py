@@ -152,20 +152,10 @@ def axis(name, values):
 
 DATASETS = {
     "in percent": (lambda d: d.assign(mu_macro=100 * d.mu_macro), "mu_macro = 100.0"),
-    "with the other sign": (lambda d: d.assign(mu_macro=-d.mu_macro), "allowed is 0 to 1"),
     "of text": (every("mu_macro", "a"), "mu_macro = 'of type <U1'"),
     "with errors below 0": (every("mu_macro_error", -1e-4), "mu_macro_error = -0.0001"),
     "velocity as text": (axis("velocity", [str(v) for v in VELOCITY]), "velocity = 'of type"),
     "logarithms of velocity": (axis("velocity", np.log10(VELOCITY)), "velocity = -3.0"),
-    "Poisson's ratio 0.9": (axis("poisson", 0.9), "poisson = 0.9"),
-    "Poisson's ratio along the amplitude": (
-        axis("poisson", ("amplitude", np.linspace(0, 0.5, 13))),
-        "microslip.at needs one, or an axis",
-    ),
-    "a tolerance in words": (
-        lambda d: d.drop_vars("converged").assign_attrs(tolerance="fine"),
-        "tolerance = 'fine'",
-    ),
     "two that contradict each other": (
         lambda d: xr.concat([d, d.assign(mu_macro=0.5 * d.mu_macro)], "velocity"),
         "is there twice",

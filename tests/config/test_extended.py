@@ -282,6 +282,6 @@ def test_static_friction_is_interpolated_along_the_amplitude(monkeypatch, tmp_pa
     Solver(monkeypatch)
     line = {"motion": "elliptic:phase=0", "velocity": [0, 0.1], "amplitude": [0, 0.5, 1, 1.5]}
     built(tmp_path, **line)
-    friction = microslip.open_map("circle", tmp_path).friction
+    friction = microslip.open_map("circle", tmp_path).microslip
     assert float(friction.at(0, 0.7).mu_macro) == 0
     assert float(friction.at(0.1, 0.5).mu_macro) == pytest.approx(0.1 / 1.6)

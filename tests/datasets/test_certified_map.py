@@ -1,4 +1,4 @@
-"""Interpolation in certified maps, grids from them, and arrays of dask."""
+"""Interpolation in certified maps, and arrays of dask."""
 
 from types import SimpleNamespace
 
@@ -10,8 +10,6 @@ from stubs.eq6_map import places
 
 from microslip.config import load
 from microslip.datasets import certified_map, netcdf
-from microslip.datasets.query.accessor import Friction
-from microslip.datasets.query.answers import SOURCES
 from microslip.foundation.errors import InputError
 from microslip.theory import masing, paper
 
@@ -49,7 +47,6 @@ def test_answers_are_within_their_errors_and_these_within_what_was_asked(dataset
     miss = abs(answer.mu_macro - friction(velocity.values, amplitude.values))
     assert float((miss <= answer.mu_macro_error).mean()) >= 0.999
     assert float(answer.mu_macro_error.max()) <= ERROR
-    assert set(answer.source.values) == {SOURCES.index("map")}
     assert dataset.sizes["point"] == len(np.unique(dataset.cell_node))
     solved = zip(dataset.velocity.values, dataset.amplitude.values, strict=True)
     assert dataset.points == len(set(solved))
@@ -62,20 +59,6 @@ def test_at_a_node_the_answer_is_the_node(dataset):
     # on a border the value may come from the neighbouring cell
     inside = np.unique(dataset.cell_node.values.reshape(-1, 5, 5)[:, 1:-1, 1:-1])
     assert off[inside].max() < 1e-6
-
-
-def test_beyond_the_map_the_limits_answer_as_from_any_map(dataset):
-    answer = dataset.microslip.at([0.0, 1e-4, 20.0], [0.5, 6.0])
-    assert float(answer.mu_macro[0, 0]) == pytest.approx(paper.static_limit_transverse(0.5))
-    names = np.array(SOURCES)[answer.source.values]
-    assert names[0].tolist() == [
-        "static limit",
-        "between static limit and map",
-        "between map and fast sliding",
-    ]
-    assert set(names[1, 1:]) == {"between map and large amplitude"}
-    assert np.isfinite(answer.mu_macro_error).all()
-    assert float(dataset.microslip.at(0.1, 0.0).mu_macro) == 1.0
 
 
 def test_equal_answers_give_equal_files(made, tmp_path):
@@ -117,37 +100,7 @@ def test_in_chunks_a_bad_question_is_refused_when_it_is_looked_at(dataset):
         lazy.compute()
 
 
-def test_a_grid_has_the_range_of_the_map_and_answers_as_points_do(dataset):
-    grid = dataset.microslip.on_grid(velocity=5, amplitude=[0.5, 1.0])
-    assert grid.mu_macro.dims == ("amplitude", "velocity")
-    assert grid.velocity.values == pytest.approx([0.001, 0.01, 0.1, 1, 10])
-    xr.testing.assert_identical(grid, dataset.microslip.at(grid.velocity.values, [0.5, 1.0]))
-    assert dataset.microslip.on_grid().sizes == {"amplitude": 49, "velocity": 49}
-    # a grid is a plain map, which has an accessor, too
-    plain = grid.assign_attrs(tolerance=ERROR)
-    assert np.isfinite(plain.microslip.at(0.05, 0.7).mu_macro)
-
-
-def test_a_grid_of_a_plain_map_leaves_out_velocity_0():
-    dims = ("amplitude", "velocity")
-    velocity, amplitude = [0.0, 0.01, 0.1, 1.0], [0.0, 1.0, 2.0]
-    mu = [[float(friction(max(v, 1e-9), a)) for v in velocity] for a in amplitude]
-    plain = xr.Dataset(
-        {"mu_macro": (dims, mu), "mu_macro_error": (dims, np.full((3, 4), 1e-3))},
-        {"velocity": velocity, "amplitude": amplitude, "poisson": 0.0},
-        {"motion": "transverse", "tolerance": 1e-2},
-    )
-    grid = plain.microslip.on_grid(3, 3)
-    assert grid.velocity.values == pytest.approx([0.01, 0.1, 1.0])
-    assert grid.amplitude.values == pytest.approx([0.0, 1.0, 2.0])
-
-
-def test_a_grid_of_one_is_refused(dataset):
-    with pytest.raises(InputError, match="velocity = 1: allowed is a number of 2 or more"):
-        dataset.microslip.on_grid(velocity=1)
-
-
-@pytest.mark.parametrize("name", ["mu_macro", "cell_error", "cell_low", "poisson"])
+@pytest.mark.parametrize("name", ["mu_macro", "cell_error", "cell_low"])
 def test_what_a_map_has_lost_is_named(dataset, name):
     with pytest.raises(InputError, match=f"{name} = None: microslip.at needs it"):
         dataset.drop_vars(name).microslip.at(0.1, 1.0)
@@ -172,7 +125,7 @@ def test_of_other_motions_the_map_answers_and_nothing_beyond():
         return certified_stub.record(request, float(masing.longitudinal(*place)), error=0.0)
 
     data = certified_stub.built(map_, answered)
-    answer = Friction(data).at([0.02, 0.2, 0.9], [0.15, 0.5, 0.85])
+    answer = data.microslip.at([0.02, 0.2, 0.9], [0.15, 0.5, 0.85])
     truth = masing.longitudinal(*np.meshgrid(answer.velocity, answer.amplitude))
     assert (abs(answer.mu_macro - truth) <= answer.mu_macro_error + 1e-9).all()
     assert float(answer.mu_macro_error.max()) <= 0.03

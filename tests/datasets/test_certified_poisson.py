@@ -2,7 +2,6 @@
 
 import numpy as np
 import pytest
-import xarray as xr
 from stubs import certified_stub
 from stubs.eq6_map import places
 
@@ -54,17 +53,6 @@ def test_answers_at_any_poissons_ratio_are_within_their_errors(dataset, poisson)
     assert float((off <= answer.mu_macro_error).mean()) >= 0.999
     assert float(answer.mu_macro_error.max()) <= ERROR
     assert float(answer.poisson) == poisson
-
-
-def test_grids_and_questions_the_other_way_round_have_one(dataset):
-    grid = dataset.microslip.on_grid(3, 3, poisson=0.2)
-    xr.testing.assert_identical(
-        grid, dataset.microslip.at(grid.velocity.values, grid.amplitude.values, poisson=0.2)
-    )
-    result = dataset.microslip.solve_for(0.5, amplitude=1.0, poisson=0.2)
-    low, high = (float(result[name][0]) for name in ("velocity_low", "velocity_high"))
-    # the invented friction is exact, so that it has the wanted value inside the interval
-    assert friction(low, 1.0, 0.2) <= 0.5 <= friction(high, 1.0, 0.2)
 
 
 def test_a_map_of_another_version_is_refused(dataset):

@@ -54,18 +54,8 @@ def test_over_poissons_ratio_it_answers_at_any():
     answer = dataset.microslip.at(0.0, amplitude, poisson=0.35)
     truth = paper.static_limit_transverse(amplitude.values) * (1.0 - 0.1 * 0.35**2)
     assert bool((abs(answer.mu_macro - truth) <= answer.mu_macro_error).all())
-    result = dataset.microslip.solve_for(0.5, velocity=0.0, poisson=0.35)
-    low, high = (float(result[name][0]) for name in ("amplitude_low", "amplitude_high"))
-    friction = [paper.static_limit_transverse(a) * (1.0 - 0.1 * 0.35**2) for a in (high, low)]
-    assert friction[0] <= 0.5 <= friction[1]
 
 
 def test_what_slides_is_not_answered():
-    with pytest.raises(ValueError, match="velocity = 0.1: the map has none such"):
+    with pytest.raises(ValueError, match="velocity = 0.1: allowed is 0"):
         built().microslip.at(0.1, 0.5)
-
-
-def test_a_grid_is_at_velocity_0():
-    grid = built().microslip.on_grid(amplitude=5)
-    assert grid.velocity.values.tolist() == [0.0]
-    assert grid.amplitude.values == pytest.approx([0, 0.375, 0.75, 1.125, 1.5])

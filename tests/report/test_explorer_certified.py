@@ -7,7 +7,6 @@ from stubs import certified_stub
 from stubs.in_node import answers, needs_node
 
 from microslip.config import load
-from microslip.datasets.query.answers import SOURCES
 from microslip.foundation.errors import InputError
 from microslip.report.explorer import certified
 from microslip.theory import masing, paper
@@ -59,38 +58,16 @@ def compare(page_answers, truth):
     for name, key in (("mu_macro", "value"), ("mu_macro_error", "error")):
         values = np.array([float(one[key]) for one in page_answers])
         assert values == pytest.approx(truth[name].values, abs=TOLERANCE, rel=0, nan_ok=True), name
-    assert [one["source"] for one in page_answers] == [SOURCES[k] for k in truth["source"].values]
+    assert {one["source"] for one in page_answers} == {"map"}
 
 
 @pytest.mark.parametrize("motion", ["transverse", "bore"])
-@pytest.mark.parametrize(
-    ("axes", "sources"),
-    [
-        (
-            {"velocity": [0.001, 10], "amplitude": [0, 3], "adaptive": {"error": 1e-2}},
-            {"static limit", "between static limit and map", "between map and fast sliding"}
-            | {"map", "between map and large amplitude"},
-        ),
-        (
-            {"velocity": [0.01, 1], "amplitude": [0.5, 2], "adaptive": {"error": 3e-2}},
-            {"between map and no vibration"},
-        ),
-    ],
-)
-def test_answers_on_a_map_and_beyond_it_are_those_of_at(motion, axes, sources):
+def test_answers_on_a_map_are_those_of_at(motion):
+    axes = {"velocity": [0.001, 10], "amplitude": [0, 3], "adaptive": {"error": 1e-2}}
     dataset = made(certified_stub.configured(motion, **axes), FRICTION[motion])
-    (low, high), widest = np.log10(axes["velocity"]), axes["amplitude"][-1]
     rng = np.random.default_rng(7)
-    velocity = 10 ** np.append(rng.uniform(low, high, 200), rng.uniform(low - 2, high + 2, 200))
-    amplitude = np.append(rng.uniform(0, widest, 200), rng.uniform(0, 5 * widest, 200))
-    velocity[200:220] = 0.0
-    corners = np.meshgrid(axes["velocity"] + [0.1], axes["amplitude"] + [1])
-    velocity, amplitude = (
-        np.append(part, corner) for part, corner in zip((velocity, amplitude), corners, strict=True)
-    )
-    page_answers, truth = both_answers(dataset, velocity, amplitude)
-    compare(page_answers, truth)
-    assert {one["source"] for one in page_answers} >= sources
+    velocity, amplitude = 10 ** rng.uniform(-3, 1, 200), rng.uniform(0.01, 3, 200)
+    compare(*both_answers(dataset, velocity, amplitude))
 
 
 @pytest.mark.parametrize("motion", ["transverse", "bore"])
@@ -99,8 +76,7 @@ def test_maps_over_poissons_ratio_answer_as_at(motion):
     map_ = certified_stub.configured(motion, **axes, adaptive={"error": 3e-2})
     dataset = made(map_, lambda v, a, nu: FRICTION[motion](v, a / (1 - 0.3 * nu)))
     rng = np.random.default_rng(12)
-    velocity, amplitude = 10 ** rng.uniform(-5, 2, 60), rng.uniform(0, 3, 60)
-    velocity[:5] = 0.0
+    velocity, amplitude = 10 ** rng.uniform(-3, 1, 60), rng.uniform(0.01, 3, 60)
     for poisson in (0.0, 0.17, 0.3, 0.5):
         compare(*both_answers(dataset, velocity, amplitude, poisson))
     packed = certified.packed(dataset)

@@ -11,7 +11,7 @@ from stubs import certified_stub
 from stubs.in_node import answers, needs_node
 
 import microslip
-from microslip.datasets.query.accessor import Friction
+from microslip.datasets.accessor import Map
 from microslip.estimate.estimate import Estimate
 from microslip.foundation.errors import InputError
 from microslip.report.explorer import certified, si_form
@@ -116,7 +116,7 @@ def predicted(monkeypatch):
     def by(dataset):
         def solve(name, velocity, amplitude, *, poisson, **_):
             try:
-                answer = Friction(dataset).at(velocity, amplitude, poisson=poisson)
+                answer = Map(dataset).at(velocity, amplitude, poisson=poisson)
             except ValueError as error:
                 pair, reason = (math.nan, math.inf), str(error)
             else:
@@ -199,7 +199,7 @@ def test_at_another_poissons_ratio_the_answer_at_the_nearest_is_shown():
         answer["refused"] == "poisson = 0.3: allowed is 0, the dataset's only one; "
         "microslip.solve computes any"
     )
-    near = Friction(coarse).at(answer["velocity"], answer["amplitude"])
+    near = Map(coarse).at(answer["velocity"], answer["amplitude"])
     assert answer["near"]["poisson"] == 0
     assert answer["near"]["value"] == pytest.approx(float(near.mu_macro), abs=1e-12)
 

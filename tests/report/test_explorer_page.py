@@ -7,7 +7,7 @@ from stubs import explorer_stub as stub
 from stubs.in_node import needs_node, page_says
 
 from microslip.config import load
-from microslip.datasets.query.accessor import Friction
+from microslip.datasets.accessor import Map
 from microslip.report.explorer import payload
 from microslip.theory import paper
 
@@ -279,7 +279,7 @@ def test_the_form_answers_and_marks_the_point(made, certified):
         "[element('contact-view').hidden, element('map').data.at(-1).x, element('disc').drawn]",
     )
     contact, (value, note), star, warnings = values[6:10]
-    truth = Friction(certified).at(contact["velocity"], contact["amplitude"])
+    truth = Map(certified).at(contact["velocity"], contact["amplitude"])
     mu, error = float(truth.mu_macro), float(truth.mu_macro_error)
     assert contact["friction"]["value"] == pytest.approx(mu, abs=1e-12)
     assert abs(float(value.split()[3]) - 0.3 * mu) <= 0.3 * error / 10

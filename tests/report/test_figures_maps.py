@@ -17,8 +17,8 @@ from scipy.ndimage import binary_dilation
 from stubs import figures_stub as stub
 from stubs.figures_stub import VELOCITY, artists, words
 
-from microslip.datasets.query import accessor
-from microslip.datasets.query.surface import Surface
+from microslip.datasets.accessor import Map
+from microslip.datasets.surface import Surface
 from microslip.motions.by_name import MOTIONS, motion_named
 from microslip.report.figures import drawing, groups, map_panel, signed
 from microslip.report.figures import style as look
@@ -112,7 +112,7 @@ def test_the_surface_equals_microslip_at():
     surface = Surface(*(dataset[n].values for n in ("velocity", "amplitude", "mu_macro")))
     x, y, fine = surface.velocity, surface.amplitude, surface.values
     assert min(fine.shape) > 150
-    expected = accessor.Friction(dataset).at(x, np.clip(y, 0.2, 3))
+    expected = Map(dataset).at(x, np.clip(y, 0.2, 3))
     away = np.abs(fine.filled(np.inf) - expected["mu_macro"].values)
     assert np.all(away <= expected["mu_macro_error"].values)
     assert np.median(away) < 1e-12  # values differ where they are clipped

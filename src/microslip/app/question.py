@@ -169,7 +169,7 @@ def _opened_map(path: str) -> xr.Dataset:
 
     Raises InputError and CacheError.
     """
-    from microslip.datasets.query.open_map import open_map
+    from microslip.datasets.open_map import open_map
 
     try:
         return open_map(Path(path)) if path.endswith(".nc") else open_map(path)

@@ -1,7 +1,7 @@
-"""The accessors `microslip` and `friction` of xarray datasets.
+"""The accessor `microslip` of xarray datasets.
 
-`import microslip` registers them, so that maps opened by `xarray.open_dataset(...)` have them.
-Importing xarray takes a third of a second.  The accessors are registered only when xarray is
+`import microslip` registers it, so that maps opened by `xarray.open_dataset(...)` have it.
+Importing xarray takes a third of a second.  The accessor is registered only when xarray is
 imported, so that processes without datasets save this time.
 """
 
@@ -42,8 +42,7 @@ class _AfterXarray:
 
 def _register(xarray: Any) -> None:
     def of_dataset(dataset: Any) -> Any:
-        return import_module("microslip.datasets.query.accessor").Friction(dataset)
+        return import_module("microslip.datasets.accessor").Map(dataset)
 
-    for name in ("microslip", "friction"):
-        if not hasattr(xarray.Dataset, name):  # the package may be imported anew
-            xarray.register_dataset_accessor(name)(of_dataset)
+    if not hasattr(xarray.Dataset, "microslip"):  # the package may be imported anew
+        xarray.register_dataset_accessor("microslip")(of_dataset)

@@ -18,7 +18,7 @@ REFUSED = ("force", "drive_stiffness", "wear_coefficient")
 
 
 class FrictionMap:
-    """Friction from the dataset of a sweep, through its accessor (see datasets.query).
+    """Friction from the dataset of a sweep, through its accessor (see datasets.accessor).
 
     Parameters
     ----------
@@ -49,8 +49,8 @@ class FrictionMap:
     def at(
         self, velocity: Any, amplitude: Any, poisson: float | None
     ) -> tuple[np.ndarray, np.ndarray]:
-        """Return friction and its error bound at points.  Raises InputError about `nu`, and
-        ValueError for points outside the map."""
+        """Return friction and its error bound at points.  Raises InputError, about `nu`
+        for Poisson's ratio."""
         try:
             answer = self.dataset.microslip.at(velocity, amplitude, poisson=poisson)
         except InputError as error:

@@ -14,7 +14,7 @@ import xarray as xr
 
 from microslip.config.quantities import MU_MACRO
 from microslip.datasets.catalogue import FORMS, ClosedForm
-from microslip.datasets.query.interpolation import Axis
+from microslip.datasets.interpolation import Axis
 from microslip.foundation.canonical import number
 from microslip.report.figures import style
 from microslip.report.figures.data import at_each_poisson, curve, limit, spans_a_map

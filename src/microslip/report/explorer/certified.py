@@ -5,11 +5,12 @@ from __future__ import annotations
 import numpy as np
 import xarray as xr
 
-from microslip.datasets.query import beyond
-from microslip.datasets.query.cells import cells_of
+from microslip.datasets.cells import cells_of
 from microslip.sweeps import map_coordinates
 from microslip.sweeps.evaluate import plain
 
+EDGE = 97
+"""Number of velocities at which friction is evaluated along the largest amplitude."""
 RULE = 64
 """Number of Gauss nodes, the same as in theory.paper."""
 
@@ -39,13 +40,14 @@ def packed(dataset: xr.Dataset) -> dict:
     coordinates = table.coordinates
     assert isinstance(coordinates, map_coordinates.MapCoordinates)  # for maps of friction
     motion, pressure = dataset.attrs["motion"], dataset.attrs.get("pressure", "hertz")
+    ratios = coordinates.poisson or (float(dataset["poisson"]),)
     return {
         "motion": motion,
         "pressure": pressure,
         "error": float(dataset.attrs["error"]),
         "velocity": list(coordinates.velocity),
         "amplitude": list(coordinates.amplitude),
-        "poisson": [float(table.ratios[0]), float(table.ratios[-1])],
+        "poisson": [ratios[0], ratios[-1]],
         "kink_amplitudes": list(coordinates.kinks.amplitudes),
         "kink_velocity": list(coordinates.kinks.velocity),
         "gathering": {
@@ -60,8 +62,8 @@ def packed(dataset: xr.Dataset) -> dict:
         "cells": plain(dataset["cell_node"].values.ravel().astype(int)),
         "borders": plain(np.asarray(table.borders).ravel()),
         "bounds": plain(table.bounds),
-        "has_limits": beyond.has_limits(dataset),
-        "edge": plain(table.columns.values),
+        "has_limits": pressure == "hertz" and motion in ("transverse", "bore"),
+        "edge": plain(np.geomspace(coordinates.velocity[0], coordinates.velocity[-1], EDGE)),
         "rule": gauss_rule(),
     }
 

@@ -9,8 +9,7 @@ from matplotlib.collections import PolyCollection
 from matplotlib.figure import Figure
 
 from microslip.datasets import certified_map
-from microslip.datasets.query.accessor import Friction
-from microslip.datasets.query.cells import is_static
+from microslip.datasets.accessor import Map
 from microslip.report.figures import panels
 from microslip.report.figures import style as look
 from microslip.report.figures.formulas import axis_label
@@ -32,12 +31,14 @@ def draw(name: str, dataset: xr.Dataset) -> Figure:
     A map with several Poisson's ratios is drawn at the smallest ratio. A map of the static limit is
     drawn as a line.
     """
-    if is_static(dataset):
+    if "velocity" not in dataset.attrs["directions"].split():
         return _lines(dataset)
     figure = look.new_figure(look.DOUBLE, 3.1)
     left, right = figure.subplots(1, 2, sharex=True, sharey=True)
     poisson = float(dataset["poisson"].min())
-    grid = Friction(dataset).on_grid(NODES, NODES, poisson=poisson)
+    ends = [(float(dataset[n].min()), float(dataset[n].max())) for n in ("velocity", "amplitude")]
+    velocity, amplitude = np.geomspace(*ends[0], NODES), np.linspace(*ends[1], NODES)
+    grid = Map(dataset).at(velocity, amplitude, poisson=poisson)
     grid = grid.assign(converged=np.isfinite(grid["mu_macro"]))
     filled, *_ = fill(left, grid, lines=CONTOURS)
     panels.colour_bar(filled, left, look.FRICTION, aspect=20, ticks=np.linspace(0, 1, 6))
@@ -76,7 +77,8 @@ def _lines(dataset: xr.Dataset) -> Figure:
     left, right = figure.subplots(1, 2, sharex=True)
     ends = np.unique([float(dataset["poisson"].min()), float(dataset["poisson"].max())])
     for poisson, color, ls in zip(ends.tolist(), INKS, (look.SOLID, look.DASHED), strict=False):
-        grid = Friction(dataset).on_grid(amplitude=LINE, poisson=poisson).isel(velocity=0)
+        ends_of = float(dataset["amplitude"].min()), float(dataset["amplitude"].max())
+        grid = Map(dataset).at(amplitude=np.linspace(*ends_of, LINE), poisson=poisson)
         ink: look.Ink = {"color": color, "ls": ls, "lw": 1.2}
         ink |= {"label": rf"$\nu = {look.number(poisson)}$"}
         left.plot(grid["amplitude"], grid["mu_macro"], **ink)

@@ -21,7 +21,7 @@ from matplotlib.patheffects import withStroke
 from scipy.ndimage import maximum_filter
 from scipy.spatial import KDTree
 
-from microslip.datasets.query.surface import Surface
+from microslip.datasets.surface import Surface
 from microslip.report.figures import panels, signed
 from microslip.report.figures import style as look
 from microslip.report.figures.data import columns

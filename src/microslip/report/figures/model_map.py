@@ -11,7 +11,7 @@ from matplotlib.patches import Patch
 from scipy import ndimage
 
 from microslip.config.quantities import AMPLITUDE, VELOCITY
-from microslip.datasets.query.interpolation import Axis
+from microslip.datasets.interpolation import Axis
 from microslip.report.figures import panels
 from microslip.report.figures import style as look
 

@@ -12,7 +12,7 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
 from microslip.config.quantities import MU_MACRO
-from microslip.datasets.query.surface import Surface
+from microslip.datasets.surface import Surface
 from microslip.report.figures import panels
 from microslip.report.figures import style as look
 from microslip.report.figures.data import columns

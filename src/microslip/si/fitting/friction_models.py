@@ -32,7 +32,7 @@ MOST_SOLVED = 200
 
 
 class MapFriction:
-    """Friction interpolated in the dataset of a sweep; see datasets.query.
+    """Friction interpolated in the dataset of a sweep; see datasets.accessor.
 
     Parameters
     ----------

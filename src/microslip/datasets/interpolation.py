@@ -1,8 +1,8 @@
-"""Interpolation in a table by local cubics, with an error estimate.
+"""Interpolation on a regular grid by local cubics, with an error estimate.
 
 Along an axis, values are interpolated by the cubic through the four nearest nodes.  To estimate the
 error, each node is also predicted from its neighbours by a cubic with twice the spacing.  The error
-bound of a cell is the largest difference between prediction and value at the surrounding nodes.
+bound of a cell is the largest difference between prediction and value at the nodes of its cubic.
 The true error is sixteen times smaller for a smooth function and about as large at a kink.
 """
 
@@ -10,6 +10,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
+from itertools import product
 
 import numpy as np
 
@@ -19,7 +20,7 @@ NODES = 4
 
 @dataclass(frozen=True, eq=False)
 class Axis:
-    """Ascending coordinates of one axis of a table.
+    """Ascending coordinates of one axis of a grid.
 
     The axis is logarithmic if the coordinates are closer to equal ratios than to equal steps.
     """
@@ -85,13 +86,13 @@ class Axis:
         x = self.nodes
         count = len(x)
         if count < 3:
-            return np.broadcast_to(np.abs(table[-1] - table[0]), table.shape).copy()
+            return np.broadcast_to(np.abs(table[-1] - table[0]), table.shape)
         out = np.empty(table.shape)
         for i in range(1, count - 1):
             others = np.delete(np.arange(count), i)
             near = np.sort(others[np.argsort(np.abs(others - i), kind="stable")[:NODES]])
             weights = lagrange(x[None, near], x[i : i + 1])[0]
-            out[i] = np.abs(table[i] - weights @ table[near])
+            out[i] = np.abs(table[i] - np.tensordot(weights, table[near], 1))
         out[0], out[-1] = out[1], out[-2]
         return out
 
@@ -116,61 +117,48 @@ def lagrange(nodes: np.ndarray, points: np.ndarray) -> np.ndarray:
 
 
 @dataclass(frozen=True, eq=False)
-class Table:
-    """Values and errors on two axes, shape (len(rows), len(columns)).  Unknown values are NaN."""
+class Grid:
+    """Values and errors at the nodes of a regular grid with one or more axes.
 
-    rows: Axis
-    columns: Axis
+    Attributes
+    ----------
+    axes : tuple of Axis
+        Axes of the grid.
+    values, errors : np.ndarray, shape (n, m, ...)
+        Values and their error estimates, with one dimension for each axis.  Unknown values are NaN.
+    """
+
+    axes: tuple[Axis, ...]
     values: np.ndarray
     errors: np.ndarray
 
-    @property
-    def last_row(self) -> tuple[np.ndarray, np.ndarray]:
-        """Values and errors along the last row, shape (len(columns),) each."""
-        return self.values[-1], self.errors[-1]
-
     @cached_property
-    def _misses(self) -> tuple[np.ndarray, np.ndarray]:
-        """Largest differences (see `misses`) at the nodes around each cell, along both axes."""
-        along_rows = self.rows.misses(self.values)
-        along_columns = self.columns.misses(self.values.T).T
-        return largest_around(along_rows, 4), largest_around(along_columns, 4)
+    def _misses(self) -> list[np.ndarray]:
+        """Differences of the leave-one-out prediction along each axis, see Axis.misses."""
+        return [
+            np.moveaxis(axis.misses(np.moveaxis(self.values, k, 0)), 0, k)
+            for k, axis in enumerate(self.axes)
+        ]
 
-    def at(self, row: np.ndarray, column: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Return values and error bounds at points inside the table, shape (n,) each.
+    def at(self, *points: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Return values and error bounds at points inside the grid, shape (n,) each.
 
-        If a value at one of the nodes is unknown, the result is NaN and the error bound is
-        infinite.
+        Between two nodes of an axis, the interpolation error is proportional to the product of the
+        distances to them.  The bound is the sum over all axes, plus the largest error of the nodes.
+        If a value at one of the nodes is unknown, the result is NaN and the bound is infinite.
+
+        points: coordinates, one array of shape (n,) for each axis.
         """
-        i, s, rows, row_weights = self.rows.cubics(row)
-        j, t, columns, column_weights = self.columns.cubics(column)
-        corners = rows[:, :, None], columns[:, None, :]
-        value = np.einsum("ni,nj,nij->n", row_weights, column_weights, self.values[corners])
-        error = self.errors[corners].max(axis=(1, 2))
-        # Between two nodes the interpolation error is proportional to the product of the distances.
-        for miss, share in zip(self._misses, (s, t), strict=True):
-            error = error + 4.0 * share * (1.0 - share) * miss[i, j]
+        stencils = [axis.cubics(one) for axis, one in zip(self.axes, points, strict=True)]
+        count = len(points[0])
+        value, error = np.zeros(count), np.zeros(count)
+        misses = np.zeros((len(self.axes), count))
+        for corner in product(*(range(index.shape[1]) for _, _, index, _ in stencils)):
+            parts = [(i[:, k], w[:, k]) for (_, _, i, w), k in zip(stencils, corner, strict=True)]
+            node = tuple(index for index, _ in parts)
+            value += np.prod([weight for _, weight in parts], axis=0) * self.values[node]
+            error = np.maximum(error, self.errors[node])
+            misses = np.maximum(misses, [miss[node] for miss in self._misses])
+        for (_, share, _, _), miss in zip(stencils, misses, strict=True):
+            error = error + 4.0 * share * (1.0 - share) * miss
         return value, np.where(np.isnan(value) | np.isnan(error), np.inf, error)
-
-
-def largest_around(values: np.ndarray, size: int = 3) -> np.ndarray:
-    """Return the largest entry in each window of a table.  The table is padded with its edge
-    entries.
-
-    Parameters
-    ----------
-    values : numpy.ndarray, shape (n, m)
-        Entries at the nodes of a table.
-    size : int
-        Number of nodes along a side of a window: 3 for windows around each node, 4 for windows
-        around each cell.
-
-    Returns
-    -------
-    numpy.ndarray
-        Array of shape (n, m) for size 3.  For size 4, the shape is (n - 1, m - 1), with at least
-        one entry along each axis.
-    """
-    padded = np.pad(values, [(1, max(1, size - 1 - n)) for n in values.shape], mode="edge")
-    windows = np.lib.stride_tricks.sliding_window_view(padded, (size, size))
-    return windows.max(axis=(-2, -1))

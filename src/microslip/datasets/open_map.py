@@ -5,7 +5,7 @@ friction.mu_macro.sel(velocity=0.1, method="nearest")     # plain xarray
 friction.microslip.at(velocity=0.05, amplitude=0.8)       # interpolated, with an error bound
 microslip.open_map("transverse", group="history")         # a group with axes of its own
 
-The modules `interpolation`, `cells` and `beyond` explain the error bound.
+The modules `interpolation` and `cells` explain the error bound.
 """
 
 from __future__ import annotations

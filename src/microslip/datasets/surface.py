@@ -1,7 +1,7 @@
 """Interpolate a map on a grid that is fine enough for drawing.
 
 Datasets contain values at the computed points only.  For figures, this module interpolates between
-the points with the cubics of `query.interpolation`.
+the points with the cubics of `datasets.interpolation`.
 """
 
 from __future__ import annotations
@@ -9,7 +9,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike
 
-from microslip.datasets.query.interpolation import Axis, largest_around
+from microslip.datasets.interpolation import Axis
 
 FINE = 200
 """Approximate number of grid lines along each axis of the fine grid."""
@@ -65,7 +65,7 @@ class Surface:
             self._rows.misses(self._points),
             self._columns.misses(self._points.T).T,
         ):
-            error += largest_around(np.nan_to_num(missed), 4)
+            error += largest_around(np.nan_to_num(missed))
         cells = error <= np.diff(levels).min(initial=np.inf) / 2.0
         # A line between two cells is drawn if it is reliable in one of them.
         rows = _cells(self._rows, self.amplitude)
@@ -100,3 +100,15 @@ def _cells(axis: Axis, coordinates: np.ndarray) -> list[np.ndarray]:
     the coordinate is inside a cell."""
     sides = (np.searchsorted(axis.values, coordinates, side) for side in ("left", "right"))
     return [np.clip(side - 1, 0, len(axis.values) - 2) for side in sides]
+
+
+def largest_around(values: np.ndarray) -> np.ndarray:
+    """Return the largest entry at the nodes around each cell of a table.
+
+    values: entries at the nodes, shape (n, m).  Windows have four nodes along a side.  The table is
+    padded with its edge entries.  Returns shape (n - 1, m - 1), with at least one entry along each
+    axis.
+    """
+    padded = np.pad(values, [(1, max(1, 3 - n)) for n in values.shape], mode="edge")
+    windows = np.lib.stride_tricks.sliding_window_view(padded, (4))
+    return windows.max(axis=(-2, -1))

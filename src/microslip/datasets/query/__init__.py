@@ -1,1 +1,0 @@
-"""Interpolation between the nodes of a map, and estimates outside the tabulated range."""
