@@ -62,8 +62,8 @@ def test_a_loop_of_no_width_has_the_limit_of_its_line(amplitude):
 def test_on_a_line_the_whole_period_says_what_the_turning_points_say():
     motion, resolution = motion_named("transverse"), Resolution(16, 1, 64)
     line = simulate_static(Problem(motion, 0.0, 0.5, 0.0), "radial", resolution, 1e-5).mu
-    # this motion along a line does not have the attribute `straight`
-    loop = motion_named("elliptic:forward=0,phase=0,forward_cycles=2")
+    # so narrow that it is a line, but not `straight`
+    loop = motion_named("elliptic:forward=1e-9,phase=0,forward_cycles=2")
     assert not loop.straight
     result = simulate_static(Problem(loop, 0.0, 0.5, 0.0), "radial", resolution, 1e-5).mu
     assert result == pytest.approx(line, abs=2e-3)
