@@ -1,7 +1,12 @@
 """Compiled code on disk: it matches the running sources, wherever its folder is."""
 
+import os
 import shutil
+import subprocess
+import sys
 import tempfile
+from concurrent.futures import ThreadPoolExecutor
+from importlib.util import find_spec
 from pathlib import Path
 
 import pytest
@@ -120,6 +125,128 @@ def test_where_neither_package_nor_home_can_be_written_it_runs_all_the_same_and_
     assert folder in line and "NUMBA_CACHE_DIR" in line
     again = run(program, package=copy, **environment)
     assert again.stdout == process.stdout
+
+
+# Storage of compiled code
+
+TWO_TYPES = """
+import sys, numpy as np
+from microslip.contacts.coulomb import shrink
+for kind in sys.argv[1:]:
+    number = np.dtype(kind).type(4.0)
+    print(shrink(number, number * 0, number / number))
+"""
+BOTH = ("float64", "float32")
+
+
+def said(folder, *kinds, program=TWO_TYPES, **environment):
+    """Error messages of a new process that calls a kernel for some types, with compiled code in a
+    folder."""
+    environment |= {"NUMBA_CACHE_DIR": str(folder), "MICROSLIP_SAID_UNSTORED": ""}
+    process = run(program, *kinds, **environment)
+    assert process.returncode == 0, process.stderr
+    assert process.stdout.split() == ["0.25"] * len(kinds)
+    return process.stderr
+
+
+def stored(folder, ending="*"):
+    """Files of compiled code."""
+    return sorted(path for path in folder.rglob(f"*.nb{ending}"))
+
+
+@pytest.fixture(scope="module")
+def with_code(tmp_path_factory):
+    """A folder with compiled code of one kernel for two types."""
+    folder = tmp_path_factory.mktemp("code")
+    assert said(folder, *BOTH) == ""
+    assert (len(stored(folder, "i")), len(stored(folder, "c"))) == (1, 2)
+    return folder
+
+
+def flipped(whole):
+    changed = bytearray(whole)
+    changed[len(whole) // 2] ^= 16
+    return bytes(changed)
+
+
+DAMAGE = {
+    "emptied": lambda whole: b"",
+    "cut": lambda whole: whole[: len(whole) * 2 // 3],
+    "a bit flipped": flipped,
+    "overwritten": lambda whole: b"no pickle" * 1000,
+}
+
+
+@pytest.mark.long
+@pytest.mark.parametrize("kind", DAMAGE)
+@pytest.mark.parametrize("ending", ["i", "c"], ids=["index", "code"])
+def test_damaged_code_is_compiled_again_and_overwritten(ending, kind, with_code, tmp_path):
+    folder = shutil.copytree(with_code, tmp_path / "code")
+    damaged = {}
+    for path in stored(folder, ending):
+        damaged[path] = DAMAGE[kind](path.read_bytes())
+        path.write_bytes(damaged[path])
+    assert said(folder, *BOTH) == ""
+    assert [path for path, content in damaged.items() if path.read_bytes() == content] == []
+    written = {path: path.stat().st_mtime_ns for path in stored(folder)}
+    assert said(folder, *BOTH) == ""
+    assert {path: path.stat().st_mtime_ns for path in stored(folder)} == written
+
+
+@pytest.mark.long
+def test_code_of_another_signature_is_not_used(with_code, tmp_path):
+    """Two processes that compile one kernel at the same time can exchange their files."""
+    folder = shutil.copytree(with_code, tmp_path / "code")
+    one, other = stored(folder, "c")
+    first, second = one.read_bytes(), other.read_bytes()
+    one.write_bytes(second)
+    other.write_bytes(first)
+    assert said(folder, *BOTH) == ""
+
+
+FULL = """
+import resource, signal
+signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
+resource.setrlimit(resource.RLIMIT_FSIZE, (1000, 1000))
+"""
+
+
+@pytest.mark.long
+@pytest.mark.skipif(find_spec("resource") is None, reason="needs limits of file sizes")
+def test_without_room_for_code_one_line_names_its_folder(tmp_path):
+    """Files are limited to 1000 bytes, which Python reports like a full disk, as OSError."""
+    (line,) = said(tmp_path, "float64", program=FULL + TWO_TYPES).splitlines()
+    assert str(tmp_path) in line and "NUMBA_CACHE_DIR" in line
+    assert stored(tmp_path, "c") == []
+    assert said(tmp_path, "float64") == ""  # with room again
+    assert len(stored(tmp_path, "c")) == 1
+
+
+@pytest.mark.long
+def test_processes_that_compile_at_the_same_time_do_not_disturb_each_other(tmp_path):
+    with ThreadPoolExecutor(4) as pool:
+        assert [*pool.map(lambda kind: said(tmp_path, kind), BOTH * 2)] == [""] * 4
+    assert said(tmp_path, *BOTH) == ""
+
+
+@pytest.mark.long
+def test_code_that_numba_does_not_optimise_gives_the_same_numbers(tmp_path):
+    said(tmp_path, "float64", NUMBA_OPT="0")
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("command", ["point transverse --velocity 1 --amplitude 1", "sweep -n"])
+def test_without_a_compiler_one_line_refuses(command, tmp_path):
+    process = subprocess.run(
+        [sys.executable, "-m", "microslip", *command.split()],
+        cwd=tmp_path,
+        env=os.environ | {"NUMBA_DISABLE_JIT": "1"},
+        capture_output=True,
+        text=True,
+    )
+    assert (process.returncode, process.stdout) == (2, "")
+    (line,) = process.stderr.splitlines()
+    assert ": NUMBA_DISABLE_JIT = 1: " in line
 
 
 BESIDE_LINEAR_ALGEBRA = """

@@ -95,8 +95,9 @@ def _hint(name: str, candidates: Sequence[str]) -> str:
 
 
 def option(argument: str) -> str:
-    """Return the option for a Python argument, such as --contact-radius for contact_radius."""
-    return f"--{argument.replace('_', '-')}"
+    """Return the option for a Python argument, such as --contact-radius for contact_radius.  An
+    environment variable, in capitals, is returned unchanged."""
+    return argument if argument.isupper() else f"--{argument.replace('_', '-')}"
 
 
 def format_as_options(text: str, arguments: Iterable[str] = ()) -> str:

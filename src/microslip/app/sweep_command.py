@@ -16,6 +16,7 @@ import shutil
 import sys
 import tempfile
 from contextlib import redirect_stderr, redirect_stdout
+from importlib import import_module
 from pathlib import Path
 
 from microslip.app.figure_targets import TARGETS
@@ -132,6 +133,8 @@ def _check(arguments: list[str]) -> None:
     options = _parsed(arguments)
     if options is None:
         return
+    if os.environ.get("NUMBA_DISABLE_JIT"):
+        import_module("microslip.foundation.compiled")  # refuses it
     if options.directory is None and not os.access(".", os.W_OK):
         raise InputError("--directory", os.getcwd(), "allowed is a folder that can be written to")
     for name in ("cores", "jobs"):

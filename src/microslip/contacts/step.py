@@ -149,7 +149,7 @@ def _solve_driven_step(system, balance, step, fields):  # type: ignore[no-untype
 
 
 # without type hints, because Numba compares the signature with that of the lambda
-@overload(response_to_drive, jit_options=OPTIONS | {"cache": False})
+@overload(response_to_drive, jit_options=OPTIONS)
 def _response_to_drive(system, fields, response, slope):  # type: ignore[no-untyped-def]
     _, _, respond = _SOLVERS[system.types[SOLVER].instance_class]
     return lambda system, fields, response, slope: respond(system, fields, response, slope)

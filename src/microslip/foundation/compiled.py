@@ -14,7 +14,16 @@ from importlib.util import module_from_spec
 import numba
 import scipy
 
+from microslip.foundation.errors import InputError
 from microslip.foundation.kernel_cache import BySources, folder
+from microslip.foundation.kernel_store import KernelStore
+
+if numba.config.DISABLE_JIT:
+    raise InputError(
+        "NUMBA_DISABLE_JIT",
+        numba.config.DISABLE_JIT,
+        "the solver runs only as compiled code; allowed is 0, or no such variable",
+    )
 
 numba.config.SLP_VECTORIZE = 1
 """Combine neighbouring scalar operations into vector instructions, which Numba does not do by
@@ -44,9 +53,8 @@ def _look_for_blas() -> None:
 
 _look_for_blas()
 
-OPTIONS = {"cache": True, "nogil": True, "error_model": "numpy"}
-"""Numba options.  Code is compiled once and stored on disk, sums are not reordered, and division by
-zero works as in NumPy."""
+OPTIONS = {"nogil": True, "error_model": "numpy"}
+"""Numba options.  Sums are not reordered, and division by zero works as in NumPy."""
 
 
 @contextlib.contextmanager
@@ -65,11 +73,13 @@ def _cache_folder() -> Iterator[None]:
 
 
 def kernel(function: Callable | None = None, **options: object) -> Callable:
-    """Decorator for functions that Numba compiles at their first call.
+    """Decorator for functions that Numba compiles at their first call, and stores on disk.
 
     options: arguments of numba.njit in addition to OPTIONS, as in `@kernel(inline="always")`.
     """
     if function is None:
         return lambda function: kernel(function, **options)
     with _cache_folder():
-        return numba.njit(**(OPTIONS | options))(function)
+        dispatcher = numba.njit(**(OPTIONS | options))(function)
+        dispatcher._cache = KernelStore(function)  # as `cache=True` does with Numba's own class
+    return dispatcher

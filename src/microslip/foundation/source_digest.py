@@ -34,6 +34,7 @@ NAMING = {
     "foundation/accessor.py",
     "foundation/files.py",
     "foundation/kernel_cache.py",
+    "foundation/kernel_store.py",
     "foundation/source_digest.py",
 }
 """Files that name and write results, but do not influence the values in them."""
