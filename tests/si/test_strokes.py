@@ -131,9 +131,9 @@ def test_largest_speed_is_that_of_all_harmonics(tmp_path):
 @pytest.mark.parametrize(
     ("heading", "problem"),
     [
-        ("lateral", r"lateral has no unit; allowed: one such as lateral \[um\]"),
+        ("lateral", r"lateral has no unit; allowed: one such as lateral"),
         ("lateral [N]", r"lateral \[N\]: the unit is newton"),
-        ("time,lateral [um]", r"time has no unit; allowed: one such as time \[ms\]"),
+        ("time,lateral [um]", r"time has no unit; allowed: one such as time"),
         ("lateral [um],indentation [um],load [N]", "allowed is one of the two"),
     ],
 )

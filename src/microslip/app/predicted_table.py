@@ -18,12 +18,12 @@ from microslip.app.question import (
     write_files,
 )
 from microslip.app.terminal import complain
+from microslip.foundation.csv_table import Table
 from microslip.foundation.errors import InputError, shown
 from microslip.foundation.number_text import SEPARATOR, error_text, number_text
 from microslip.si.motions import kind_of
 from microslip.si.prediction import EMPTY, NoPrediction, Prediction
 from microslip.si.printed_lines import not_converged, probability_text, runs_away
-from microslip.si.tables import Table
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -129,8 +129,8 @@ def answer(options: argparse.Namespace, arguments: Mapping[str, Any]) -> Answer:
 
 def _lines_of_file(options: argparse.Namespace, arguments: Mapping[str, Any]) -> _Cases:
     """Read contacts from a file with one contact per line."""
+    from microslip.foundation.csv_table import table_of
     from microslip.si.table import NAMES, as_dataset
-    from microslip.si.tables import table_of
 
     format: dict[str, Any] = {name: arguments[name] for name in FILE_FORMAT if name in arguments}
     shared = {name: value for name, value in arguments.items() if name not in FILE_FORMAT}

@@ -1,5 +1,5 @@
-"""Atomic writing of files.  A file is written under a temporary name, flushed to disk and
-renamed."""
+"""Reading and atomic writing of files.  A file is written under a temporary name, flushed to disk
+and renamed."""
 
 import os
 import time
@@ -10,12 +10,31 @@ from pathlib import Path
 
 from microslip.foundation.errors import NO_WRITING, CacheError, shown
 
+MOST_BYTES = 100_000_000
+"""Largest size of a file that is read, in bytes."""
 LEAST_ROOM = 65536
 """Free disk space in bytes that a calculation needs to start."""
 ABANDONED = 3600.0
 """Age in seconds above which a partial file is considered abandoned by a killed process."""
 _PARTIAL: set[Path] = set()
 """Temporary files that this process is writing."""
+
+
+def content_of(path: str | os.PathLike, most: int = MOST_BYTES) -> bytes:
+    """Read the content of a file.  most: largest allowed size in bytes.
+
+    Raises
+    ------
+    OSError
+        If the file cannot be read.
+    ValueError
+        If the file is larger than `most`, or is a device that never ends.
+    """
+    with open(path, "rb") as file:
+        content = file.read(most + 1)
+    if len(content) > most:
+        raise ValueError(f"larger than {most / 1e6:g} MB; allowed: at most that")
+    return content
 
 
 def refuse_no_folder(folder: object) -> None:

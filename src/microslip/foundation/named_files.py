@@ -18,8 +18,9 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Generic, TypeGuard, TypeVar
 
-from microslip.foundation import csv_text
+from microslip.foundation.csv_table import check_format
 from microslip.foundation.errors import InputError
+from microslip.foundation.files import MOST_BYTES, content_of
 
 T = TypeVar("T")
 
@@ -28,8 +29,6 @@ GRID = "cells"
 """Default meaning of the values of a grid, see pressures.grid.READINGS."""
 DIGITS = 16
 """Number of hexadecimal digits of a digest in a name."""
-MOST_BYTES = 100_000_000
-"""Largest size of a file."""
 OPTIONS = re.compile(r"(?:^|,)(grid|pitch|sha256|decimal|encoding)=([^,]*)$")
 DECIMALS = {"point": ".", "comma": ","}
 """Decimal marks, by the words that represent them in names."""
@@ -135,7 +134,7 @@ class FileReader(Generic[T]):
         for begins, kind in PACKED.items():
             if content.startswith(begins):
                 raise ValueError(f"packed ({kind}); allowed: CSV or netCDF as it is")
-        csv_text.check_format(DECIMALS[file.decimal], file.encoding)
+        check_format(DECIMALS[file.decimal], file.encoding)
         return self.create(file, content)
 
 
@@ -232,23 +231,6 @@ def _place(name: str, argument: str, file: NamedFile, folders: Iterable[str | os
     raise InputError(
         argument, name, f"{file.path} cannot be read: No such file; looked for {looked}{hint}"
     )
-
-
-def content_of(path: str | os.PathLike, most: int = MOST_BYTES) -> bytes:
-    """Read the content of a file.  most: largest allowed size in bytes.
-
-    Raises
-    ------
-    OSError
-        If the file cannot be read.
-    ValueError
-        If the file is larger than `most`, or is a device that never ends.
-    """
-    with open(path, "rb") as file:
-        content = file.read(most + 1)
-    if len(content) > most:
-        raise ValueError(f"larger than {most / 1e6:g} MB; allowed: at most that")
-    return content
 
 
 def _content(name: str, argument: str, place: Path) -> bytes:

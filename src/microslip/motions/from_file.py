@@ -13,69 +13,63 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from microslip.foundation.csv_text import PURE
+import numpy as np
+
+from microslip.foundation.csv_table import Table, read_table
 from microslip.foundation.named_files import DECIMALS, GRID, FileReader, NamedFile
-from microslip.foundation.number_table import NumberTable, read_numbers
 from microslip.motions.samples import NORMAL, PLANE, Sampled, uneven_row
 
 COLUMNS = (*PLANE, *NORMAL)
-ALLOWED = "some of forward,lateral,angle, and load or indentation, and time"
+UNITS = {"forward": "m", "lateral": "m", "angle": "rad", "load": "N", "indentation": "m"}
+"""SI units of the columns of a path or a period."""
 EVEN = 1e-2
 """Largest allowed deviation of a time from equal spacing, divided by the spacing.  It changes a
 sine with N samples by at most 2 pi EVEN / N of its amplitude."""
 
 
-def table_of(file: NamedFile, content: bytes) -> NumberTable:
-    """Parse the content of a file with equally spaced samples.
+def read_samples(
+    content: bytes, *, need_units: bool = False, decimal: str = ".", encoding: str = "utf-8"
+) -> tuple[Table, dict[str, np.ndarray]]:
+    """Read the samples in a file: the table, and its columns as numbers in the units of the file.
 
-    Raises
-    ------
-    ValueError
-        If the content has another format, or if the times are not equally spaced.
+    The keywords are those of `csv_table.read_table`.  Raises ValueError if the content has another
+    format, or has no displacement or load.
     """
-    if file.grid != GRID or file.pitch:
-        raise ValueError("allowed after the path: decimal=comma or encoding=cp1252")
-    table = columns_of(content, decimal=DECIMALS[file.decimal], encoding=file.encoding)
-    time = table.columns.get("time")
-    if time is not None and (row := uneven_row(time, EVEN)) is not None:
-        where = table.lines[row]
-        raise ValueError(f"line {where}: time is not equally spaced; allowed: equal steps")
-    return table
-
-
-def columns_of(content: bytes, *, decimal: str, encoding: str) -> NumberTable:
-    """Parse the content of a file.  The table has at least one of the columns in COLUMNS.
-
-    Parameters
-    ----------
-    content : bytes
-        Content of the file.
-    decimal, encoding : str
-        Decimal mark and encoding of the file.
-
-    Raises
-    ------
-    ValueError
-        If the content has another format.
-    """
-    table = read_numbers(content, (*COLUMNS, "time"), ALLOWED, decimal=decimal, encoding=encoding)
-    if not table.units.keys() & set(COLUMNS):
-        raise ValueError(f"there is no displacement or load; allowed: {ALLOWED}")
+    form: dict = {"need_units": need_units, "decimal": decimal, "encoding": encoding}
+    table = read_table(content, UNITS | {"time": "s"}, **form)
+    columns = {name: np.array(one) for name, one in table.numbers().items() if name in table.units}
+    if not columns.keys() & set(COLUMNS):
+        raise ValueError(f"no displacement and no load; allowed: some of {', '.join(COLUMNS)}")
     if not table.lines:
         raise ValueError("no line follows the heading; allowed: one for each sample")
-    return table
+    return table, columns
+
+
+def read_period(
+    file: NamedFile, content: bytes, need_units: bool = False
+) -> tuple[Table, dict[str, np.ndarray]]:
+    """Read a file with equally spaced samples, as read_samples does.  Raises ValueError also if the
+    times are not equally spaced."""
+    if file.grid != GRID or file.pitch:
+        raise ValueError("allowed after the path: decimal=comma or encoding=cp1252")
+    form: dict = {"decimal": DECIMALS[file.decimal], "encoding": file.encoding}
+    table, columns = read_samples(content, need_units=need_units, **form)
+    row = uneven_row(columns["time"], EVEN) if "time" in columns else None
+    if row is not None:
+        where = table.lines[row]
+        raise ValueError(f"line {where}: time is not equally spaced; allowed: equal steps")
+    return table, columns
 
 
 def _of_content(file: NamedFile, content: bytes) -> Sampled:
-    table = table_of(file, content)
-    for name in COLUMNS:
-        unit = table.units.get(name, "")
-        if unit not in PURE:
+    table, columns = read_period(file, content)
+    for name in columns.keys() & set(COLUMNS):
+        if table.units[name]:
             raise ValueError(
-                f"{name} has the unit {unit}, which microslip predict accepts; allowed here: "
-                "dimensionless numbers without a unit"
+                f"{name} has the unit {table.units[name]}, which microslip predict accepts; "
+                "allowed here: dimensionless numbers without a unit"
             )
-    samples = Sampled.of_columns({n: table.columns.get(n) for n in COLUMNS})
+    samples = Sampled.of_columns({name: columns.get(name) for name in COLUMNS})
     return replace(samples, text=file.name)
 
 

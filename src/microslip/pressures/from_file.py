@@ -6,7 +6,7 @@ each point.  A netCDF file has a variable `pressure` with the coordinates `forwa
 By default, a value is the mean over the cell around its point, as sensors measure it.  The load is
 then the sum of the values times the cell areas.  With ",grid=samples" after the path, values apply
 at the points and are interpolated bilinearly. ",pitch=0.5 mm" reads a matrix of pressures without
-coordinates (see grid_matrix.py). ",decimal=comma" and ",encoding=cp1252" describe the format of a
+coordinates (see grid_csv.py). ",decimal=comma" and ",encoding=cp1252" describe the format of a
 CSV file.
 """
 
@@ -15,7 +15,7 @@ from __future__ import annotations
 from pathlib import PurePath
 
 from microslip.foundation import named_files
-from microslip.pressures import grid_csv, grid_matrix, grid_netcdf
+from microslip.pressures import grid_csv, grid_netcdf
 from microslip.pressures.grid import READINGS
 from microslip.pressures.pressure import Measured
 
@@ -34,9 +34,9 @@ def _of_content(file: named_files.NamedFile, content: bytes) -> Measured:
     elif PurePath(file.path).suffix.lower() in NETCDF:
         raise ValueError("not a netCDF file that can be read: it does not begin as one does")
     elif file.pitch:
-        values, units = grid_matrix.grid(content, file.pitch, *text)
+        values, units = grid_csv.read_matrix(content, file.pitch, *text)
     else:
-        values, units = grid_csv.grid(content, *text)
+        values, units = grid_csv.read_points(content, *text)
     return Measured.on_grid(file.name, *values, file.grid, units)
 
 

@@ -6,7 +6,7 @@ import math
 import re
 from collections.abc import Sequence
 
-from microslip.foundation.csv_text import PURE
+from microslip.foundation.csv_table import PURE
 
 COLUMNS = ("forward", "lateral", "pressure")
 KINDS = {"forward": "[length]", "lateral": "[length]", "pressure": "[pressure]"}

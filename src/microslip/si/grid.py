@@ -16,12 +16,12 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from microslip.foundation import spec
+from microslip.foundation.csv_table import Table
 from microslip.foundation.errors import InputError
 from microslip.si.inputs import QUANTITIES, unit_of
 from microslip.si.prediction import NoPrediction, Prediction
 from microslip.si.quantities import read
 from microslip.si.table import MOST_CASES, as_dataset, predictions
-from microslip.si.tables import Table
 from microslip.si.units import UnitError, split_number
 
 if TYPE_CHECKING:
@@ -163,7 +163,7 @@ def grid_of(motion: str, arguments: Mapping[str, Any]) -> Grid:
         raise InputError(name, arguments.get(name), allowed if axes else ALLOWED)
     cases = zip(*product(*(axis.texts for axis in axes.values())), strict=True)
     columns = {axis.name: list(texts) for axis, texts in zip(axes.values(), cases, strict=True)}
-    return Grid(motion, axes, _Points(columns, [], {}), shared)
+    return Grid(motion, axes, _Points(columns, dict.fromkeys(columns), [], {}), shared)
 
 
 def predict_grid(motion: str, **arguments: Any) -> xr.Dataset:

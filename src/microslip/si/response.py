@@ -20,13 +20,13 @@ import numpy as np
 
 from microslip.adaptive.response import Response, response
 from microslip.foundation import spec
+from microslip.foundation.csv_table import LABELS, table_of
 from microslip.foundation.errors import InputError, shown
 from microslip.si.bodies import TwoBodies
 from microslip.si.fitting.measured import named
 from microslip.si.inputs import OF_CONTACT, contact_of, read_inputs
 from microslip.si.quantities import read
 from microslip.si.strokes import UNITS, scales
-from microslip.si.tables import LABELS, table_of
 
 
 @dataclass(frozen=True, eq=False)
@@ -220,8 +220,8 @@ def read_path(
     InputError
         If a column or a line cannot be read.  Lines cannot be skipped, since a path has no gaps.
     """
-    needed = {name: bool(unit) for name, unit in units.items()}
-    table = table_of("path", path, needed, decimal=decimal, encoding=encoding)
+    form: dict = {"decimal": decimal, "encoding": encoding, "need_units": any(units.values())}
+    table = table_of("path", path, units, **form)
     if table.errors:
         raise InputError("path", named(path), next(iter(table.errors.values())))
     columns = {}

@@ -1,4 +1,4 @@
-"""Motions from files with units: one period of a measured stroke, such as "file:stroke.csv".
+"""Samples of motions in SI units: one period of a stroke, such as "file:stroke.csv", and records.
 
 time [ms],lateral [um],load [N]
 0,0,10
@@ -11,26 +11,23 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 
-from microslip.foundation import csv_text
-from microslip.foundation.csv_text import PURE
+from microslip.foundation.csv_table import check_format, parsed_file
 from microslip.foundation.errors import InputError
 from microslip.foundation.named_files import FileReader, NamedFile
-from microslip.foundation.number_table import NumberTable
-from microslip.motions.from_file import COLUMNS, columns_of, table_of
+from microslip.motions.from_file import COLUMNS, UNITS, read_period, read_samples
 from microslip.motions.samples import NORMAL, PLANE, Sampled
-from microslip.si.bodies import TwoBodies
 from microslip.si.quantities import read
-from microslip.si.record import MOST_ROWS
-from microslip.si.tables import parsed_file
 
-UNITS = {"forward": "m", "lateral": "m", "angle": "rad", "load": "N", "indentation": "m"}
-"""SI units of the columns of a path or a period."""
-USUAL_ROWS = 2_000
-"""Largest number of rows in a period without a hint to `microslip fold`.  With more rows, a
-prediction can take minutes, and the file may be a record of many periods."""
+if TYPE_CHECKING:
+    from microslip.si.bodies import TwoBodies
+
+USUAL_ROWS, MOST_ROWS = 2_000, 10_000
+"""Largest number of rows in a period without a hint to `microslip fold`, and at all.  With more
+rows, a prediction can take minutes, and the file may be a record of many periods."""
 FOLD = "for a record of many periods, `microslip fold` writes the mean period"
 
 
@@ -56,9 +53,8 @@ class Stroke:
     def hint(self) -> str:
         """Hint for a period with many rows; empty for other periods."""
         rows = len(next(iter(self.columns.values())))
-        if rows <= USUAL_ROWS:
-            return ""
-        return f"one period of {rows} rows, which can take minutes; {FOLD}"
+        text = f"one period of {rows} rows, which can take minutes; {FOLD}"
+        return text if rows > USUAL_ROWS else ""
 
     @property
     def mean_load(self) -> float | None:
@@ -66,16 +62,15 @@ class Stroke:
         return float(self.columns["load"].mean()) if "load" in self.columns else None
 
     def deviations(self, contact: TwoBodies) -> dict[str, np.ndarray]:
-        """Return the columns in the units of `microslip.Sampled`.  The load and the indentation are
-        reduced by 1."""
+        """The columns in the units of `microslip.Sampled`, without the mean load or indentation,
+        which is 1."""
         units = scales(contact, self.columns)
-        over = {name: values / units[name] for name, values in self.columns.items()}
-        return {name: one - 1.0 if name in NORMAL else one for name, one in over.items()}
+        return {name: one / units[name] - (name in NORMAL) for name, one in self.columns.items()}
 
     def sampled(self, contact: TwoBodies, size: float) -> Sampled:
-        """Return the motion for microslip.solve, with deviations divided by `size`."""
-        over = {name: one / size for name, one in self.deviations(contact).items()}
-        return Sampled.of_columns({n: one + 1.0 if n in NORMAL else one for n, one in over.items()})
+        """The motion for microslip.solve, with deviations divided by `size`."""
+        deviations = self.deviations(contact).items()
+        return Sampled.of_columns({n: one / size + (n in NORMAL) for n, one in deviations})
 
     @property
     def reach(self) -> tuple[float, float]:
@@ -89,18 +84,18 @@ class Stroke:
         frequency."""
         order = 1j * np.arange(self._plane.shape[1] // 2 + 1)
         rates = np.fft.irfft(order * np.fft.rfft(self._plane), self._plane.shape[1])
-        return float(np.hypot(*rates[:2]).max()), float(np.abs(rates[2]).max())
+        forward, lateral, angle = rates
+        return float(np.hypot(forward, lateral).max()), float(np.abs(angle).max())
 
     @property
     def _plane(self) -> np.ndarray:
         """Forward and lateral displacement and angle, (3, rows)."""
-        rows = len(next(iter(self.columns.values())))
-        return np.stack([self.columns.get(name, np.zeros(rows)) for name in PLANE])
+        zero = np.zeros_like(next(iter(self.columns.values())))
+        return np.stack([self.columns.get(name, zero) for name in PLANE])
 
 
 def scales(contact: TwoBodies, columns: dict[str, np.ndarray]) -> dict[str, float]:
-    """Return the unit of each column in `microslip.response` and `microslip.Sampled`, in SI
-    units."""
+    """The unit of each column in `microslip.response` and `microslip.Sampled`, in SI units."""
     if "indentation" in columns and not math.isfinite(contact.indentation):
         allowed = "allowed is a load: the indentation under this pressure is not known"
         raise InputError("indentation", None, allowed)
@@ -113,28 +108,21 @@ def scales(contact: TwoBodies, columns: dict[str, np.ndarray]) -> dict[str, floa
     }
 
 
-def _factors(table: NumberTable) -> dict[str, float]:
-    """Return the unit of each column, in SI units.  Raises ValueError for a missing or wrong
-    unit."""
-    factors = {}
-    for name, unit in table.units.items():
-        si = UNITS.get(name, "s")
-        if unit in PURE:
-            raise ValueError(f"{name} has no unit; allowed: one such as {name} [{EXAMPLES[si]}]")
-        try:
-            factors[name] = read(name, f"1 {unit}", si).si
-        except InputError as error:
-            raise ValueError(f"{name} [{unit}]: {error.allowed}") from None
-    return factors
+def factors(units: dict[str, str | None]) -> dict[str, float]:
+    """The unit of each column divided by the SI unit.  Raises ValueError for a wrong unit."""
+    try:
+        return {n: read(n, f"1 {one}", UNITS.get(n, "s")).si for n, one in units.items()}
+    except InputError as error:
+        name = error.argument
+        raise ValueError(f"{name} [{units[name]}]: {error.allowed}") from None
 
 
 def _of_content(file: NamedFile, content: bytes) -> Stroke:
-    table = table_of(file, content)
-    factors = _factors(table)
-    rows = len(next(iter(table.columns.values())))
-    if rows > MOST_ROWS:
-        raise ValueError(f"{rows} rows; allowed is one period of at most {MOST_ROWS} rows; {FOLD}")
-    columns = {name: values * factors[name] for name, values in table.columns.items()}
+    table, columns = read_period(file, content, need_units=True)
+    if len(table.lines) > MOST_ROWS:
+        allowed = f"allowed is one period of at most {MOST_ROWS} rows; {FOLD}"
+        raise ValueError(f"{len(table.lines)} rows; {allowed}")
+    columns = {name: columns[name] * factor for name, factor in factors(table.units).items()}
     time, frequency = columns.pop("time", None), None
     if time is not None:
         frequency = (len(time) - 1) / (len(time) * float(time[-1] - time[0]))
@@ -143,9 +131,6 @@ def _of_content(file: NamedFile, content: bytes) -> Stroke:
     return Stroke(file.name, {n: columns[n] for n in COLUMNS if n in columns}, frequency)
 
 
-EXAMPLES = {"m": "um", "rad": "mrad", "N": "N", "s": "ms"}
-"""Example of a column's unit for each SI unit."""
-
 read_stroke = FileReader("motion", _of_content)
 """Function that returns the Stroke of a name such as "file:stroke.csv"."""
 
@@ -153,23 +138,21 @@ read_stroke = FileReader("motion", _of_content)
 def read_record(
     path: str, *, decimal: str = ".", encoding: str = "utf-8"
 ) -> tuple[np.ndarray, dict[str, np.ndarray], dict[str, str]]:
-    """Read a record for `microslip.fold`.  Returns the times in s, the columns, and their units.
+    """Read a record for `microslip.fold`: the times in s, the columns, and their units.
 
-    The columns are in the units of the file.  `microslip.fold` checks the times.
-
-    Raises
-    ------
-    InputError
-        If the file cannot be read, or has no time.
+    The columns are in the units of the file.  `microslip.fold` checks the times.  Raises InputError
+    if the file cannot be read, or has no time.
     """
-    csv_text.check_format(decimal, encoding)
+    check_format(decimal, encoding)
 
-    def parse(content: bytes) -> tuple[NumberTable, dict[str, float]]:
-        table = columns_of(content, decimal=decimal, encoding=encoding)
-        if "time" not in table.columns:
+    def parse(content: bytes) -> tuple[dict[str, np.ndarray], dict[str, str]]:
+        form = {"decimal": decimal, "encoding": encoding}
+        table, columns = read_samples(content, need_units=True, **form)
+        if "time" not in columns:
             raise ValueError("no column time; allowed is one, as in time [s]")
-        return table, _factors(table)
+        return columns | {"time": columns["time"] * factors(table.units)["time"]}, {
+            n: one or "" for n, one in table.units.items()
+        }
 
-    table, factors = parsed_file("record", path, parse)
-    time = table.columns.pop("time") * factors["time"]
-    return time, table.columns, table.units | {"time": "s"}
+    columns, units = parsed_file("record", path, parse)
+    return columns.pop("time"), columns, units | {"time": "s"}

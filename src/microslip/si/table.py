@@ -8,21 +8,23 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from microslip.foundation.csv_table import LABELS, SOURCES, Table, table_of
 from microslip.foundation.errors import InputError
-from microslip.si.inputs import unit_of
+from microslip.si.inputs import QUANTITIES, unit_of
 from microslip.si.predict import NOTHING, predict_arguments, without_solution
 from microslip.si.prediction import COLUMNS, NoPrediction, Prediction, column_unit
 from microslip.si.reduction import NotAttainedError
 from microslip.si.request import Request, request_of
-from microslip.si.tables import ALLOWED, LABELS, Table, table_of
 
 if TYPE_CHECKING:
     import xarray as xr
 
 MOST_CASES = 100_000
-NAMES = {name: False for name in NOTHING if name != "map"}
-"""Allowed columns of a file.  Each column is an argument of `predict`, and needs no unit in the
-heading."""
+NAMES = {
+    name: QUANTITIES[name].unit if name in QUANTITIES else None for name in NOTHING if name != "map"
+}
+"""SI unit of each allowed column of a file, None for a text.  A column is an argument of
+`predict`."""
 TEXTS = ("outcome", "sought", "interval_method")
 """Text columns.  Every other column without values is numeric."""
 
@@ -66,7 +68,7 @@ def predict_table(
     argument = "table" if isinstance(cases, str | os.PathLike) else "cases"
     table = table_of(argument, cases, NAMES, decimal=decimal, encoding=encoding)
     if not table.columns:
-        raise InputError("cases", {}, f"{ALLOWED}, with one column at least")
+        raise InputError("cases", {}, f"{SOURCES}, with one column at least")
     return as_dataset(motion, table, list(predictions(motion, table, shared)))
 
 

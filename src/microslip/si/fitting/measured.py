@@ -14,10 +14,10 @@ from typing import Any
 
 import numpy as np
 
+from microslip.foundation.csv_table import LABELS, Table, table_of
 from microslip.foundation.errors import InputError
 from microslip.si.inputs import QUANTITIES, Range, read_argument, unit_of
 from microslip.si.quantities import read
-from microslip.si.tables import LABELS, Table, table_of
 
 CONDITIONS = ("speed", "amplitude", "frequency", "load")
 """Names of the conditions in each row."""
@@ -105,8 +105,8 @@ def read_measured(
     """
     units = {name: column.unit for name, column in COLUMNS.items()}
     units["amplitude"] = unit_of("amplitude", motion)
-    needed = {name: bool(unit) for name, unit in units.items()}
-    table = table_of("measured", source, needed, decimal=decimal, encoding=encoding)
+    form: dict = {"decimal": decimal, "encoding": encoding, "need_units": True}
+    table = table_of("measured", source, units, **form)
     title = named(source)
     columns, labels, left_out = _numbers(table, title, units)
     count = len(next(iter(columns.values())))
