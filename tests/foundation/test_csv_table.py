@@ -48,7 +48,7 @@ def test_a_decimal_comma_is_read_if_declared():
         '"3";1.5;0,3;steel\n'
     )
     table = read_table(text.encode(), NAMES, decimal=",")
-    assert table.columns["name"] == ["1,5 N", "2", None]
+    assert table.columns["name"] == ["1,5 N", "2", "3"]
     assert table.columns["load"] == ["1.5 N", "1.5e1 N", None]
     assert table.columns["mu"] == [".3", "0.3 +- 0.03", None]
     assert table.columns["counterbody"] == ["70 GPa, 0.22", "steel", None]

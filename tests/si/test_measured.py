@@ -44,7 +44,7 @@ def test_angles_and_coefficients(tmp_path):
         (("mm/s", "mm"), "line 2: speed = '1 mm': the unit is millimeter"),
         (("mm/s", "furlong"), "line 2: speed = '1 furlong'"),
         (("1.93", ""), "line 2: friction is empty; allowed: a number in every row"),
-        (("1.93", "nan"), "line 2: friction is 'nan' in a column in N; allowed is a number"),
+        (("1.93", "nan"), "line 2: friction is nan; allowed: a finite number"),
         (("1,0.5", "-1,0.5"), "line 2: speed = '-1 mm/s': allowed is a finite value"),
         (("2,0.5", "2"), "line 3: 2 cells; allowed: 3"),
     ],

@@ -256,6 +256,11 @@ def read_table(
             cells = [_cell(where, n, c, units[n], names.get(n), decimal) for n, c in pairs]
         except ValueError as error:
             table.errors[len(table.lines)] = str(error)
+            known = _parsed(text, separator) or []
+            cells = [
+                known[k] or None if name in LABELS and k < len(known) else None
+                for k, name in enumerate(units)
+            ]
         table.lines.append(where)
         for column, cell in zip(table.cells.values(), cells, strict=True):
             column.append(cell)
@@ -379,8 +384,8 @@ def _cells(where: int, text: str, separator: str, count: int) -> list[str]:
 
 def _refuse_units(where: int, row: dict[str, str], quantities: list[str]) -> None:
     """Raise ValueError for a row of units below the heading."""
-    for name in row.keys() & set(quantities):
-        if UNIT.fullmatch(row[name]):
+    for name in quantities:
+        if UNIT.fullmatch(row.get(name, "")):
             problem = f"line {where}: {name} is {row[name]!r}; allowed: a number"
             example = f"{name} [{row[name].strip('[]()')}]"
             raise ValueError(f"{problem}, with its unit in the heading, as in {example}")
