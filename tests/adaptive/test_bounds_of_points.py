@@ -7,6 +7,7 @@ from unittest.mock import Mock
 
 import numpy as np
 import pytest
+from stubs.new_process import output
 
 import microslip
 from microslip.adaptive import request
@@ -80,6 +81,15 @@ def test_the_time_limit_ends_a_point_and_says_so():
     assert not result.converged and result.exhausted == "time"
     assert result.reason.startswith("the time limit of 1e-09 s is over")
     assert microslip.solve("transverse", 0.3, 1.0, time_limit=1e9).converged
+
+
+@pytest.mark.long
+def test_compilation_does_not_count(tmp_path):
+    """The first point of a process compiles for longer than the limit, and marches far less."""
+    point = "microslip.solve('transverse', 0.3, 1.0, time_limit=3.0)"
+    environment = {"NUMBA_CACHE_DIR": str(tmp_path)}
+    assert output(f"import microslip; print({point}.converged)", **environment) == "True\n"
+    assert list(tmp_path.rglob("*.nbi"))
 
 
 @pytest.mark.parametrize("name", ["most_work", "time_limit"])

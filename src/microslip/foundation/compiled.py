@@ -13,6 +13,7 @@ from importlib.util import module_from_spec
 
 import numba
 import scipy
+from numba.core import event
 
 from microslip.foundation.errors import InputError
 from microslip.foundation.kernel_cache import BySources, folder
@@ -52,6 +53,15 @@ def _look_for_blas() -> None:
 
 
 _look_for_blas()
+
+_CLOCK = event.TimingListener()
+event.register("numba:compiler_lock", _CLOCK)
+
+
+def compile_seconds() -> float:
+    """Seconds that this process has spent on compiling kernels and on loading compiled code."""
+    return float(_CLOCK.duration) if _CLOCK.done else 0.0
+
 
 OPTIONS = {"nogil": True, "error_model": "numpy"}
 """Numba options.  Sums are not reordered, and division by zero works as in NumPy."""

@@ -2,7 +2,8 @@
 
 Both limits are checked after every march, so that they also end long searches.  With a limit on the
 work, the result is the same on every machine.  The time limit depends on the machine, so a result
-that reached the time limit is not stored.
+that reached the time limit is not stored.  The time that Numba needs to compile or load kernels
+does not count, because only the first points of a process need it.
 """
 
 from __future__ import annotations
@@ -30,7 +31,8 @@ class Budget:
         Limit on the work of all marches together.  The work of a march is its number of step solves
         times its number of unknowns.
     time_limit : float
-        Largest wall-clock time in seconds since the budget was created.
+        Largest wall-clock time in seconds since the first contact was built, without the time for
+        compilation.
 
     Attributes
     ----------
@@ -44,7 +46,7 @@ class Budget:
         self.most_work, self.time_limit = most_work, time_limit
         self.taken = Effort()
         self.exhausted = ""
-        self._began = time.monotonic()
+        self._began: float | None = None
 
     def renewed(self) -> Budget:
         """A new Budget with the same limits and start time, but without effort."""
@@ -53,7 +55,9 @@ class Budget:
         return other
 
     def metered(self, contact: Contact) -> Contact:
-        """Wrap a contact so that its marches are counted."""
+        """Wrap a contact so that its marches are counted.  The first call starts the clock."""
+        if self._began is None and self.time_limit < math.inf:
+            self._began = _seconds()
         return _Metered(contact, self)
 
     def take(self, solves: int, iterations: int, unknowns: int) -> None:
@@ -70,9 +74,16 @@ class Budget:
         if self.taken.work > self.most_work:
             self.exhausted = "work"
             raise Spent(f"the work that the point may take, {self.most_work:.3g}, is spent")
-        if time.monotonic() - self._began > self.time_limit:
+        if self._began is not None and _seconds() - self._began > self.time_limit:
             self.exhausted = "time"
             raise Spent(f"the time limit of {self.time_limit:g} s is over")
+
+
+def _seconds() -> float:
+    """Time in seconds on a clock that stands still during compilation."""
+    from microslip.foundation.compiled import compile_seconds  # imports Numba
+
+    return time.monotonic() - compile_seconds()
 
 
 class _Metered:
