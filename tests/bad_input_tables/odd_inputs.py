@@ -11,7 +11,8 @@ from bad_input_tables.odd_quantities import Q
 # Function, changes of a valid call, part of the error message.
 
 SPAN, HUGE, HIDDEN = np.timedelta64(16), 10**5000, np.ma.array(0.5, mask=True)
-NO_NUMBERS = [None, [0.5], "0.5", True, 0.5j, Decimal("0.5"), np.array(0.5), HIDDEN, SPAN, HUGE]
+NO_NUMBERS = [None, [0.5], "0.5", True, 0.5j, Decimal("0.5"), np.array([0.5]), HIDDEN, SPAN, HUGE]
+NO_NUMBERS += [xr.DataArray([0.5, 0.6]), xr.DataArray(0.5, attrs={"units": "mm"}), np.array(True)]
 NAMES = [None, ["a"], b"a", HUGE, np.array(["a"]), pd.Series(["hertz", "a"])]
 
 CALLS = [("solve", {"velocity": value}, "velocity = ") for value in NO_NUMBERS]

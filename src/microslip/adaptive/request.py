@@ -12,7 +12,14 @@ from microslip.adaptive.choice import choose_model, method_refusal
 from microslip.adaptive.result import CLOSED_FORM, Result
 from microslip.adaptive.under_force import refuse_drive
 from microslip.estimate.estimate import Estimate
-from microslip.foundation.arguments import LARGEST, SMALLEST_TOLERANCE, count, is_real, real
+from microslip.foundation.arguments import (
+    LARGEST,
+    SMALLEST_TOLERANCE,
+    count,
+    is_real,
+    real,
+    without_array,
+)
 from microslip.foundation.errors import InputError
 from microslip.motions.drive import Drive
 from microslip.motions.problem import Problem
@@ -141,6 +148,7 @@ def request_for(
         steps = count("steps", steps, 8, most=LARGEST["steps"], even=True)
     if tolerance is not None:
         tolerance = real("tolerance", tolerance, SMALLEST_TOLERANCE, 0.1)
+    most_work, time_limit = without_array(most_work), without_array(time_limit)
     for argument, value in (("most_work", most_work), ("time_limit", time_limit)):
         if value is not None and not (is_real(value) and value > 0.0):
             raise InputError(argument, value, "allowed is a number above 0")

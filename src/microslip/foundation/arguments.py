@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import math
+import sys
 from numbers import Integral
-from typing import TypeGuard
+from typing import Any, TypeGuard
 
 from microslip.foundation.errors import InputError
 
@@ -18,6 +19,24 @@ LARGEST_BODY = 1e6
 SMALLEST_STIFFNESS = 1e-9
 """Smallest stiffness of a spring, in working units.  A softer spring stretches by more than 1e9
 u_lim, with a rounding error of 1e-7 u_lim.  It is equivalent to a constant force."""
+
+
+def without_array(value: Any) -> Any:
+    """Return the number in a NumPy array without dimensions or in a dimensionless DataArray of one
+    value.  Return every other value unchanged.
+
+    Arrays of other libraries, masked arrays and arrays with a unit are unchanged.
+    """
+    xarray, numpy = sys.modules.get("xarray"), sys.modules.get("numpy")
+    if xarray is not None and isinstance(value, xarray.DataArray):
+        if value.size != 1 or value.attrs.get("units", "1") not in ("", "1"):
+            return value
+        inside = without_array(value.squeeze().data)
+        return inside if is_real(inside) else value
+    # subclasses can carry a mask or a unit
+    if numpy is not None and type(value) is numpy.ndarray and value.ndim == 0:
+        return value[()]
+    return value
 
 
 def is_real(value: object) -> TypeGuard[float]:
@@ -37,6 +56,7 @@ def is_whole(value: object) -> TypeGuard[int]:
 def real(name: str, value: object, low: float, high: float = math.inf) -> float:
     """Convert a finite number between `low` and `high` to a float.  Raises InputError for anything
     else."""
+    value = without_array(value)
     if not is_real(value):
         raise InputError(name, value, "allowed is a number")
     try:
@@ -52,6 +72,7 @@ def real(name: str, value: object, low: float, high: float = math.inf) -> float:
 def count(name: str, value: object, low: int, *, most: float, even: bool = False) -> int:
     """Convert an integer between `low` and `most` to an int.  Raises InputError for anything
     else."""
+    value = without_array(value)
     if not is_whole(value) or not low <= value <= most:
         kind = "an even whole number" if even else "a whole number"
         raise InputError(name, value, f"allowed is {kind} of at least {low} and at most {most:g}")

@@ -9,7 +9,7 @@ from collections.abc import Iterable, Mapping
 from dataclasses import fields
 from typing import Any
 
-from microslip.foundation.arguments import is_real
+from microslip.foundation.arguments import is_real, without_array
 from microslip.foundation.errors import InputError
 
 NUMBER = re.compile(
@@ -131,12 +131,15 @@ def refuse_unknown(
 def refuse_strange(record: Any, what: str) -> None:
     """Raise InputError about the argument `what` if a numeric field of a dataclass is not finite.
 
-    Numeric fields are those whose default is a number.
+    Numeric fields are those whose default is a number.  An array of one number is replaced by the
+    number, see `arguments.without_array`.
     """
     for field in fields(record):
-        value = getattr(record, field.name)
-        if isinstance(field.default, int | float) and not (is_real(value) and math.isfinite(value)):
-            raise InputError(what, value, f"allowed for {field.name} is a finite number")
+        if isinstance(field.default, int | float):
+            value = without_array(getattr(record, field.name))
+            if not (is_real(value) and math.isfinite(value)):
+                raise InputError(what, value, f"allowed for {field.name} is a finite number")
+            object.__setattr__(record, field.name, value)
 
 
 def refuse_outside(

@@ -16,6 +16,7 @@ from typing import Any
 
 import numpy as np
 
+from microslip.foundation.arguments import without_array
 from microslip.foundation.errors import InputError
 from microslip.si.units import (
     CYCLIC,
@@ -211,6 +212,12 @@ def _from_object(value: object, unit: str) -> Quantity:
     pint = sys.modules.get("pint")  # a caller with a pint quantity has imported pint
     if pint is not None and isinstance(value, pint.Quantity):
         return _from_pint(value, unit)
+    xarray = sys.modules.get("xarray")
+    if xarray is not None and isinstance(value, xarray.DataArray) and value.size == 1:
+        units = value.attrs.get("units", "")
+        value = without_array(value.squeeze(drop=True).data)
+        if units not in ("", "1"):
+            return _from_text(f"{_plain_number(value)!r} {units}", unit)
     number = _plain_number(value)
     return Quantity(number, f"{number:.12g} {unit}".strip())
 

@@ -229,9 +229,14 @@ def request_of(motion: str, arguments: Mapping[str, Any]) -> Request:
 
 
 def _is_sequence(value: object) -> bool:
-    """True for an array, a list or a column of a table, with or without a unit."""
+    """True for an array, a list or a column of a table, with or without a unit.
+
+    A DataArray of one value is a number.
+    """
     values = getattr(value, "magnitude", value)  # the array in a pint quantity
     if isinstance(values, str | bytes | Mapping):
+        return False
+    if hasattr(values, "dims") and getattr(values, "size", 0) == 1:
         return False
     return hasattr(values, "__len__") and getattr(values, "ndim", 1) > 0
 
