@@ -4,8 +4,8 @@ import math
 
 import pytest
 
+from microslip.adaptive.result import OWN_EQUATIONS
 from microslip.app.cli import main
-from microslip.app.point_command import OWN_EQUATIONS
 
 POINT = ["point", "transverse", "--velocity", "0.1", "--amplitude", "1"]
 STEADY = ["point", "continuous-bore", "--velocity", "0.8"]

@@ -58,6 +58,14 @@ class History:
     force_lateral: np.ndarray
     torque: np.ndarray
 
+    def __str__(self) -> str:
+        """Number of steps, range of the phase, and forces at the end."""
+        first, last = self.phase[0], self.phase[-1]
+        names = ("force_forward", "force_lateral", "torque")
+        ends = (f"{name} = {getattr(self, name)[-1]:.6g}" for name in names)
+        steps = f"{len(self.phase) - 1} steps from phase {first:.6g} to {last:.6g}; at the end:"
+        return "\n".join([steps, *ends])
+
 
 def history(
     motion: str | Motion | Problem,

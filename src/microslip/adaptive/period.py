@@ -105,6 +105,15 @@ class Period:
     converged: bool
     reason: str
 
+    def __str__(self) -> str:
+        """Mean friction, dissipated energy and resolution."""
+        lines = [
+            f"mu_macro = {self.mu_macro:.6g}",
+            f"dissipated_energy = {self.dissipated_energy:.6g} mu F_z u_lim",
+            f"{len(self.area)} points, {len(self.phase) - 1} steps a period",
+        ]
+        return "\n".join(lines + [f"NOT CONVERGED: {self.reason}"] * (not self.converged))
+
 
 def period(
     motion: str | Motion | Problem,

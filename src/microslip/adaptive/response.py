@@ -118,6 +118,10 @@ class Response:
         """Convert the columns to an xarray.Dataset with the dimension `row`."""
         return import_module("microslip.datasets.of_records").to_xarray(self)
 
+    def __str__(self) -> str:
+        """The lines that `microslip response` prints."""
+        return str(import_module("microslip.datasets.of_records").response_text(self))
+
 
 def response(
     forward: np.ndarray,

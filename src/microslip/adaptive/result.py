@@ -8,6 +8,10 @@ from dataclasses import dataclass, fields
 from typing import Any
 
 from microslip.estimate.estimate import SOURCES, Estimate
+from microslip.foundation.number_text import number_text
+from microslip.models.registry import MODELS
+from microslip.motions.by_name import motion_named
+from microslip.motions.problem import Problem
 from microslip.solver.effort import Effort
 
 CLOSED_FORM = "closed-form"
@@ -23,6 +27,17 @@ ERRORS = {source: f"error_{source}" for source in SOURCES}
 """Names of the error sources in JSON and datasets."""
 EFFORT = {"iterations": "iterations", "work": "work", "updates": "effort", "retried": "retried"}
 """Names of an Effort's fields in JSON and datasets."""
+
+RATIO = (
+    "a ratio: mean forward force divided by mu F_z; the coefficient of friction is mu times "
+    "mu_macro"
+)
+"""Explanation of mu_macro for users."""
+OWN_EQUATIONS = (
+    "an approximate model: the error estimate covers its discretisation, not the approximation"
+)
+DIGITS = 6
+"""Number of significant digits of a number without an error estimate."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -156,6 +171,36 @@ class Result:
     def dissipated_energy_error(self) -> float | None:
         """Error of `dissipation`; None for steady motions."""
         return None if self.dissipation is None else self.dissipation.error
+
+    def __str__(self) -> str:
+        """The lines that `microslip point` prints."""
+
+        def text(one: Estimate) -> str:
+            return number_text(one.value, one.error, digits=DIGITS)
+
+        quantity = "mu_macro" if self.force is None else "velocity"
+        lines = [f"{quantity} = {text(self.answer)}", *[RATIO] * (self.force is None)]
+        if self.torque is not None:
+            lines.append(f"mu_torque = {text(self.torque)}")
+        resolved = f"{self.cells} cells"
+        if self.angles > 1:
+            resolved += f" x {self.angles} angles"
+        if self.steps_per_period:
+            resolved += f", {self.steps_per_period} steps a period"
+        lines.append(f"model {self.model}" + (f" ({resolved})" if self.cells else ""))
+        if self._is_approximate:
+            lines.append(OWN_EQUATIONS)
+        if not self.converged:
+            lines.append(f"NOT CONVERGED: {quantity}: {self.reason}")
+        return "\n".join(lines)
+
+    @property
+    def _is_approximate(self) -> bool:
+        """True for a model whose error does not vanish when its mesh is refined."""
+        if self.model not in MODELS:
+            return False  # a closed form
+        problem = Problem(motion_named(self.motion), self.velocity, self.amplitude)
+        return not MODELS[self.model].exact(problem)
 
     def to_dict(self) -> dict:
         """Convert to a dict with the names used in JSON and datasets; fields that do not apply are

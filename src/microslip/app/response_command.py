@@ -5,8 +5,6 @@ from __future__ import annotations
 import argparse
 from typing import TYPE_CHECKING, Any
 
-import numpy as np
-
 from microslip.app.option_parser import StoreSpelling
 from microslip.app.predict_command import GROUPS
 from microslip.app.progress import elapsed_time
@@ -16,18 +14,13 @@ from microslip.app.question import (
     add_answer,
     add_options,
     dataset_writers,
-    heading,
     refuse_output,
-    short_csv,
     typed_options,
     write_output,
 )
 from microslip.foundation import spec
 
 if TYPE_CHECKING:
-    import pandas as pd
-    import xarray as xr
-
     from microslip.adaptive.response import Response
     from microslip.si.response import RealResponse
 
@@ -41,15 +34,6 @@ OUTPUT = {
     **FILE_FORMAT,
 }
 LOAD = {"load": ("F", "normal load of the reference state, such as '10 N'")}
-ROUNDING = 1e-9
-"""A force is printed as 0 if its absolute value, divided by the error estimate, is at most this
-number."""
-ERRORS = {
-    "force_forward": "force_error",
-    "force_lateral": "force_error",
-    "torque": "torque_error",
-}
-"""Columns with the error estimates of the forces and the torque."""
 PLAIN = dict.fromkeys(("forward", "lateral", "angle", "load", "indentation"), "")
 """Columns of a dimensionless path."""
 WITHOUT_CONTACT = {"nu", "pressure", *OUTPUT}
@@ -80,15 +64,16 @@ def _answer(options: argparse.Namespace) -> Answer:
     real = arguments.keys() - WITHOUT_CONTACT
     with elapsed_time("microslip response"):
         answer = (_real if real else _dimensionless)(options.path, arguments)
+    from microslip.datasets.of_records import table  # late, since it imports xarray
+
     dataset = answer.to_xarray()
-    texts = [] if answer.converged else [f"# NOT CONVERGED: {answer.reason}"]
+    text = str(answer)
     if options.output is not None:
-        write_output(options.output, dataset_writers(dataset, lambda: _frame(dataset), index=False))
-    else:
-        texts.append(short_csv(_frame(_without_rounding(dataset))))
+        write_output(options.output, dataset_writers(dataset, lambda: table(dataset), index=False))
+        text = "" if answer.converged else text.partition("\n")[0]
     plain = {name: values.tolist() for name, (_, values) in answer.columns.items()}
     plain |= answer.attributes | {"converged": answer.converged}
-    return Answer(plain, "\n".join(texts), answer.converged)
+    return Answer(plain, text, answer.converged)
 
 
 def _real(path: str, arguments: dict[str, Any]) -> RealResponse:
@@ -104,18 +89,3 @@ def _dimensionless(path: str, arguments: dict[str, Any]) -> Response:
     if "nu" in arguments:
         arguments["poisson"] = spec.read("nu", arguments.pop("nu"))
     return response_to(path, read_path(path, PLAIN, **file), {}, **arguments)
-
-
-def _without_rounding(dataset: xr.Dataset) -> xr.Dataset:
-    """Replace the forces that are only rounding errors by 0."""
-    forces = {}
-    for name, error in ERRORS.items():
-        least = ROUNDING * np.abs(dataset[error])
-        forces[name] = dataset[name].where(np.abs(dataset[name]) > least, 0.0)
-    return dataset.assign(forces)
-
-
-def _frame(dataset: xr.Dataset) -> pd.DataFrame:
-    """Return the columns of a response."""
-    headings = {name: heading(str(name), one.attrs["units"]) for name, one in dataset.items()}
-    return dataset.to_dataframe().rename(columns=headings)

@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
+import pandas as pd
 import xarray as xr
 
 from microslip.adaptive.history import History
@@ -25,6 +26,16 @@ AXES: dict[type, tuple[str, ...]] = {
 """Names of a dataset's axes, keyed by the class of the record."""
 OF_POINTS = ("forward_position", "lateral_position", "area", "bound", "dissipated_energy_density")
 """Arrays in a Period whose only axis is `point`."""
+
+ROW_ERRORS = {
+    "force_forward": "force_error",
+    "force_lateral": "force_error",
+    "torque": "torque_error",
+}
+"""Columns with the error estimates of the forces and the torque of a response."""
+ROUNDING = 1e-9
+"""A force is printed as 0 if its absolute value, divided by the error estimate, is at most this
+number."""
 
 
 def to_xarray(record: Any) -> xr.Dataset:
@@ -83,3 +94,24 @@ def _axes_of(name: str, value: np.ndarray, axes: tuple[str, ...]) -> tuple[str, 
     if value.ndim == 2:
         return axes
     return (axes[1],) if name in OF_POINTS and len(axes) == 2 else (axes[0],)
+
+
+def table(dataset: xr.Dataset) -> pd.DataFrame:
+    """Columns of a response, with the units in the headings."""
+    units = {name: one.attrs["units"] for name, one in dataset.items()}
+    headings = {name: name if unit == "1" else f"{name} [{unit}]" for name, unit in units.items()}
+    return dataset.to_dataframe().rename(columns=headings)
+
+
+def response_text(record: Response | RealResponse) -> str:
+    """The lines that `microslip response` prints: a CSV table with six digits.
+
+    A force or a torque that is only a rounding error is printed as 0.
+    """
+    dataset = to_xarray(record)
+    for name, error in ROW_ERRORS.items():
+        least = ROUNDING * np.abs(dataset[error])
+        dataset[name] = dataset[name].where(np.abs(dataset[name]) > least, 0.0)
+    lines = [] if record.converged else [f"# NOT CONVERGED: {record.reason}"]
+    rows = table(dataset).to_csv(index=False, float_format="%.6g", lineterminator="\n")
+    return "\n".join([*lines, rows.rstrip("\n")])

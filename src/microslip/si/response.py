@@ -99,6 +99,10 @@ class RealResponse:
         """The columns as an xarray.Dataset over `row`, with units."""
         return import_module("microslip.datasets.of_records").to_xarray(self)
 
+    def __str__(self) -> str:
+        """The lines that `microslip response` prints."""
+        return str(import_module("microslip.datasets.of_records").response_text(self))
+
 
 def predict_response(
     path: Any,
