@@ -260,8 +260,10 @@ def test_imposed_resolution_is_what_runs(motion, model, nu, cells, steps):
         )
         slack = 0.05 * result.tolerance
         assert result.mu_macro == pytest.approx(fine, abs=slack)
-        expected = max(abs(fine - middle), abs(middle - coarse) / 4.0)
-        assert result.friction.by_source["resolution"] == pytest.approx(expected, abs=2 * slack)
+        # the distance to the limit and at least half of it again, see estimate/richardson.py
+        least = 1.5 * max(abs(fine - middle), abs(middle - coarse) / 4.0) / 3.0
+        correction = abs(fine - middle) / 3.0
+        assert result.friction.by_source["resolution"] > least + correction - 2 * slack
 
 
 # Fields

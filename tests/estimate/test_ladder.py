@@ -73,7 +73,7 @@ def test_imposed_numbers_are_those_of_the_level_that_is_the_answer(point, cells,
     resolution = ladder.resolution(ladder.start)
     assert resolution.cells == (cells if ladder.cells else 1)
     assert resolution.steps == (steps // 2 if ladder.steps else 4)
-    assert ladder.imposed == bool(ladder.cells or ladder.steps)
+    assert (ladder.imposed > 0.0) == bool(ladder.cells or ladder.steps)
 
 
 def test_what_is_not_imposed_is_as_fine_as_the_tolerance_needs():

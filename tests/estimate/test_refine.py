@@ -66,9 +66,9 @@ def test_the_energy_is_extrapolated_with_errors_in_its_own_unit():
     assert found.energy.value == pytest.approx(5.0, abs=1e-12)
     for source in ("periodicity", "solver"):
         assert found.energy.by_source[source] == pytest.approx(40.0 * plain[source])
-    # the smallest error by resolution is a fraction of the energy, or of the work of a force
+    # the smallest error is a fraction of the geometric mean of 5 and 40, or of a force's work
     assert found.energy.by_source["resolution"] == pytest.approx(
-        5.0 * plain["resolution"], rel=0.01
+        200.0**0.5 * plain["resolution"], rel=0.01
     )
     found = refine(run, LADDER, 1e-3, energy_unit=40.0, drive_work=20.0)
     assert found.energy.by_source["resolution"] == pytest.approx(20.0 * plain["resolution"])
@@ -171,20 +171,28 @@ def test_scattered_errors_are_covered_nearly_always():
 
 
 def test_an_imposed_resolution_is_the_answer_and_not_its_limit():
+    """The error is the distance to the limit, and the error of the limit."""
     fake = FakeRun(3.0)
-    ladder = Ladder(16, angles=0, steps=1, cells=12 / 16, imposed=True)
+    ladder = Ladder(16, angles=0, steps=1, cells=12 / 16, imposed=64)
     result = refine(fake, ladder, 1e-3)
     assert result.value.value == fake.runs[-1].mu == EXACT + 3.0 / 144
     assert result.finest.cells == 12 and len(fake.asked) == 3
-    assert result.value.by_source["resolution"] == pytest.approx(3.0 / 36 - 3.0 / 144)
+    assert result.value.by_source["resolution"] == pytest.approx((1.0 + SAFETY) * 3.0 / 144)
     assert result.value.by_source["periodicity"] == pytest.approx(fake.runs[-1].distance)
     assert result.converged and result.reason == ""
 
 
 @pytest.mark.parametrize("power", [1.0, 1.5, 2.0, 3.0])
 def test_the_error_of_an_imposed_resolution_is_covered(power):
-    result = refine(FakeRun(0.3, power), replace(LADDER, imposed=True), 1e-3)
+    result = refine(FakeRun(0.3, power), replace(LADDER, imposed=64), 1e-3)
     assert abs(result.value.value - EXACT) <= result.value.error
+
+
+def test_an_imposed_resolution_has_the_smallest_error_of_a_chosen_one():
+    """The first level for 1e-2 is 8, and for 1e-3 it is 16; coarser levels are of second order."""
+    for level, tolerance in ((8, 1e-2), (16, 1e-3), (4, 4e-2)):
+        result = refine(FakeRun(0.0), replace(LADDER, imposed=level), 1e-3)
+        assert result.value.by_source["resolution"] == pytest.approx(SMALLEST_SHARE * tolerance)
 
 
 # End of the refinement

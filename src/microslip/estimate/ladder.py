@@ -57,15 +57,16 @@ class Ladder:
     cells : float
         Number of rings, or of squares across the contact, divided by the level; 0 if it is not
         refined.
-    imposed : bool
-        Whether the user imposes a resolution.  If so, the level `start` has this resolution.
+    imposed : float
+        Largest level whose resolution is at most the imposed one, along every axis; 0 if no
+        resolution is imposed.  If one is imposed, the level `start` has this resolution.
     """
 
     start: int
     angles: float
     steps: float
     cells: float = 1.0
-    imposed: bool = False
+    imposed: float = 0.0
 
     def resolution(self, level: int) -> Resolution:
         """Resolution at a level."""
@@ -87,6 +88,16 @@ class Ladder:
             return (self.start,)
         first, last = self._first(tolerance), self._first(SMALLEST_TOLERANCE)
         return LEVELS[min(first, last + 1) : last + 2]
+
+    @property
+    def accuracy(self) -> float:
+        """Tolerance that an imposed resolution suits.
+
+        It is the tolerance at which `imposed` would be the first level.  Below the level `start`,
+        it follows from the second order of the method.
+        """
+        coarser = self.start / self.imposed
+        return LOOSEST * coarser ** (ORDER if coarser > 1.0 else 1.0 / math.log10(RATIO))
 
     def _first(self, tolerance: float) -> int:
         """Index in LEVELS of the first level at a tolerance."""
@@ -196,12 +207,15 @@ def _imposing(ladder: Ladder, tolerance: float, cells: int | None, steps: int | 
     if cells is None and steps is None:
         return ladder
     level = max(ladder.levels(tolerance)[0], cells or 0)
+    rings = ladder.cells * level if cells is None else cells
+    half = ladder.steps * level if steps is None else steps // 2
+    axes = ((rings, ladder.cells), (half, ladder.steps))
     return replace(
         ladder,
-        cells=(ladder.cells * level if cells is None else cells) / ladder.start,
+        cells=rings / ladder.start,
         angles=ladder.angles * level / ladder.start,
-        steps=(ladder.steps * level if steps is None else steps // 2) / ladder.start,
-        imposed=True,
+        steps=half / ladder.start,
+        imposed=min(number / per_level for number, per_level in axes if per_level),
     )
 
 

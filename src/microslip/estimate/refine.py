@@ -2,7 +2,9 @@
 
 The error estimate has four sources:
 
-- resolution: Richardson extrapolation of the runs at n/4, n/2 and n, see richardson.py;
+- resolution: Richardson extrapolation of the runs at n/4, n/2 and n, see richardson.py.  At an
+  imposed resolution, the value is that of the finest run, and its distance from the extrapolated
+  value is added;
 - periodicity, solver: the value is a combination sum c_i f_i of runs.  Their distances d_i from the
   periodic state and the residuals r_i of their steps contribute sum |c_i| (d_i + r_i);
 - model: a pressure on a grid, or a motion given by samples, can be interpolated in several ways.
@@ -33,8 +35,9 @@ READING_SAFETY = 2.5
 """Safety factor on the differences between the interpolations (readings) of a pressure or a motion.
 No interpolation resolves a peak or an edge between the points."""
 SMALLEST_SHARE = 0.7
-"""Smallest error estimate for the resolution, divided by the tolerance.  It is above 0 because
-three levels can agree by chance.  Calibrated by benchmarks/error_estimates.py."""
+"""Smallest error estimate for the resolution, divided by the tolerance (at an imposed resolution,
+by Ladder.accuracy).  It is above 0 because three levels can agree by chance.  Calibrated by
+benchmarks/error_estimates.py."""
 LARGEST_REST = 0.5
 """Finer runs are started only if the sum of the other errors is at most this fraction of the
 tolerance."""
@@ -154,8 +157,7 @@ def refine(
     read : callable
         `read(run)` returns the quantity.
     energy_unit : float
-        Error of the dissipated energy for an error of 1 in the quantity.  It applies to the
-        periodicity and solver errors.
+        Largest error of the dissipated energy for an error of 1 in the quantity.
     drive_work : float
         If the quantity is a velocity: work that the prescribed force does in a period at the
         velocity 1, divided by mu F_z u_lim.
@@ -202,13 +204,16 @@ def _estimate(
     """Estimate with `level` as the finest level; goal: largest accepted resolution error."""
     three = [levels.at(level // 4), levels.at(level // 2), levels.at(level)]
     others = [levels.at(level, number) for number in range(1, len(levels.problems))]
-    imposed = levels.ladder.imposed
-    floor = SMALLEST_SHARE * min(goal, LOOSEST)
+    imposed = levels.ladder.imposed > 0.0
+    floor = SMALLEST_SHARE * (levels.ladder.accuracy if imposed else min(goal, LOOSEST))
     value, errors, order = _extrapolated(read, imposed, floor, three, others)
     torque, torque_errors, _ = _extrapolated(attrgetter("torque"), imposed, floor, three, others)
-    # a fraction of the energy, which can be far below the unit of energy; for a velocity above
-    # 1, the tolerance is already proportional to the velocity
-    floor *= max(abs(three[-1].energy) / max(1.0, abs(value)), drive_work)
+    # the energy of a small cycle (Mindlin) is proportional to the third power of the force, and its
+    # upper bound to the force: an error of the force changes the energy by their geometric mean
+    dissipated = abs(three[-1].energy)
+    scale = max(dissipated, (dissipated * energy_unit) ** 0.5)
+    # for a velocity above 1, the tolerance is already proportional to the velocity
+    floor *= max(scale / max(1.0, abs(value)), drive_work)
     energy, energy_errors, _ = _extrapolated(attrgetter("energy"), imposed, floor, three, others)
     base = (0.0, 0.0, 1.0) if imposed else np.abs(WEIGHTS)
     # a run that did not converge has a weight of at least 1, since levels can agree by chance
@@ -247,11 +252,8 @@ def _extrapolated(
     """
     values = [float(read(one)) for one in three]
     limit = Extrapolation(*map(float, extrapolate(values)))
-    if imposed:
-        value, error = values[-1], limit.difference
-    else:
-        value, error = limit.value, float(max(limit.error, floor))
-    errors = {"resolution": error}
+    value = values[-1] if imposed else limit.value
+    errors = {"resolution": max(limit.error, floor) + abs(limit.value - value)}
     if others:
         apart = sum(abs(read(one) - values[-1]) for one in others)
         errors["model"] = READING_SAFETY * apart
