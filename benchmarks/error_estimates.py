@@ -4,9 +4,11 @@
                                          [--output FILE] [--markdown FILE] [--again] [--keep]
                                          [--start F] [--safety S] [--smallest S]
 
-The points are those of `blind_points.py`. The quantity is the friction or, under a force, the
-velocity. The tolerance of a velocity above 1 is relative. A point fails if it is converged and its
-error exceeds the error estimate by more than the reference's uncertainty.
+The points are those of `blind_points.py`. The quantities are the friction or, under a force, the
+velocity, and the dissipated energy. The tolerance of a velocity above 1 is relative. The energy has
+no tolerance, only an error estimate. A point fails if it is converged and the error of a quantity
+exceeds the error estimate by more than the reference's uncertainty. Every twentieth point has a
+reference for its energy.
 
 The first reference is the same point, solved to a tenth of the tolerance. For tolerances of 1e-4
 and below, it is solved to a quarter. It is computed by the same rules as the estimate. Therefore
@@ -77,6 +79,8 @@ EVERY = 500
 DOCS = Path(__file__).parents[1] / "docs/measured"
 LADDER_FOR = friction.ladder_for
 """The package's unmodified function."""
+ENERGY = "energy_reference"
+"""Key of the reference for the energy in a line."""
 ALL_REFERENCES = "all_references"
 """Key of the list of all references in a line."""
 SOURCES = ("resolution", "periodicity", "solver", "model")
@@ -119,6 +123,22 @@ def failed(line: dict) -> bool:
     return is_judged(line) and ratio(line) > 1.0
 
 
+def has_energy(line: dict) -> bool:
+    """True if a line is converged and has a reference for its energy."""
+    return line["converged"] and ENERGY in line and line.get("energy") is not None
+
+
+def energy_ratio(line: dict) -> float:
+    """Like `ratio`, for the dissipated energy."""
+    beyond = abs(line["energy"] - line[ENERGY]) - line["energy_uncertainty"]
+    return beyond / max(line["energy_error"], 1e-12) if beyond > 0.0 else 0.0
+
+
+def energy_failed(line: dict) -> bool:
+    """True if the error estimate of the energy is too small."""
+    return has_energy(line) and energy_ratio(line) > 1.0
+
+
 def calibrate(
     start: float = 1.0,
     safety: float = richardson.SAFETY,
@@ -151,11 +171,23 @@ def examine(seed: int, k: int, reference: dict | None, constants: dict) -> dict:
         "converged": result.converged,
         "reason": result.reason,
         "seconds": round(seconds, 3),
+        "energy": result.dissipated_energy,
+        "energy_error": result.dissipated_energy_error,
     }
+    calibrate()
+    if k % TWICE == 0 and result.dissipation is not None and ENERGY not in (reference or {}):
+        line |= energy_of(point)
     if reference is not None and ALL_REFERENCES not in reference:
         return line | reference
-    calibrate()
     return line | judged(k, point, line, result, reference)
+
+
+def energy_of(point: dict) -> dict:
+    """Reference for the energy of a point, and its uncertainty; empty if there is none."""
+    _, result = tighter(point, MOST_WORK)
+    if not result.converged or result.dissipation is None:
+        return {}
+    return {ENERGY: result.dissipation.value, "energy_uncertainty": result.dissipation.error}
 
 
 def judged(k: int, point: dict, line: dict, result: microslip.Result, before: dict | None) -> dict:
@@ -271,6 +303,13 @@ def _verdict(lines):
         f" uncertainty of the reference: {x} ({CONFIDENCE:.0%} limit: {1e3 * limit:.2f} in 1,000)."
         f" Largest error: {largest:.2f} estimates, and {farthest:.2f} tolerances."
     )
+    with_energy = [energy_ratio(line) for line in lines if has_energy(line)]
+    if with_energy:
+        text += (
+            f" Points with a reference for the energy: {len(with_energy)}; too small:"
+            f" {sum(one > 1.0 for one in with_energy)}, largest error: {max(with_energy):.2f}"
+            " estimates."
+        )
     if twice:
         text += f" Points with two references or more: {len(twice)};"
         text += f" with references that contradict each other: {sum(map(contradict, twice))}."
@@ -296,6 +335,8 @@ def _row(stratum, tolerance, lines):
         "99 %": f"{np.quantile(plain, 0.99):.2f}",
         "largest": f"{max(ratios):.2f}",
         "largest error / tolerance": f"{max(map(_over_tolerance, converged), default=0.0):.2f}",
+        "energies": sum(map(has_energy, lines)),
+        "energies that fail": sum(map(energy_failed, lines)),
         "mean CPU seconds": f"{np.mean([line['seconds'] for line in lines]):.3f}",
     }
 
@@ -307,6 +348,12 @@ def _exceptions(lines):
         text.append(
             f"\nFails by {ratio(line):.2f}: {_named(line)}: error {off(line):.1e} (+-"
             f" {line['uncertainty']:.0e}, {line['by']}), estimate {line['error']:.1e}."
+        )
+    for line in filter(energy_failed, lines):
+        text.append(
+            f"\nEnergy fails by {energy_ratio(line):.2f}: {_named(line)}: {line['energy']:.5g} +-"
+            f" {line['energy_error']:.1e}, reference {line[ENERGY]:.5g} +-"
+            f" {line['energy_uncertainty']:.0e}."
         )
     for line in lines:
         if not line["converged"]:
@@ -359,7 +406,8 @@ def main():
     references = known_references.read(table, options.seed)
     if options.again:
         references, lines = {**references, **lines}, {}
-        output.replace(output.with_name(output.name + ".before"))
+        if output.exists():
+            output.replace(output.with_name(output.name + ".before"))
     refuse_changed([line | {"seed": options.seed} for line in lines.values()], constants)
 
     def jobs_of(k):

@@ -19,7 +19,10 @@ COLUMNS = (
 """Possible arguments of a point."""
 REFERENCE = ("reference", "uncertainty", "by")
 """Friction (or velocity under a force), its uncertainty, and the method of the reference."""
-DIGITS = {"reference": ".12f", "uncertainty": ".2e"}
+ENERGY = ("energy_reference", "energy_uncertainty")
+"""Energy dissipated in a period, and its uncertainty, for a part of the points."""
+DIGITS = dict.fromkeys(("reference", ENERGY[0]), ".12f")
+DIGITS |= dict.fromkeys(("uncertainty", ENERGY[1]), ".2e")
 
 
 def read(path, seed: int) -> dict[int, dict]:
@@ -33,7 +36,8 @@ def read(path, seed: int) -> dict[int, dict]:
             point = blind_points.point(seed, k)
             if any(row.get(name, "") != str(point.get(name, "")) for name in COLUMNS):
                 raise SystemExit(f"{path}: point {k} is not that of seed {seed}: {row}")
-            numbers = {name: float(row[name]) for name in REFERENCE[:2]}
+            names = [name for name in (*REFERENCE[:2], *ENERGY) if row.get(name)]
+            numbers = {name: float(row[name]) for name in names}
             references[k] = {**numbers, "by": row["by"]}
     return references
 
@@ -42,13 +46,17 @@ def write(path, references: dict[int, dict], seed: int) -> None:
     """Write references whose uncertainty is at most the tolerance, in the order of the points."""
     points = {k: blind_points.point(seed, k) for k in sorted(references)}
     columns = [name for name in COLUMNS if any(name in point for point in points.values())]
+    energies = ENERGY if any(ENERGY[0] in one for one in references.values()) else ()
     with path.open("w", encoding="utf-8", newline="") as file:
         rows = csv.writer(file, lineterminator="\n")
-        rows.writerow(("k", *columns, *REFERENCE))
+        rows.writerow(("k", *columns, *REFERENCE, *energies))
         for k, point in points.items():
             if not references[k]["by"] or not _is_certain(references[k], point):
                 continue
-            values = (format(references[k][name], DIGITS.get(name, "")) for name in REFERENCE)
+            values = (
+                format(references[k][name], DIGITS.get(name, "")) if name in references[k] else ""
+                for name in (*REFERENCE, *energies)
+            )
             rows.writerow((k, *(point.get(name, "") for name in columns), *values))
 
 
