@@ -24,7 +24,6 @@ from microslip.solver.discretise import Resolution
 from microslip.solver.run import Settings
 from microslip.solver.simulate import simulate
 from microslip.solver.static_limit import at_turning_points
-from microslip.solver.static_run import simulate_static
 from microslip.solver.stick_edge import edge_focus
 
 SWEPT = {"radial": ((96, 1), (192, 1)), "polar": ((64, 12), (96, 24))}
@@ -61,8 +60,6 @@ def reference(problem, tolerance, certified):
     @lru_cache
     def run(resolution):
         share = PERIODICITY * tolerance
-        if problem.velocity == 0.0:
-            return simulate_static(problem, model, resolution, share, settings)
         return simulate(problem, model, resolution, share, settings=settings)
 
     if kind.loads:

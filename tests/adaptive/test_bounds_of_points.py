@@ -19,7 +19,6 @@ from microslip.motions.problem import Problem
 from microslip.solver.budget import Budget, Spent
 from microslip.solver.discretise import Resolution, contact_of, path_of
 from microslip.solver.simulate import Settings, simulate
-from microslip.solver.static_run import simulate_static
 
 SLOW = ("transverse", 1e-9, 0.5)
 
@@ -70,7 +69,7 @@ def test_every_march_counts():
     for spent_at in (0, 100):
         with pytest.raises(Spent):
             bounded = Settings(budget=Budget(spent_at))
-            simulate_static(loop, "radial", resolution, 1e-3, bounded)
+            simulate(loop, "radial", resolution, 1e-3, settings=bounded)
     with pytest.raises(Spent):
         steady, bounded = Problem(motion_named("continuous-bore"), 0.5, None, 0.0), Budget(10)
         simulate(steady, "polar", Resolution(4, 4, 1), 1e-3, settings=Settings(budget=bounded))

@@ -14,7 +14,7 @@ from microslip.motions.by_name import MOTIONS, motion_named
 from microslip.motions.named import Bore, ContinuousBore, Transverse
 from microslip.motions.problem import Problem
 from microslip.solver.discretise import Resolution
-from microslip.solver.static_run import simulate_static
+from microslip.solver.simulate import simulate
 from microslip.theory import paper
 
 TURNING = {"rigid", "polar", "cartesian"}
@@ -83,7 +83,7 @@ def test_vanishing_velocity_needs_no_run(motion, amplitude, poisson):
     model = "polar" if motion == "bore" else "radial"
     problem = Problem(motion_named(motion), 0.0, amplitude, poisson)
     coarse, fine = (
-        simulate_static(problem, model, Resolution(cells, 24, 0), 1e-8).mu for cells in (24, 48)
+        simulate(problem, model, Resolution(cells, 24, 0), 1e-8).mu for cells in (24, 48)
     )
     expected = fine + (fine - coarse) / 3.0
     assert result.mu_macro == pytest.approx(expected, abs=max(1e-5, abs(fine - coarse)))

@@ -12,7 +12,7 @@ import microslip
 from microslip.adaptive import driven_contact
 from microslip.estimate.estimate import Estimate
 from microslip.estimate.ladder import Ladder
-from microslip.estimate.refine import unknown
+from microslip.estimate.refine import Refined
 from microslip.foundation.arguments import SMALLEST_STIFFNESS
 from microslip.foundation.errors import InputError
 from microslip.models.path import EULER
@@ -21,9 +21,9 @@ from microslip.motions.drive import Force, Spring
 from microslip.motions.problem import Problem
 from microslip.pressures.by_name import pressure_named
 from microslip.solver.discretise import Resolution
-from microslip.solver.driven_run import Accuracy, simulate_driven
 from microslip.solver.method import Method
 from microslip.solver.run import Settings
+from microslip.solver.simulate import simulate
 from microslip.theory import indenters, paper
 
 PLACES = {
@@ -124,20 +124,15 @@ def test_a_contact_under_less_than_the_limit_comes_to_rest(mass):
     limit = paper.static_limit_transverse(0.5)
     problem = Problem(motion_named("transverse"), 0.01, 0.5, 0.0)
     rest = moving_at(problem, Force(limit - 0.03, mass=mass or 0.0))
-    assert abs(rest.velocity) < 1e-5
+    assert abs(rest.values["velocity"]) < 1e-5
     moves = moving_at(problem, Force(limit + 0.05, mass=mass or 0.0))
-    assert moves.velocity > 1e-3
+    assert moves.values["velocity"] > 1e-3
 
 
 def moving_at(problem, drive, cells=24, steps=64, method=None):
     settings = Settings() if method is None else Settings(method)
-    result = simulate_driven(
-        replace(problem, drive=drive),
-        "radial",
-        Resolution(cells, 1, steps),
-        Accuracy(1e-5),
-        settings,
-    )
+    driven, resolution = replace(problem, drive=drive), Resolution(cells, 1, steps)
+    result = simulate(driven, "radial", resolution, 1e-5, settings=settings)
     assert result.converged
     return result
 
@@ -170,9 +165,10 @@ def test_a_limit_that_leaves_no_force_to_march_at_gives_no_velocity():
 
 
 def test_a_velocity_with_an_unsolved_step_and_a_larger_error_is_no_number(monkeypatch):
-    def unsolved(request, accuracy):
-        refined = unknown("a step was left unsolved", Ladder(1, 0, 0))
-        return replace(refined, value=Estimate(5.4, {"solver": 1e9}))
+    def unsolved(request, accuracy, slope):
+        refined = Refined(Ladder(1, 0, 0), reason="a step was left unsolved")
+        velocity = {"velocity": Estimate(5.4, {"solver": 1e9})}
+        return replace(refined, estimates={**refined.estimates, **velocity})
 
     monkeypatch.setattr(driven_contact, "_refined", unsolved)
     result = microslip.solve("transverse", amplitude=1.0, force=0.8)

@@ -31,12 +31,10 @@ def energy_of_slip(contact, path, periodic):
     bounds = contact.layout.unpack(contact.field_bounds(path))
     bounds = bounds if len(bounds) == 1 else bounds[::stages]
     tractions = np.moveaxis(project(np.moveaxis(periodic.fields[::stages], 1, 0), bounds), 1, 0)
-    places = path.places.copy()
-    if periodic.body is not None:
-        places[..., FORWARD] += periodic.body[:, :1]
-    columns = tractions.shape[-1] // places.shape[1]
-    each = np.repeat(places, columns, axis=1)[:, None].transpose(3, 0, 1, 2)
-    rigid = np.moveaxis(rigid_displacement(contact, each), 0, 1)
+    places = path.positions.copy()
+    if len(periodic.body):
+        places[:, FORWARD] += periodic.body[:, 0]
+    rigid = np.array([rigid_displacement(contact, place) for place in places])
     elastic = np.array([contact.displacement(one) for one in tractions])
     slip = np.diff(rigid - elastic, axis=0)
     bounds = np.broadcast_to(bounds, tractions[:, 0].shape)

@@ -1,7 +1,7 @@
 """Second attempts at runs that do not converge at first."""
 
 from dataclasses import dataclass
-from functools import cache
+from functools import cache, partial
 from unittest.mock import Mock
 
 import numpy as np
@@ -37,22 +37,21 @@ class Stubborn:
         return FakeRun(good, velocity, "" if good else f"failed at {velocity:g}")
 
 
-def test_what_converges_is_run_once():
-    run_at = Stubborn(easy=0.5, reach=1.0)
-    assert continuation.run_safely(run_at, 1.0, None) == FakeRun(True, 1.0)
-    assert run_at.asked == [1.0]
+def attempted(run_at):
+    """A second attempt at the velocity 1."""
+    return continuation.second_attempt(run_at(1.0, None, False), partial(run_at, careful=True), 1.0)
 
 
 def test_tighter_steps_come_first():
     run_at = Stubborn(easy=0.5, reach=1.0, careless=False)
-    result = continuation.run_safely(run_at, 1.0, None)
+    result = attempted(run_at)
     assert (result.converged, result.effort.retried, result.effort.work) == (True, 1, 20)
 
 
 @pytest.mark.parametrize("reach", [8.0, 3.0, 1.5, 1.2])
 def test_the_velocity_is_lowered_in_steps_that_succeed(reach):
     run_at = Stubborn(easy=100.0, reach=reach)
-    result = continuation.run_safely(run_at, 1.0, None)
+    result = attempted(run_at)
     assert result.converged and result.mu == 1.0 and result.effort.retried == 1
     assert result.effort.work == 10 * len(run_at.asked)
     assert run_at.asked[-1] == 1.0
@@ -60,7 +59,7 @@ def test_the_velocity_is_lowered_in_steps_that_succeed(reach):
 
 def test_a_failure_is_told_as_the_first_attempt_tells_it():
     for run_at in (Stubborn(easy=100.0, reach=1.1), Stubborn(easy=1e99, reach=1.1)):
-        result = continuation.run_safely(run_at, 1.0, None)
+        result = attempted(run_at)
         assert not result.converged
         assert result.reason == "failed at 1"
         assert result.effort.updates == 5 * len(run_at.asked) < 5 * 100
@@ -104,7 +103,7 @@ def test_these_points_need_it(monkeypatch):
     motion, poisson, velocity, amplitude, tolerance = HARD[3]
     settings = {"poisson": poisson, "tolerance": tolerance}
     assert answered(*HARD[3]).effort.retried > 0
-    monkeypatch.setattr(friction, "run_safely", lambda run_at, v, guess: run_at(v, guess))
+    monkeypatch.setattr(friction, "second_attempt", lambda first, run_at, v: first)
     answer = microslip.solve(motion, velocity, amplitude, **settings)
     assert not answer.converged
     assert "no periodic state" in answer.reason
@@ -113,6 +112,6 @@ def test_these_points_need_it(monkeypatch):
 
 @pytest.mark.parametrize("error", [TypeError, ZeroDivisionError, np.linalg.LinAlgError])
 def test_an_error_of_the_code_in_a_run_is_raised(monkeypatch, error):
-    monkeypatch.setattr(simulate, "_run", Mock(side_effect=error("wrong")))
+    monkeypatch.setattr(simulate, "path_of", Mock(side_effect=error("wrong")))
     with pytest.raises(error):
         microslip.solve("transverse", 0.1, 0.5)

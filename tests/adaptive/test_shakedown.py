@@ -12,8 +12,7 @@ from microslip.motions.by_name import motion_named
 from microslip.motions.drive import Force
 from microslip.motions.problem import Problem
 from microslip.solver.discretise import Resolution
-from microslip.solver.run import Settings
-from microslip.solver.shakedown_run import run_to_rest
+from microslip.solver.simulate import simulate
 
 
 def mindlin(force):
@@ -67,8 +66,8 @@ def test_claims_hold_against_finer_runs(motion, amplitude, share):
 
 
 def walked(model, **resolution):
-    problem = Problem(motion_named("transverse"), 0.0, 0.4, 0.0)
-    return run_to_rest(problem, 0.4, model, Resolution(**resolution), 1e-3, Settings())
+    problem = Problem(motion_named("transverse"), 0.0, 0.4, 0.0, drive=Force(0.4))
+    return simulate(problem, model, Resolution(**resolution), 1e-3)
 
 
 @pytest.mark.long
@@ -77,23 +76,24 @@ def test_rings_angles_and_squares_go_equally_far():
     angles = walked("polar", cells=24, angles=4, steps=24)
     squares = walked("cartesian", cells=24, angles=1, steps=12)
     assert rings.converged and angles.converged and squares.converged
-    assert angles.displacement == pytest.approx(rings.displacement, abs=2e-4)
-    assert squares.displacement == pytest.approx(rings.displacement, abs=1.5e-2)
-    assert rings.most_after == angles.most_after > 1.0
+    rings, angles, squares = rings.values, angles.values, squares.values
+    assert angles["displacement"] == pytest.approx(rings["displacement"], abs=2e-4)
+    assert squares["displacement"] == pytest.approx(rings["displacement"], abs=1.5e-2)
+    assert rings["most_after"] == angles["most_after"] > 1.0
 
 
 def test_what_is_left_is_no_more_than_is_said():
     """A run with a smaller tolerance agrees within the bound of the remaining displacement."""
-    problem = Problem(motion_named("transverse"), 0.0, 0.5, 0.0)
     resolution = Resolution(cells=16, angles=1, steps=16)
     for force in (0.3, 0.5, 0.56):
-        early, late = (
-            run_to_rest(problem, force, "radial", resolution, left, Settings())
-            for left in (1e-2, 1e-4)
-        )
+        problem = Problem(motion_named("transverse"), 0.0, 0.5, 0.0, drive=Force(force))
+        early, late = (simulate(problem, "radial", resolution, left) for left in (1e-2, 1e-4))
         assert late.periods > early.periods
-        assert abs(late.displacement - early.displacement) <= early.distance + late.distance
-        assert early.most_after == pytest.approx(late.most_after, rel=0.2, abs=1.0)
+        apart = abs(late.values["displacement"] - early.values["displacement"])
+        assert apart <= early.distance + late.distance
+        assert early.values["most_after"] == pytest.approx(
+            late.values["most_after"], rel=0.2, abs=1.0
+        )
 
 
 def test_above_the_threshold_there_is_no_end():
@@ -106,9 +106,8 @@ def test_above_the_threshold_there_is_no_end():
 
 def test_a_contact_that_would_march_for_ever_says_so():
     """The force is above the threshold, which the run does not check."""
-    problem = Problem(motion_named("transverse"), 0.0, 0.5, 0.0)
-    resolution = Resolution(cells=8, angles=1, steps=8)
-    result = run_to_rest(problem, 0.65, "radial", resolution, 1e-2, Settings())
+    problem = Problem(motion_named("transverse"), 0.0, 0.5, 0.0, drive=Force(0.65))
+    result = simulate(problem, "radial", Resolution(cells=8, angles=1, steps=8), 1e-2)
     assert not result.converged and "still moves after" in result.reason
 
 

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import microslip
-from microslip.states.search import largest_excess
+from microslip.solver.search import largest_excess
 
 SHARP = "punch:flat=0.95"
 # motion, pressure, velocity, amplitude, cells and steps of a reference

@@ -19,7 +19,7 @@ def nothing_runs(monkeypatch):
     def work(*_, **__):
         raise AssertionError("work has started")
 
-    runs = ("friction.refine", "friction.simulate", "friction.simulate_static")
+    runs = ("friction.refine", "friction.simulate")
     for name in (*runs, "closed_forms.no_vibration", "closed_forms.closed_form"):
         monkeypatch.setattr(f"microslip.adaptive.{name}", work)
 

@@ -13,7 +13,6 @@ from microslip.estimate.refine import (
     READING_SAFETY,
     RUN_SHARE,
     SMALLEST_SHARE,
-    Levels,
     run_tolerance,
 )
 from microslip.estimate.richardson import SAFETY
@@ -27,8 +26,12 @@ LADDER = Ladder(start=8, angles=0.5, steps=2)
 
 def refine(run, ladder, tolerance, readings=(), **energy):
     """Refine with functions in place of problems; `readings` replace other interpolations."""
-    levels = Levels(lambda run, *place: run(*place), ladder, run, *readings)
-    return refinement.refine(levels, tolerance, **energy)
+    every = (run, *readings)
+    return refinement.refine(lambda run, *place: run(*place), ladder, every, tolerance, **energy)
+
+
+def value_of(refined):
+    return refined.estimates["friction"]
 
 
 class FakeRun:
@@ -50,7 +53,8 @@ class FakeRun:
         self.guesses.append(guess)
         mu, torque = EXACT + excess, EXACT_TORQUE - 2.0 * excess
         left = 1e-9 / number, 1e-10 * number
-        self.runs.append(Run(mu, torque, *left, number, Effort(1, 10, 100, 20), True, ""))
+        values = {"friction": mu, "torque": torque}
+        self.runs.append(Run(values, *left, number, Effort(1, 10, 100, 20)))
         return self.runs[-1]
 
 
@@ -59,19 +63,21 @@ def test_the_energy_is_extrapolated_with_errors_in_its_own_unit():
 
     def run(resolution, guess):
         energy = 5.0 + 0.03 / resolution.cells**2
-        return Run(0.4, 0.7, 1e-6, 2e-6, 1, Effort(), True, "", energy=energy)
+        return Run({"friction": 0.4, "dissipation": energy}, 1e-6, 2e-6, 1)
 
     found = refine(run, LADDER, 1e-3, energy_unit=40.0)
-    plain = found.value.by_source
-    assert found.energy.value == pytest.approx(5.0, abs=1e-12)
+    plain, energy = found.estimates["friction"].by_source, found.estimates["dissipation"]
+    assert energy.value == pytest.approx(5.0, abs=1e-12)
     for source in ("periodicity", "solver"):
-        assert found.energy.by_source[source] == pytest.approx(40.0 * plain[source])
+        assert energy.by_source[source] == pytest.approx(40.0 * plain[source])
     # the smallest error is a fraction of the geometric mean of 5 and 40, or of a force's work
-    assert found.energy.by_source["resolution"] == pytest.approx(
+    assert energy.by_source["resolution"] == pytest.approx(
         200.0**0.5 * plain["resolution"], rel=0.01
     )
     found = refine(run, LADDER, 1e-3, energy_unit=40.0, drive_work=20.0)
-    assert found.energy.by_source["resolution"] == pytest.approx(20.0 * plain["resolution"])
+    assert found.estimates["dissipation"].by_source["resolution"] == pytest.approx(
+        20.0 * plain["resolution"]
+    )
 
 
 def test_three_levels_are_run_each_from_the_one_before():
@@ -80,30 +86,30 @@ def test_three_levels_are_run_each_from_the_one_before():
     assert result.converged and result.reason == "" and result.periodic
     assert fake.asked == [LADDER.resolution(level) for level in (4, 8, 16)]
     assert fake.guesses == [None, *fake.runs[:2]]
-    assert result.value.value == pytest.approx(EXACT, abs=1e-14)
-    assert result.torque.value == pytest.approx(EXACT_TORQUE, abs=1e-14)
-    assert result.order == pytest.approx(2.0) and result.finest == fake.asked[-1]
+    assert value_of(result).value == pytest.approx(EXACT, abs=1e-14)
+    assert result.estimates["torque"].value == pytest.approx(EXACT_TORQUE, abs=1e-14)
+    assert result.order == pytest.approx(2.0) and result.resolution == fake.asked[-1]
     assert (result.periods, result.effort) == (3, Effort(3, 30, 300, 60))
 
 
 def test_the_error_is_the_sum_of_its_sources():
     result = refine(FakeRun(0.14), LADDER, 1e-3)
-    assert result.value.by_source.keys() == {"resolution", "periodicity", "solver"}
-    assert result.value.error == sum(result.value.by_source.values())
-    assert result.value.by_source["resolution"] == pytest.approx(
-        SAFETY * 0.14 / result.finest.cells**2
+    assert value_of(result).by_source.keys() == {"resolution", "periodicity", "solver"}
+    assert value_of(result).error == sum(value_of(result).by_source.values())
+    assert value_of(result).by_source["resolution"] == pytest.approx(
+        SAFETY * 0.14 / result.resolution.cells**2
     )
 
 
 def test_no_error_is_estimated_below_a_share_of_the_tolerance():
     result = refine(FakeRun(0.0), LADDER, 1e-3)
-    assert result.value.by_source["resolution"] == SMALLEST_SHARE * 1e-3
+    assert value_of(result).by_source["resolution"] == SMALLEST_SHARE * 1e-3
 
 
 def test_levels_are_added_until_the_error_is_within_the_tolerance():
     fake = FakeRun(3.0)
     result = refine(fake, LADDER, 1e-3)
-    assert result.converged and result.value.error <= 1e-3
+    assert result.converged and value_of(result).error <= 1e-3
     cells = [resolution.cells for resolution in fake.asked]
     assert len(set(cells)) == len(cells) and max(cells) > 64
     # each run starts from the run at half its level, if there is one
@@ -123,14 +129,15 @@ def test_distances_and_residuals_are_weighted_as_the_runs_enter_the_value():
 
         def run(at, guess):
             one = again(at, guess)
-            return replace(one, mu=one.mu + step) if at == resolution else one
+            shifted = replace(one, values=one.values | {"friction": one.mu + step})
+            return shifted if at == resolution else one
 
-        return abs(refine(run, LADDER, 1e-3).value.value - result.value.value) / step
+        return abs(value_of(refine(run, LADDER, 1e-3)).value - value_of(result).value) / step
 
     weights = np.array([response(resolution) for resolution in fake.asked])
-    for source, name in (("periodicity", "distance"), ("solver", "solver_residual")):
+    for source, name in (("periodicity", "distance"), ("solver", "residual")):
         expected = weights @ [getattr(run, name) for run in fake.runs]
-        assert result.value.by_source[source] == pytest.approx(expected, rel=1e-6)
+        assert value_of(result).by_source[source] == pytest.approx(expected, rel=1e-6)
 
 
 def test_runs_that_keep_to_their_tolerance_take_a_twelfth_of_it():
@@ -140,7 +147,9 @@ def test_runs_that_keep_to_their_tolerance_take_a_twelfth_of_it():
         return replace(fake(resolution, guess), distance=run_tolerance(1e-3))
 
     result = refine(run, LADDER, 1e-3)
-    assert result.converged and result.value.by_source["periodicity"] == pytest.approx(1e-3 / 12.0)
+    assert result.converged and value_of(result).by_source["periodicity"] == pytest.approx(
+        1e-3 / 12.0
+    )
     assert run_tolerance(1e-3) == RUN_SHARE * 1e-3
 
 
@@ -153,9 +162,9 @@ def test_runs_that_keep_to_their_tolerance_take_a_twelfth_of_it():
 )
 def test_smooth_errors_are_covered(size, sign, power, tolerance):
     result = refine(FakeRun(sign * size, power), LADDER, tolerance)
-    assert not result.converged or result.value.error <= tolerance
-    assert abs(result.value.value - EXACT) <= result.value.error
-    assert abs(result.torque.value - EXACT_TORQUE) <= 2.0 * result.value.error
+    assert not result.converged or value_of(result).error <= tolerance
+    assert abs(value_of(result).value - EXACT) <= value_of(result).error
+    assert abs(result.estimates["torque"].value - EXACT_TORQUE) <= 2.0 * value_of(result).error
 
 
 def test_scattered_errors_are_covered_nearly_always():
@@ -163,7 +172,7 @@ def test_scattered_errors_are_covered_nearly_always():
     for seed in range(300):
         size, tolerance = 10 ** draw.uniform(-2.0, 0.5), 10 ** draw.uniform(-4.0, -2.0)
         result = refine(FakeRun(size, scatter=0.3, seed=seed), LADDER, tolerance)
-        held.append(abs(result.value.value - EXACT) <= result.value.error)
+        held.append(abs(value_of(result).value - EXACT) <= value_of(result).error)
     assert np.mean(held) > 0.99
 
 
@@ -175,24 +184,24 @@ def test_an_imposed_resolution_is_the_answer_and_not_its_limit():
     fake = FakeRun(3.0)
     ladder = Ladder(16, angles=0, steps=1, cells=12 / 16, imposed=64)
     result = refine(fake, ladder, 1e-3)
-    assert result.value.value == fake.runs[-1].mu == EXACT + 3.0 / 144
-    assert result.finest.cells == 12 and len(fake.asked) == 3
-    assert result.value.by_source["resolution"] == pytest.approx((1.0 + SAFETY) * 3.0 / 144)
-    assert result.value.by_source["periodicity"] == pytest.approx(fake.runs[-1].distance)
+    assert value_of(result).value == fake.runs[-1].mu == EXACT + 3.0 / 144
+    assert result.resolution.cells == 12 and len(fake.asked) == 3
+    assert value_of(result).by_source["resolution"] == pytest.approx((1.0 + SAFETY) * 3.0 / 144)
+    assert value_of(result).by_source["periodicity"] == pytest.approx(fake.runs[-1].distance)
     assert result.converged and result.reason == ""
 
 
 @pytest.mark.parametrize("power", [1.0, 1.5, 2.0, 3.0])
 def test_the_error_of_an_imposed_resolution_is_covered(power):
     result = refine(FakeRun(0.3, power), replace(LADDER, imposed=64), 1e-3)
-    assert abs(result.value.value - EXACT) <= result.value.error
+    assert abs(value_of(result).value - EXACT) <= value_of(result).error
 
 
 def test_an_imposed_resolution_has_the_smallest_error_of_a_chosen_one():
     """The first level for 1e-2 is 8, and for 1e-3 it is 16; coarser levels are of second order."""
     for level, tolerance in ((8, 1e-2), (16, 1e-3), (4, 4e-2)):
         result = refine(FakeRun(0.0), replace(LADDER, imposed=level), 1e-3)
-        assert result.value.by_source["resolution"] == pytest.approx(SMALLEST_SHARE * tolerance)
+        assert value_of(result).by_source["resolution"] == pytest.approx(SMALLEST_SHARE * tolerance)
 
 
 # End of the refinement
@@ -205,45 +214,49 @@ def test_a_run_that_does_not_converge_ends_it(cells):
     def run(resolution, guess):
         one = fake(resolution, guess)
         if resolution.cells == cells:
-            return replace(one, converged=False, reason="lost its way", distance=np.inf)
+            return replace(one, reason="lost its way", distance=np.inf)
         return one
 
     result = refine(run, LADDER, 1e-3)
     assert not result.converged and not result.periodic and result.reason == "lost its way"
     assert len(fake.asked) == 3
-    assert result.value.error == np.inf
+    assert value_of(result).error == np.inf
 
 
 def test_the_finest_level_is_named():
     fake = FakeRun(1e3)
     result = refine(fake, LADDER, 1e-4)
     assert not result.converged and result.periodic and fake.asked[-1].cells == 12 * 16
-    assert result.reason == f"the error is still {result.value.error:.1e} with 192 cells"
-    assert abs(result.value.value - EXACT) <= result.value.error
+    assert result.reason == f"the error is still {value_of(result).error:.1e} with 192 cells"
+    assert abs(value_of(result).value - EXACT) <= value_of(result).error
 
 
 def test_errors_that_no_finer_level_cures_are_reported():
-    for spoilt in ({"distance": 3e-3}, {"solver_residual": 1e-3}):
+    for spoilt in ({"distance": 3e-3}, {"residual": 1e-3}):
         fake = FakeRun(0.1)
 
         def run(resolution, guess, fake=fake, spoilt=spoilt):
             return replace(fake(resolution, guess), **spoilt)
 
         result = refine(run, LADDER, 1e-3)
-        assert result.value.error > 1e-3 and result.converged and len(fake.asked) == 3
+        assert value_of(result).error > 1e-3 and result.converged and len(fake.asked) == 3
 
 
 def test_what_was_known_before_the_budget_was_spent_is_the_answer():
     enough = refine(FakeRun(3.0), LADDER, 0.01)
     result = refine(FakeRun(3.0, most=4), LADDER, 1e-3)
-    assert not result.converged and result.finest.cells == 16
-    assert result.reason == f"all is spent: the error is still {result.value.error:.1e}"
-    assert abs(result.value.value - EXACT) <= result.value.error and enough.converged
+    assert not result.converged and result.resolution.cells == 16
+    assert result.reason == f"all is spent: the error is still {value_of(result).error:.1e}"
+    assert abs(value_of(result).value - EXACT) <= value_of(result).error and enough.converged
 
 
 def test_nothing_is_known_of_a_budget_that_is_spent_at_once():
     result = refine(FakeRun(most=2), LADDER, 1e-3)
-    assert not result.converged and np.isnan(result.value.value) and result.value.error == np.inf
+    assert (
+        not result.converged
+        and np.isnan(value_of(result).value)
+        and value_of(result).error == np.inf
+    )
     assert result.reason == "all is spent: there is no error estimate yet"
 
 
@@ -251,25 +264,29 @@ def test_nothing_is_known_of_a_budget_that_is_spent_at_once():
 
 
 def shifted(fake, by):
-    return lambda resolution, guess: replace(fake(resolution, guess), mu=EXACT + by)
+    def run(resolution, guess):
+        one = fake(resolution, guess)
+        return replace(one, values=one.values | {"friction": EXACT + by})
+
+    return run
 
 
 def test_readings_are_run_at_the_finest_level_and_their_differences_are_an_error():
     fake, other = FakeRun(), FakeRun()
     result = refine(fake, LADDER, 1e-3, [shifted(other, 4e-5), shifted(other, -3e-5)])
-    assert result.value.by_source["model"] == pytest.approx(READING_SAFETY * 7e-5)
+    assert value_of(result).by_source["model"] == pytest.approx(READING_SAFETY * 7e-5)
     assert other.asked == 2 * [fake.asked[-1]] and other.guesses == 2 * [fake.runs[-1]]
-    assert result.converged and result.value.error <= 1e-3
+    assert result.converged and value_of(result).error <= 1e-3
 
 
 def test_finer_runs_make_room_for_readings_that_are_apart():
     result = refine(FakeRun(), LADDER, 1e-3, [shifted(FakeRun(), 1.6e-4)])
-    assert result.converged and result.value.error <= 1e-3 and result.finest.cells == 24
+    assert result.converged and value_of(result).error <= 1e-3 and result.resolution.cells == 24
 
 
 def test_readings_that_are_too_far_apart_end_it():
     result = refine(FakeRun(), LADDER, 1e-3, [shifted(FakeRun(), 3e-4)])
-    assert result.value.error > 1e-3 and result.finest.cells == 16
+    assert value_of(result).error > 1e-3 and result.resolution.cells == 16
 
 
 def test_a_coarse_run_that_does_not_converge_counts_in_full():
@@ -279,7 +296,7 @@ def test_a_coarse_run_that_does_not_converge_counts_in_full():
 
     def run(resolution, guess):
         made = fake(resolution, guess)
-        return replace(made, converged=False, reason="lost", distance=0.01) if not guess else made
+        return replace(made, reason="lost", distance=0.01) if not guess else made
 
     result = refine(run, LADDER, 1e-3)
-    assert not result.converged and result.value.by_source["periodicity"] > 0.01
+    assert not result.converged and value_of(result).by_source["periodicity"] > 0.01

@@ -24,8 +24,7 @@ from microslip.models.squares.contact import CartesianContact
 from microslip.motions.named import Bore, Transverse
 from microslip.motions.problem import Problem
 from microslip.solver.discretise import Resolution
-from microslip.solver.period_map import Goal, PeriodMap
-from microslip.solver.periodic import find_periodic_state
+from microslip.solver.search import Goal, PeriodMap, find_periodic_state
 from microslip.solver.simulate import simulate
 from microslip.theory import hertz, paper
 

@@ -9,8 +9,7 @@ from microslip.models.contact import forward_slip
 from microslip.models.path import EULER, SDIRK2, half_period_phases, make_path
 from microslip.models.rings.contact import RadialContact
 from microslip.motions.by_name import motion_named
-from microslip.solver.period_map import Goal, PeriodMap
-from microslip.solver.periodic import find_periodic_state
+from microslip.solver.search import Goal, PeriodMap, find_periodic_state
 
 CONTACTS = small_contacts.CONTACTS | {
     "rings, ahead and aside": (lambda: RadialContact.resolved(5, 0.7), "elliptic", 0.0)

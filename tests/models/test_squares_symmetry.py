@@ -18,7 +18,6 @@ from microslip.pressures.by_name import pressure_named
 from microslip.pressures.hertz import HERTZ, Hertz
 from microslip.solver.discretise import Resolution
 from microslip.solver.simulate import simulate
-from microslip.solver.static_run import simulate_static
 
 ELLIPSE = "ellipse:ratio=0.6"
 LOOP = "elliptic:forward=0.6,lateral=1,phase=70"
@@ -161,7 +160,7 @@ def test_a_pulled_march_is_that_of_all_squares(kind):
 )
 def test_a_run_finds_what_one_on_all_squares_does(motion, nu, images, velocity, monkeypatch):
     problem = Problem(motion_named(motion), velocity, 0.6, nu, pressure_named(ELLIPSE))
-    run_of = simulate if velocity else simulate_static
+    run_of = simulate
     resolution, tolerance = Resolution(12, 1, 12), 1e-9
     other = run_of(problem, "cartesian", resolution, tolerance)
     monkeypatch.setattr(squares_contact, "_images", lambda *tractions: 1)

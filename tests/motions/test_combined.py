@@ -9,7 +9,6 @@ from microslip.motions.by_name import motion_named
 from microslip.motions.problem import Problem
 from microslip.solver.discretise import Resolution
 from microslip.solver.simulate import simulate
-from microslip.solver.static_run import simulate_static
 from microslip.theory import hertz
 
 
@@ -62,7 +61,7 @@ def test_the_motion_is_its_own_mirror_image_half_a_period_later():
 def test_the_static_limit_is_approached_by_marches():
     """Limit and marches use the same squares and steps, so that their errors are equal."""
     motion, squares = motion_named("transverse-bore"), Resolution(16, 1, 48)
-    limit = simulate_static(Problem(motion, 0.0, 0.5, 0.0), "cartesian", squares, 1e-5)
+    limit = simulate(Problem(motion, 0.0, 0.5, 0.0), "cartesian", squares, 1e-5)
     runs = [
         simulate(Problem(motion, v, 0.5, 0.0), "cartesian", squares, 1e-5) for v in (4e-3, 5e-4)
     ]

@@ -24,7 +24,7 @@ from microslip.motions.drive import Force, Spring
 from microslip.motions.named import Elliptic, Transverse, Zigzag
 from microslip.motions.problem import Problem
 from microslip.solver.discretise import Resolution
-from microslip.solver.static_run import simulate_static
+from microslip.solver.simulate import simulate
 from microslip.theory import paper
 
 PERIODIC = [one() for one in MOTIONS.values() if one.periodic and not fields(one)]
@@ -85,7 +85,7 @@ def test_the_static_limit_knows_the_turning_points_alone():
     """The static limit of the zigzag is that of the sine, which is known in closed form."""
     resolution = Resolution(64, 1, 0)
     one, other = (
-        simulate_static(Problem(motion, 0.0, 0.5, 0.0), "radial", resolution, 1e-8).mu
+        simulate(Problem(motion, 0.0, 0.5, 0.0), "radial", resolution, 1e-8).mu
         for motion in (Zigzag(), Transverse())
     )
     assert one == pytest.approx(other, abs=1e-9)

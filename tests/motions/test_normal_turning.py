@@ -11,7 +11,6 @@ from microslip.motions.problem import Problem
 from microslip.pressures.hertz import HERTZ
 from microslip.solver.discretise import Resolution, contact_of
 from microslip.solver.simulate import simulate
-from microslip.solver.static_run import simulate_static
 from microslip.theory import hertz, paper
 
 TURNING = "normal:angle=1"
@@ -94,7 +93,7 @@ def test_slow_marches_end_in_the_limit():
     """Limit and marches use the same contact and steps, so that a coarse resolution is
     sufficient."""
     still = Problem(motion_named(TURNING), 0.0, 0.5, 0.0)
-    limit = simulate_static(still, "polar", Resolution(16, 4, 64), 1e-5)
+    limit = simulate(still, "polar", Resolution(16, 4, 64), 1e-5)
     above = [run(TURNING, v, 0.5, resolution=(16, 4, 64)).mu - limit.mu for v in (2e-2, 2.5e-3)]
     assert limit.converged and 0.0 < above[1] < 0.36 * above[0]
 

@@ -19,8 +19,8 @@ from microslip.motions.by_name import motion_named
 from microslip.motions.drive import Force, Spring
 from microslip.motions.problem import Problem
 from microslip.solver.discretise import Resolution, contact_of, path_of
-from microslip.solver.driven_run import Accuracy, simulate_driven
-from microslip.solver.run import AS_SHIPPED
+from microslip.solver.run import Settings
+from microslip.solver.simulate import simulate
 
 DRIVES = {
     "a force": Force(0.4),
@@ -45,14 +45,12 @@ PLACES = {
 def balance(problem, drive, model, resolution):
     """Mean powers of the vibration, the drive, the slip and the dashpot."""
     driven = replace(problem, drive=drive)
-    result = simulate_driven(driven, model, resolution, Accuracy(1e-6, 1.0), AS_SHIPPED)
+    result = simulate(driven, model, resolution, 1e-6, settings=Settings(slope=1.0))
     assert result.converged, result.reason
     contact = contact_of(problem, model, resolution)
     load = (drive.force or 0.0) - drive.damping * problem.drift
     body = Body(drive.stiffness, drive.damping, drive.mass, load)
-    shape = (2, *np.broadcast_shapes(contact.bound.shape, contact.lateral_position.shape))
-    points = int(np.prod(shape))
-    q, at = result.state[:points].reshape(shape), np.append(result.state[points:], np.zeros(2))[:2]
+    q, at = result.state, result.place
     if drive.stiffness > 0.0 and not body.remembers:
         at = np.array([(load - forces(contact, q)[0]) / drive.stiffness, 0.0])
     phases = path_of(problem, contact, resolution.steps).phase

@@ -12,8 +12,7 @@ from microslip.motions.named import Bore, Transverse
 from microslip.motions.problem import Problem
 from microslip.solver import discretise
 from microslip.solver.discretise import Resolution, contact_of
-from microslip.solver.period_map import Goal, PeriodMap
-from microslip.solver.periodic import find_periodic_state
+from microslip.solver.search import Goal, PeriodMap, find_periodic_state
 from microslip.solver.simulate import simulate
 from microslip.theory import paper
 
@@ -131,7 +130,7 @@ def test_verdict_is_that_of_the_plain_map(name):
 
 
 def test_run_reports_what_was_not_reached(monkeypatch):
-    monkeypatch.setattr("microslip.solver.simulate.MOST_MARCHES", 2)
+    monkeypatch.setattr("microslip.solver.simulate._Search.most_marches", 2)
     for motion, model, angles in ((Bore(), "polar", 4), (Transverse(), "radial", 1)):
         problem = Problem(motion, 0.1, 1.0, 0.0)
         run = simulate(problem, model, Resolution(6, angles, 8), TOLERANCE)

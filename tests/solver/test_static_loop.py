@@ -11,7 +11,6 @@ from microslip.pressures.by_name import pressure_named
 from microslip.solver.discretise import Resolution
 from microslip.solver.simulate import simulate
 from microslip.solver.static_loop import largest_shift
-from microslip.solver.static_run import simulate_static
 from microslip.theory import paper
 
 NARROW = "elliptic:forward=0.5,phase=30"
@@ -61,11 +60,11 @@ def test_a_loop_of_no_width_has_the_limit_of_its_line(amplitude):
 
 def test_on_a_line_the_whole_period_says_what_the_turning_points_say():
     motion, resolution = motion_named("transverse"), Resolution(16, 1, 64)
-    line = simulate_static(Problem(motion, 0.0, 0.5, 0.0), "radial", resolution, 1e-5).mu
+    line = simulate(Problem(motion, 0.0, 0.5, 0.0), "radial", resolution, 1e-5).mu
     # so narrow that it is a line, but not `straight`
     loop = motion_named("elliptic:forward=1e-9,phase=0,forward_cycles=2")
     assert not loop.straight
-    result = simulate_static(Problem(loop, 0.0, 0.5, 0.0), "radial", resolution, 1e-5).mu
+    result = simulate(Problem(loop, 0.0, 0.5, 0.0), "radial", resolution, 1e-5).mu
     assert result == pytest.approx(line, abs=2e-3)
 
 
@@ -114,7 +113,7 @@ def test_other_models_find_the_same_limit():
     # the stick zone of an elliptic contact is an ellipse of the same shape
     for pressure in ("hertz", "ellipse:ratio=0.7"):
         problem = Problem(motion_named("elliptic"), 0.0, 0.5, 0.0, pressure_named(pressure))
-        squares = simulate_static(problem, "cartesian", Resolution(24, 1, 24), 1e-3)
+        squares = simulate(problem, "cartesian", Resolution(24, 1, 24), 1e-3)
         assert squares.converged
         assert squares.mu == pytest.approx(rings.mu_macro, abs=8e-3)
 
@@ -133,7 +132,7 @@ def test_other_models_find_the_same_limit():
 def test_slow_marches_end_there(motion):
     """Limit and marches use the same rings and steps, so a coarse resolution suffices."""
     kind, resolution = motion_named(motion), Resolution(32, 1, 128)
-    limit = simulate_static(Problem(kind, 0.0, 0.5, 0.0), "radial", resolution, 1e-5)
+    limit = simulate(Problem(kind, 0.0, 0.5, 0.0), "radial", resolution, 1e-5)
     slow = [simulate(Problem(kind, v, 0.5, 0.0), "radial", resolution, 1e-5) for v in (8e-3, 1e-3)]
     assert limit.converged and slow[0].converged and slow[1].converged
     above = [run.mu - limit.mu for run in slow]

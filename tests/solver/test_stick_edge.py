@@ -15,7 +15,7 @@ from microslip.solver.budget import Budget, Spent
 from microslip.solver.discretise import Resolution
 from microslip.solver.run import Settings
 from microslip.solver.simulate import simulate
-from microslip.solver.static_run import edges_on_a_line, edges_on_a_loop, simulate_static
+from microslip.solver.static_run import edges_on_a_line, edges_on_a_loop
 from microslip.solver.stick_edge import (
     FINE_RESOLUTION,
     FINE_TOLERANCE,
@@ -197,7 +197,7 @@ def test_a_slow_circle_needs_few_rings_where_they_gather_at_what_never_slips():
 def limit(cells, focus=None):
     problem = Problem(motion_named("transverse"), 0.0, 0.55, 0.0, pressure_named(RING))
     settings = Settings(focus=focus)
-    return simulate_static(problem, "radial", Resolution(cells, 1, 4), 1e-6, settings).mu
+    return simulate(problem, "radial", Resolution(cells, 1, 4), 1e-6, settings=settings).mu
 
 
 def test_the_limit_under_a_ring_falls_into_line_where_rings_gather_at_both_edges():
@@ -215,7 +215,7 @@ def test_the_limit_on_a_loop_looks_for_the_edge_once(motion, amplitude):
     problem = Problem(motion_named(motion), 0.0, amplitude, 0.0)
     focus, resolution = edge_focus(problem, "radial"), Resolution(48, 1, 192)
     by_itself, radii = edges_on_a_loop(problem, "radial", resolution, 1e-5, Settings())
-    static = simulate_static(problem, "radial", resolution, 1e-5, Settings(focus=focus))
+    static = simulate(problem, "radial", resolution, 1e-5, settings=Settings(focus=focus))
     assert focus.radii == pytest.approx(radii, abs=5e-3)
     assert static.mu == pytest.approx(by_itself[-1].mu, abs=5e-4)
     assert len(by_itself) > 1 and static.effort.solves < sum(run.effort.solves for run in by_itself)

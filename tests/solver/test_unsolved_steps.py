@@ -12,8 +12,8 @@ from microslip.motions.by_name import motion_named
 from microslip.motions.problem import Problem
 from microslip.solver import static_loop
 from microslip.solver.discretise import Resolution
+from microslip.solver.simulate import simulate
 from microslip.solver.snapshots import frames
-from microslip.solver.static_run import simulate_static
 from microslip.theory import paper
 
 LOOSE = 5e-2
@@ -40,7 +40,7 @@ def loose_steps(monkeypatch):
 
 def run_on_a_line(amplitude):
     problem = Problem(motion_named("transverse"), 0.0, amplitude, 0.0)
-    return simulate_static(problem, "radial", Resolution(32, 2, 1), 1e-5)
+    return simulate(problem, "radial", Resolution(32, 2, 1), 1e-5)
 
 
 @pytest.mark.parametrize("amplitude", [0.2, 0.6, 0.8])
@@ -48,12 +48,12 @@ def test_the_static_limit_on_a_line_includes_the_residual_of_its_steps(amplitude
     run = run_on_a_line(amplitude)
     assert not run.converged and "unsolved" in run.reason
     error = abs(run.mu - paper.static_limit_transverse(amplitude))
-    assert RINGS < error <= run.solver_residual + RINGS
+    assert RINGS < error <= run.residual + RINGS
 
 
 def test_solved_steps_have_the_limit_of_the_closed_form():
     run = run_on_a_line(0.5)
-    assert run.converged and run.solver_residual <= 2e-7
+    assert run.converged and run.residual <= 2e-7
     assert abs(run.mu - paper.static_limit_transverse(0.5)) <= RINGS
 
 
@@ -66,8 +66,8 @@ def test_the_static_limit_on_a_loop_does_not_converge(loose_steps, monkeypatch):
 
     monkeypatch.setattr(static_loop, "frames", without_guess)
     problem = Problem(motion_named("elliptic"), 0.0, 0.5, 0.0)
-    run = simulate_static(problem, "radial", Resolution(12, 2, 16), 1e-4)
-    assert not run.converged and run.solver_residual > 1e-4
+    run = simulate(problem, "radial", Resolution(12, 2, 16), 1e-4)
+    assert not run.converged and run.residual > 1e-4
 
 
 def test_a_history_fails(loose_steps):

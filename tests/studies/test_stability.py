@@ -13,9 +13,8 @@ from microslip.motions.named import Bore, Transverse
 from microslip.motions.problem import Problem
 from microslip.solver.discretise import Resolution, contact_of, path_of
 from microslip.solver.method_names import method_named
-from microslip.solver.methods import _searches
-from microslip.solver.period_map import Goal, PeriodMap
-from microslip.solver.periodic import find_periodic_state
+from microslip.solver.methods.march import plain_march
+from microslip.solver.search import Goal, PeriodMap, find_periodic_state
 from microslip.solver.static_limit import static_state
 
 MIDPOINT = method_named("midpoint").integrator
@@ -125,7 +124,7 @@ def test_loss_of_uniqueness_without_forward_motion():
     friction up to the static limit."""
     limit = microslip.solve("transverse", 0.0, 0.5).mu_macro
     for share in SHARES:
-        force = periodic_force(0.0, share, _searches.march)
+        force = periodic_force(0.0, share, plain_march)
         assert force == pytest.approx(share * limit, abs=2e-3)
 
 

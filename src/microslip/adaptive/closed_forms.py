@@ -6,7 +6,7 @@ import math
 from collections.abc import Callable
 from typing import NamedTuple
 
-from microslip.adaptive.request import Request
+from microslip.adaptive.request import Request, result_of_runs
 from microslip.adaptive.result import Result
 from microslip.estimate.estimate import Estimate
 from microslip.motions.problem import Problem
@@ -75,10 +75,15 @@ def solve_prescribed(request: Request) -> Result:
     exact = exact_for(request)
     if exact is not None:
         return of_closed_form(request, exact)
-    # imported here because it loads compiled code
-    from microslip.adaptive.friction import solve_friction
+    # imported here because they load compiled code
+    from microslip.adaptive.friction import ladder_of, runs_of
+    from microslip.estimate.refine import refine
 
-    return solve_friction(request)
+    problem, accuracy = request.problem, request.accuracy
+    ladder, every = ladder_of(request, accuracy), (problem, *problem.readings)
+    unit = problem.largest_energy
+    refined = refine(runs_of(request), ladder, every, accuracy, energy_unit=unit)
+    return result_of_runs(request, refined, request.tolerance)
 
 
 def no_vibration(problem: Problem) -> Exact | None:

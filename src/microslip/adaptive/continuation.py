@@ -22,31 +22,28 @@ MOST_STEPS = 12
 """Largest number of times that the velocity is increased."""
 
 
-def run_safely(run_at: Callable, velocity: float, guess: Run | None) -> Run:
-    """Run at a velocity, with a second attempt if the run does not converge.
+def second_attempt(first: Run, run_at: Callable[[float, Run | None], Run], velocity: float) -> Run:
+    """Run at a velocity after a run that did not converge.
 
     Parameters
     ----------
+    first : run.Run
+        The run that did not converge.
     run_at : callable
-        `run_at(velocity, guess, tighter)` returns a run.Run.  If `tighter` is True, the steps are
-        solved to a smaller tolerance.
+        `run_at(velocity, guess)` returns a run.Run with steps that are solved to a smaller
+        tolerance.
     velocity : float
         Dimensionless velocity.
-    guess : run.Run or None
-        Initial guess.
 
     Returns
     -------
     run.Run
-        The run, with the effort of all attempts.  `effort.retried` is 1 after a second attempt.
+        The run, with the effort of all attempts and `effort.retried` equal to 1.
     """
-    first = run_at(velocity, guess, False)
-    if first.converged:
-        return first
     attempts = [first]
 
     def run(velocity: float, guess: Run | None) -> Run:
-        attempts.append(run_at(velocity, guess, True))
+        attempts.append(run_at(velocity, guess))
         return attempts[-1]
 
     result = _from_above(run, velocity)

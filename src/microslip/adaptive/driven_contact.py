@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
-from operator import attrgetter
 
 from microslip.adaptive.closed_forms import Exact, fast_sliding, of_closed_form, solve_prescribed
 from microslip.adaptive.friction import ladder_of
@@ -24,12 +23,11 @@ from microslip.adaptive.under_force import (
 )
 from microslip.estimate.estimate import Estimate
 from microslip.estimate.ladder import with_mass
-from microslip.estimate.refine import UNKNOWN, Levels, Refined, refine, run_tolerance
+from microslip.estimate.refine import UNKNOWN, Refined, refine, run_tolerance
 from microslip.motions.drive import Force
 from microslip.motions.problem import Problem
 from microslip.solver.budget import Spent
 from microslip.solver.discretise import Resolution, contact_of
-from microslip.solver.driven_run import Accuracy, simulate_driven
 from microslip.solver.run import Run, Settings
 from microslip.solver.simulate import simulate
 
@@ -70,7 +68,7 @@ def solve_driven(request: Request) -> Result:
     exact = _fast(request)
     if exact is not None:
         return of_closed_form(request, exact)
-    return result_of_runs(request, _refined(request, Accuracy(request.accuracy)), request.tolerance)
+    return result_of_runs(request, _refined(request, request.accuracy), request.tolerance)
 
 
 def _fast(request: Request) -> Exact | None:
@@ -218,13 +216,12 @@ def _moving(request: Request, moving_force: float) -> Result:
     request = replace(request, problem=replace(request.problem, velocity=near.velocity))
     scale = SCALE_SHARE * near.velocity
     while True:
-        accuracy = Accuracy(request.accuracy * max(1.0, scale), near.slope)
-        refined = _refined(request, accuracy)
-        velocity = abs(refined.value.value)
+        refined = _refined(request, request.accuracy * max(1.0, scale), near.slope)
+        estimate = refined.estimates["velocity"]
+        velocity = abs(estimate.value)
         if not refined.converged or scale <= max(1.0, velocity):
             break
         scale = SCALE_SHARE * velocity  # a small mass can move far more slowly than the coarse run
-    estimate = refined.value
     if not request.problem.propels:
         # a negative value is within the error
         estimate = replace(estimate, value=max(estimate.value, 0.0))
@@ -233,11 +230,11 @@ def _moving(request: Request, moving_force: float) -> Result:
     elif moving_force > force:
         half = 0.5 * estimate.value
         estimate = Estimate(half, {**estimate.by_source, "model": half})
-    refined = replace(refined, value=estimate)
+    refined = replace(refined, estimates={**refined.estimates, "velocity": estimate})
     tolerance = request.tolerance
     largest = None if tolerance is None else tolerance * max(1.0, abs(estimate.value))
     more = {"mean_velocity": estimate, "friction": Estimate(force)}
-    return result_of_runs(original, refined, largest, **more)
+    return result_of_runs(original, refined, largest, "velocity", **more)
 
 
 def _near(request: Request) -> Near:
@@ -246,7 +243,7 @@ def _near(request: Request) -> Near:
     Runs at prescribed velocities bracket the velocity under the force.  A run under the force then
     improves the estimate, unless its velocity is too low to be resolved.
     """
-    moving = replace(request.problem, velocity=FIRST_VELOCITY)
+    driven, moving = request.problem, replace(request.problem, velocity=FIRST_VELOCITY)
     force = force_of(request.problem)
     ladder = ladder_of(replace(request, problem=moving), COARSE_TOLERANCE)
     coarse = ladder.resolution(ladder.levels(COARSE_TOLERANCE)[0])
@@ -254,15 +251,15 @@ def _near(request: Request) -> Near:
     request.show(coarse)
 
     def friction_at(velocity: float) -> float:
-        there = replace(moving, velocity=velocity)
+        there = replace(moving, velocity=velocity, drive=None)
         return simulate(there, request.model, coarse, COARSE_TOLERANCE, settings=settings).mu
 
     near = velocity_near(moving, force, friction_at)
-    place = replace(moving, velocity=near.velocity)
-    accuracy = Accuracy(COARSE_TOLERANCE * near.velocity, near.slope)
-    run = simulate_driven(place, request.model, coarse, accuracy, settings)
-    if run.converged and run.velocity > SLOWEST_SHARE * near.velocity:
-        return near._replace(velocity=run.velocity)
+    place = replace(driven, velocity=near.velocity)
+    tolerance, sloped = COARSE_TOLERANCE * near.velocity, replace(settings, slope=near.slope)
+    run = simulate(place, request.model, coarse, tolerance, settings=sloped)
+    if run.converged and run.values["velocity"] > SLOWEST_SHARE * near.velocity:
+        return near._replace(velocity=run.values["velocity"])
     return near
 
 
@@ -278,28 +275,29 @@ def _without_answer(request: Request, reason: str) -> Result:
     )
 
 
-def _refined(request: Request, accuracy: Accuracy) -> Refined:
-    """Refine the runs of a driven contact to an accuracy."""
-    problem, tolerance = request.problem, accuracy.tolerance
-    drive = drive_of(problem)
+def _refined(request: Request, tolerance: float, slope: float = math.inf) -> Refined:
+    """Refine the runs of a driven contact; for the slope under a force see run.Settings."""
+    problem, drive = request.problem, drive_of(request.problem)
     contact = contact_of(problem, request.model, COARSEST)
     ladder, unresolved = with_mass(
         ladder_of(request, tolerance), problem, contact, drive.mass, tolerance
     )
-    share = accuracy._replace(tolerance=run_tolerance(tolerance))
-    settings = Settings(request.how, budget=request.budget)
+    settings, share = (
+        Settings(request.how, budget=request.budget, slope=slope),
+        run_tolerance(tolerance),
+    )
 
     def run(problem: Problem, resolution: Resolution, guess: Run | None) -> Run:
         request.show(resolution)
-        return simulate_driven(problem, request.model, resolution, share, settings, guess=guess)
+        return simulate(problem, request.model, resolution, share, guess, settings)
 
-    levels = Levels(run, ladder, problem, *problem.readings)
-    read = attrgetter("mu" if drive.force is None else "velocity")
-    unit, work = problem.largest_energy, 0.0
+    name, unit, work = "friction", problem.largest_energy, 0.0
     if drive.force is not None:  # a velocity error changes the drift and the forces
+        name = "velocity"
         work = 2.0 * math.pi * problem.mean_load * problem.unit_drift * abs(drive.force)
-        unit = accuracy.slope * unit + work
-    refined = refine(levels, tolerance, read, energy_unit=unit, drive_work=work)
+        unit = slope * unit + work
+    every = (problem, *problem.readings)
+    refined = refine(run, ladder, every, tolerance, name, energy_unit=unit, drive_work=work)
     if unresolved and refined.converged:
-        refined = replace(refined, converged=False, reason=unresolved)
+        refined = replace(refined, reason=unresolved)
     return refined

@@ -1,21 +1,20 @@
-"""Friction of a contact at a prescribed velocity, with its error estimate."""
+"""Runs of a contact at a prescribed velocity."""
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import replace
 from functools import cache
 
-from microslip.adaptive.continuation import run_safely
-from microslip.adaptive.request import Request, result_of_runs
-from microslip.adaptive.result import Result
+from microslip.adaptive.continuation import second_attempt
+from microslip.adaptive.request import Request
 from microslip.estimate.ladder import Ladder, ladder_for, refuse_free
-from microslip.estimate.refine import Levels, refine, run_tolerance
+from microslip.estimate.refine import run_tolerance
 from microslip.motions.problem import Problem
 from microslip.solver.discretise import Resolution
 from microslip.solver.method_names import SHIPPED
 from microslip.solver.run import Run, Settings
 from microslip.solver.simulate import simulate
-from microslip.solver.static_run import simulate_static
 from microslip.solver.stick_edge import edge_focus
 
 
@@ -31,13 +30,13 @@ def ladder_of(request: Request, tolerance: float) -> Ladder:
     return ladder
 
 
-def levels_for(request: Request) -> Levels:
-    """Runs of a contact at a prescribed velocity of at least 0.
+def runs_of(request: Request) -> Callable[[Problem, Resolution, Run | None], Run]:
+    """Function that runs a contact at a prescribed velocity of at least 0, see refine.refine.
 
     The runs raise budget.Spent if the point's budget is exceeded.
     """
-    problem, motion = request.problem, request.problem.motion
-    share = run_tolerance(request.accuracy)
+    problem, share = request.problem, run_tolerance(request.accuracy)
+    once = request.method != SHIPPED or problem.velocity == 0.0 or not problem.motion.periodic
 
     @cache  # the search for the slip front is charged once
     def settings() -> Settings:
@@ -47,23 +46,15 @@ def levels_for(request: Request) -> Levels:
     def run(problem: Problem, resolution: Resolution, guess: Run | None) -> Run:
         how = settings()
         request.show(resolution)
-        if problem.velocity == 0.0 and motion.periodic:
-            return simulate_static(problem, request.model, resolution, share, how)
+        first = simulate(problem, request.model, resolution, share, guess, how)
+        if once or first.converged:
+            return first
+        tighter = replace(how, tighter=True)
 
-        def run_at(velocity: float, guess: Run | None, tighter: bool = False) -> Run:
+        def run_at(velocity: float, guess: Run | None) -> Run:
             there = replace(problem, velocity=velocity)
-            how_tight = replace(how, tighter=tighter)
-            return simulate(there, request.model, resolution, share, guess, how_tight)
+            return simulate(there, request.model, resolution, share, guess, tighter)
 
-        if request.method != SHIPPED or not motion.periodic:
-            return run_at(problem.velocity, guess)
-        return run_safely(run_at, problem.velocity, guess)
+        return second_attempt(first, run_at, problem.velocity)
 
-    return Levels(run, ladder_of(request, request.accuracy), problem, *problem.readings)
-
-
-def solve_friction(request: Request) -> Result:
-    """Compute the Result of a contact at a prescribed velocity, by runs of a model."""
-    unit = request.problem.largest_energy
-    refined = refine(levels_for(request), request.accuracy, energy_unit=unit)
-    return result_of_runs(request, refined, request.tolerance)
+    return run

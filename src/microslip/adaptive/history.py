@@ -191,9 +191,9 @@ def traction_field(
         count("cells", cells, 2, most=LARGEST["cells"])
     contact = _contact(problem, "polar", cells)
     assert isinstance(contact, PolarContact)
-    run = steady_state(contact, problem, 1e-6, STEP_TOLERANCE)
+    run = steady_state(contact, problem, 1e-6)
     if not run.converged:
-        failure = f"{run.reason}, residual {run.solver_residual:.1e}"
+        failure = f"{run.reason}, residual {run.residual:.1e}"
         raise StepFailure(f"velocity = {velocity!r}: {failure}")
     assert run.state is not None  # true for every steady state
     (forward,), (lateral,) = whole_disc(contact, -run.state[None])

@@ -8,7 +8,7 @@ from typing import Any
 
 from microslip.adaptive.checks import checked_driven_problem
 from microslip.adaptive.closed_forms import solve_prescribed
-from microslip.adaptive.request import TOLERANCE, Request, request_for
+from microslip.adaptive.request import TOLERANCE, request_for
 from microslip.adaptive.result import Result
 from microslip.foundation.errors import InputError
 from microslip.motions.motion import Motion
@@ -118,23 +118,18 @@ def solve(
         time_limit=time_limit,
         progress=progress,
     )
-    return _answer(request) if problem.velocity >= 0.0 else _answer_backward(request)
+    if problem.velocity < 0.0:  # the mirror image of the opposite velocity
+        behind = replace(problem, velocity=-problem.velocity, backward=not problem.backward)
+        request = replace(request, problem=behind)
+    if problem.drive is None:
+        answer = solve_prescribed(request)
+    else:
+        # imported here because it loads compiled code
+        from microslip.adaptive.driven_contact import solve_driven
 
-
-def _answer(request: Request) -> Result:
-    if request.problem.drive is None:
-        return solve_prescribed(request)
-    # imported here because it loads compiled code
-    from microslip.adaptive.driven_contact import solve_driven
-
-    return solve_driven(request)
-
-
-def _answer_backward(request: Request) -> Result:
-    """Compute the Result at a negative velocity from the mirror image at the opposite velocity."""
-    problem = request.problem
-    behind = replace(problem, velocity=-problem.velocity, backward=not problem.backward)
-    answer = _answer(replace(request, problem=behind))
+        answer = solve_driven(request)
+    if problem.velocity >= 0.0:
+        return answer
     return replace(answer, mean_velocity=-answer.mean_velocity, friction=-answer.friction)
 
 

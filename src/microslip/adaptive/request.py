@@ -211,7 +211,11 @@ def driven_by(drive: Drive | None) -> dict:
 
 
 def result_of_runs(
-    request: Request, refined: Refined, largest: float | None, **more: Estimate
+    request: Request,
+    refined: Refined,
+    largest: float | None,
+    name: str = "friction",
+    **more: Estimate,
 ) -> Result:
     """Build the Result of a refinement.
 
@@ -223,13 +227,16 @@ def result_of_runs(
         Friction or velocity, with the other values from the same runs.
     largest : float or None
         Largest accepted error, or None if any error is accepted.
+    name : str
+        Name of the requested value.
     **more : Estimate
         Fields of the Result that replace those from `refined`.
     """
     problem, periodic = request.problem, request.problem.motion.periodic
     if request.budget.exhausted:
         refined = replace(refined, effort=request.budget.taken)
-    error, by_source = refined.value.error, refined.value.by_source
+    estimates = dict(refined.estimates)
+    error, by_source = estimates[name].error, estimates[name].by_source
     within = largest is None or error <= largest
     reason, ladder = refined.reason, refined.ladder
     if refined.converged and not within:
@@ -238,18 +245,22 @@ def result_of_runs(
         file_error = by_source.get("model", 0.0) if problem.readings else 0.0
         if file_error > 0.5 * error:
             reason += f": the file's own resolution leaves {file_error:.1e} open"
-    estimates = {"friction": within_friction(problem, refined.value)} | more
+    values: dict[str, Estimate | None] = {
+        "torque": None if periodic else estimates.get("torque"),
+        "dissipation": estimates.get("dissipation") if periodic else None,
+    }
+    if "friction" not in more:
+        values["friction"] = within_friction(problem, estimates["friction"])
+    finest = refined.resolution
     return Result(
-        **request.point | estimates,
+        **request.point | values | more,
         model=request.model,
-        torque=None if periodic else refined.torque,
-        dissipation=refined.energy if periodic else None,
         converged=refined.converged and within,
         periodic=refined.periodic,
         reason=reason,
-        cells=refined.finest.cells,
-        angles=refined.finest.angles,
-        steps_per_period=2 * refined.finest.steps if ladder.steps else 0,
+        cells=finest.cells,
+        angles=finest.angles,
+        steps_per_period=2 * finest.steps if ladder.steps else 0,
         observed_order=refined.order if math.isfinite(refined.order) else None,
         periods=refined.periods,
         effort=refined.effort,

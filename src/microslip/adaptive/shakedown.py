@@ -11,7 +11,6 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import asdict, dataclass, replace
-from operator import attrgetter
 from typing import Any
 
 from microslip.adaptive.checks import checked_problem
@@ -26,7 +25,8 @@ from microslip.adaptive.under_force import (
     runs_away,
     without_forward_motion,
 )
-from microslip.estimate.refine import Levels, refine, run_tolerance
+from microslip.estimate.estimate import Estimate
+from microslip.estimate.refine import refine, run_tolerance
 from microslip.foundation.arguments import real
 from microslip.foundation.errors import InputError
 from microslip.motions.drive import Force
@@ -36,7 +36,7 @@ from microslip.pressures.hertz import HERTZ
 from microslip.pressures.pressure import Pressure
 from microslip.solver.discretise import Resolution
 from microslip.solver.run import Run, Settings
-from microslip.solver.shakedown_run import ShakedownRun, run_to_rest
+from microslip.solver.simulate import simulate
 
 TOLERANCE = 1e-2
 """Default tolerance of the displacement, in u_lim."""
@@ -213,7 +213,8 @@ def _threshold(request: Request) -> tuple[float, float, str]:
     if away:
         return math.nan, math.inf, away
     tolerance = min(request.tolerance or STATIC_TOLERANCE, STATIC_TOLERANCE)
-    static = solve_prescribed(replace(request, chosen=True, tolerance=tolerance))
+    still = replace(problem, drive=None)
+    static = solve_prescribed(replace(request, problem=still, chosen=True, tolerance=tolerance))
     return static.mu_macro, static.mu_macro_error, ""
 
 
@@ -226,23 +227,21 @@ def _certified(request: Request, force: float) -> dict[str, Any]:
     remaining = RUN_SHARE * run_tolerance(request.accuracy)
     settings = Settings(request.how, budget=request.budget)
 
-    def run(problem: Problem, resolution: Resolution, guess: Run | None) -> ShakedownRun:
+    def run(problem: Problem, resolution: Resolution, guess: Run | None) -> Run:
         request.show(resolution)
-        return run_to_rest(problem, force, request.model, resolution, remaining, settings)
+        return simulate(problem, request.model, resolution, remaining, settings=settings)
 
-    levels = Levels(run, ladder, request.problem, *request.problem.readings)
-    refined = refine(levels, request.accuracy, attrgetter("displacement"))
-    answer = result_of_runs(request, refined, request.tolerance)
+    every = (request.problem, *request.problem.readings)
+    refined = refine(run, ladder, every, request.accuracy, "displacement")
+    answer = result_of_runs(
+        request, refined, request.tolerance, "displacement", friction=Estimate(force)
+    )
+    displacement, finest = refined.estimates["displacement"], refined.finest.values
     result = {name: getattr(answer, name) for name in SHARED}
-    result |= {ERRORS[source]: error for source, error in refined.value.by_source.items()}
-    result |= {
+    result |= {ERRORS[source]: error for source, error in displacement.by_source.items()}
+    result |= {name: finest[name] for name in ("pushed", "most_after") if name in finest}
+    return result | {
         "work": refined.effort.work,
-        "displacement": refined.value.value,
-        "displacement_error": refined.value.error,
+        "displacement": displacement.value,
+        "displacement_error": displacement.error,
     }
-    solved = [level for number, level in levels.runs if number == 0]
-    if solved:
-        finest = levels.at(max(solved))
-        assert isinstance(finest, ShakedownRun)  # the type that `run` returns
-        result |= {"pushed": finest.pushed, "most_after": finest.most_after}
-    return result

@@ -13,20 +13,19 @@ The error estimate has four sources:
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Sequence
-from dataclasses import dataclass, replace
-from operator import attrgetter
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
 from microslip.estimate.estimate import Estimate
 from microslip.estimate.ladder import LOOSEST, Ladder
-from microslip.estimate.richardson import WEIGHTS, Extrapolation, extrapolate
+from microslip.estimate.richardson import WEIGHTS, extrapolate
 from microslip.motions.problem import Problem
 from microslip.solver.budget import Spent
 from microslip.solver.discretise import Resolution
 from microslip.solver.effort import Effort
-from microslip.solver.run import Run
+from microslip.solver.run import NAMES, Run, failed_run
 
 RUN_SHARE = 0.05
 """Largest distance of a run from its periodic state, divided by the tolerance.  Multiplied by the
@@ -41,60 +40,50 @@ benchmarks/error_estimates.py."""
 LARGEST_REST = 0.5
 """Finer runs are started only if the sum of the other errors is at most this fraction of the
 tolerance."""
-
-
-@dataclass(frozen=True)
-class Refined:
-    """A value with its error estimate: a force divided by mu F_z, or a velocity.
-
-    Attributes
-    ----------
-    value : Estimate
-        Extrapolated value of the requested quantity.
-    torque : Estimate
-        Extrapolated torque.
-    energy : Estimate
-        Extrapolated dissipated energy per period, divided by mu F_z u_lim.
-    order : float
-        Observed order of convergence; NaN if unknown.
-    finest : discretise.Resolution
-        Resolution of the finest run.
-    periods : float
-        Number of periods in the longest run.
-    effort : Effort
-        Effort of all runs.
-    converged : bool
-        Whether every run found its periodic state and nothing ended the refinement early.
-    reason : str
-        Reason why the result is not converged, otherwise empty.
-    periodic : bool
-        Whether every run found its periodic state.
-    ladder : ladder.Ladder
-        Resolutions of the runs at all levels.
-    """
-
-    value: Estimate
-    torque: Estimate
-    energy: Estimate
-    order: float
-    finest: Resolution
-    periods: float
-    effort: Effort
-    converged: bool
-    reason: str
-    periodic: bool
-    ladder: Ladder
-
-
 UNKNOWN = Estimate(np.nan, dict.fromkeys(("resolution", "periodicity", "solver"), np.inf))
 """Estimate of an unknown quantity."""
 
 
-def unknown(reason: str, ladder: Ladder) -> Refined:
-    """Result of a problem whose budget was exceeded before the first estimate."""
-    none = Resolution(0, 0, 0)
-    values = UNKNOWN, UNKNOWN, UNKNOWN, np.nan
-    return Refined(*values, none, 0.0, Effort(), False, reason, False, ladder)
+@dataclass(frozen=True)
+class Refined:
+    """Values of a problem with their error estimates, and the runs behind them.
+
+    Attributes
+    ----------
+    ladder : ladder.Ladder
+        Resolutions of the runs at all levels.
+    estimates : dict of str to Estimate
+        Extrapolated values of the runs by name, see run.Run.values.
+    finest : run.Run
+        The finest run.
+    resolution : discretise.Resolution
+        Resolution of the finest run.
+    order : float
+        Observed order of convergence; NaN if unknown.
+    periods : float
+        Number of periods in the longest run.
+    effort : Effort
+        Effort of all runs.
+    reason : str
+        Reason why the result is not converged, otherwise empty.
+    periodic : bool
+        Whether every run found its periodic state.
+    """
+
+    ladder: Ladder
+    estimates: Mapping[str, Estimate] = field(default_factory=lambda: dict.fromkeys(NAMES, UNKNOWN))
+    finest: Run = field(default_factory=lambda: failed_run(""))
+    resolution: Resolution = Resolution(0, 0, 0)
+    order: float = np.nan
+    periods: float = 0.0
+    effort: Effort = Effort()
+    reason: str = ""
+    periodic: bool = False
+
+    @property
+    def converged(self) -> bool:
+        """Whether every run found its periodic state and nothing ended the refinement early."""
+        return not self.reason
 
 
 def run_tolerance(tolerance: float) -> float:
@@ -102,162 +91,130 @@ def run_tolerance(tolerance: float) -> float:
     return RUN_SHARE * tolerance
 
 
-class Levels:
-    """Runs of a problem at the levels of its ladder.  No run is repeated.
-
-    Parameters
-    ----------
-    run : callable
-        `run(problem, resolution, guess)` returns a run.Run; `guess` is a run that is close, or
-        None.
-    ladder : Ladder
-        Resolutions of the problem.
-    *problems : problem.Problem
-        The problem, and problems that interpolate the same data differently (Problem.readings).
-    """
-
-    def __init__(
-        self,
-        run: Callable[[Problem, Resolution, Run | None], Run],
-        ladder: Ladder,
-        *problems: Problem,
-    ):
-        self.run, self.ladder, self.problems = run, ladder, problems
-        self.runs: dict[tuple[int, int], Run] = {}
-
-    def at(self, level: int, number: int = 0) -> Run:
-        """The run of the problem with this number at a level.
-
-        Its initial guess is the run at half the level or, for another interpolation, the run of the
-        first problem.
-        """
-        if (number, level) not in self.runs:
-            guess = self.runs.get((0, level if number else level // 2))
-            resolution = self.ladder.resolution(level)
-            self.runs[number, level] = self.run(self.problems[number], resolution, guess)
-        return self.runs[number, level]
-
-
 def refine(
-    levels: Levels,
+    run: Callable[[Problem, Resolution, Run | None], Run],
+    ladder: Ladder,
+    problems: Sequence[Problem],
     tolerance: float,
-    read: Callable[[Run], float] = attrgetter("mu"),
+    name: str = "friction",
     *,
     energy_unit: float = np.nan,
     drive_work: float = 0.0,
 ) -> Refined:
-    """Refine until the estimated error is within the tolerance.
+    """Refine until the estimated error is within the tolerance.  No run is repeated.
 
     Parameters
     ----------
-    levels : Levels
-        Runs of the problem.
+    run : callable
+        `run(problem, resolution, guess)` returns a run.Run.  `guess` is the run of the first
+        problem at half the level or, for another interpolation, at the same level; None if there is
+        no such run.
+    ladder : Ladder
+        Resolutions of the problem.
+    problems : sequence of problem.Problem
+        The problem, followed by problems that interpolate the same data differently
+        (Problem.readings).
     tolerance : float
-        Absolute tolerance of the quantity.
-    read : callable
-        `read(run)` returns the quantity.
+        Absolute tolerance of the requested value.
+    name : str
+        Name of the requested value in Run.values.
     energy_unit : float
-        Largest error of the dissipated energy for an error of 1 in the quantity.
+        Largest error of the dissipated energy for an error of 1 in the requested value.
     drive_work : float
-        If the quantity is a velocity: work that the prescribed force does in a period at the
+        If the requested value is a velocity: work that the prescribed force does in a period at the
         velocity 1, divided by mu F_z u_lim.
 
     Returns
     -------
     Refined
-        The value.  It is not converged if a run did not converge, if the finest level is not fine
-        enough, or if a run raised budget.Spent.  In the last case, the value is the estimate before
-        that run, or NaN if there is no such estimate.
+        The values.  They are not converged if a run did not converge, if the finest level is not
+        fine enough, or if a run raised budget.Spent.  In the last case, the values are the
+        estimates before that run, or NaN if there are no such estimates.
     """
-    ladder = levels.ladder
     goal, refined = tolerance, None
+    runs: dict[tuple[int, int], Run] = {}
     try:
         for level in ladder.levels(tolerance):
             if level < ladder.levels(goal)[0]:
                 continue
-            refined = _estimate(levels, level, goal, read, energy_unit, drive_work)
-            error = refined.value.error
-            rest = error - refined.value.by_source["resolution"]
-            if error <= tolerance or rest > LARGEST_REST * tolerance:
-                return refined
-            if ladder.imposed or not refined.converged:
+            places = [(0, level // 4), (0, level // 2), *((k, level) for k in range(len(problems)))]
+            for number, at in places:
+                if (number, at) not in runs:
+                    guess = runs.get((0, at if number else at // 2))
+                    runs[number, at] = run(problems[number], ladder.resolution(at), guess)
+            estimates, order = _estimates(
+                [runs[place] for place in places], ladder, goal, name, energy_unit, drive_work
+            )
+            reason = next((one.reason for one in runs.values() if one.reason), "")
+            refined = Refined(
+                ladder,
+                estimates,
+                runs[0, level],
+                ladder.resolution(level),
+                order=order,
+                periods=max(one.periods for one in runs.values()),
+                effort=sum((one.effort for one in runs.values()), Effort()),
+                reason=reason,
+                periodic=not reason,
+            )
+            error = estimates[name].error
+            rest = error - estimates[name].by_source["resolution"]
+            if error <= tolerance or rest > LARGEST_REST * tolerance or ladder.imposed or reason:
                 return refined
             goal = tolerance - rest
     except Spent as spent:
         if refined is None:
-            return unknown(f"{spent}: there is no error estimate yet", ladder)
-        reason = f"{spent}: the error is still {refined.value.error:.1e}"
-        return replace(refined, converged=False, reason=reason)
+            return Refined(ladder, reason=f"{spent}: there is no error estimate yet")
+        return replace(refined, reason=f"{spent}: the error is still {error:.1e}")
     assert refined is not None  # every ladder has a level
-    reason = f"the error is still {refined.value.error:.1e} with {refined.finest.cells} cells"
-    return replace(refined, converged=False, reason=reason)
+    reason = f"the error is still {error:.1e} with {refined.resolution.cells} cells"
+    return replace(refined, reason=reason)
 
 
-def _estimate(
-    levels: Levels,
-    level: int,
+def _estimates(
+    runs: Sequence[Run],
+    ladder: Ladder,
     goal: float,
-    read: Callable[[Run], float],
+    name: str,
     energy_unit: float,
     drive_work: float,
-) -> Refined:
-    """Estimate with `level` as the finest level; goal: largest accepted resolution error."""
-    three = [levels.at(level // 4), levels.at(level // 2), levels.at(level)]
-    others = [levels.at(level, number) for number in range(1, len(levels.problems))]
-    imposed = levels.ladder.imposed > 0.0
-    floor = SMALLEST_SHARE * (levels.ladder.accuracy if imposed else min(goal, LOOSEST))
-    value, errors, order = _extrapolated(read, imposed, floor, three, others)
-    torque, torque_errors, _ = _extrapolated(attrgetter("torque"), imposed, floor, three, others)
-    # the energy of a small cycle (Mindlin) is proportional to the third power of the force, and its
-    # upper bound to the force: an error of the force changes the energy by their geometric mean
-    dissipated = abs(three[-1].energy)
-    scale = max(dissipated, (dissipated * energy_unit) ** 0.5)
-    # for a velocity above 1, the tolerance is already proportional to the velocity
-    floor *= max(scale / max(1.0, abs(value)), drive_work)
-    energy, energy_errors, _ = _extrapolated(attrgetter("energy"), imposed, floor, three, others)
+) -> tuple[dict[str, Estimate], float]:
+    """Estimates of all values, and the observed order of convergence of the requested one.
+
+    runs: at n/4, n/2 and n, and those of other interpolations at n.  goal: largest accepted
+    resolution error of the value `name`.  The other arguments are those of `refine`.
+    """
+    three, others, imposed = runs[:3], runs[3:], ladder.imposed > 0.0
     base = (0.0, 0.0, 1.0) if imposed else np.abs(WEIGHTS)
     # a run that did not converge has a weight of at least 1, since levels can agree by chance
-    weights = [w if one.converged else max(w, 1.0) for w, one in zip(base, three, strict=True)]
+    weights = [max(w, 1.0) if one.reason else w for w, one in zip(base, three, strict=True)]
     common = {
         "periodicity": _weighted(weights, [one.distance for one in three]),
-        "solver": _weighted(weights, [one.solver_residual for one in three]),
+        "solver": _weighted(weights, [one.residual for one in three]),
     }
-    runs = levels.runs.values()
-    reason = next((one.reason for one in runs if not one.converged), "")
-    return Refined(
-        value=Estimate(value, errors | common),
-        torque=Estimate(torque, torque_errors | common),
-        energy=Estimate(energy, energy_errors) + energy_unit * Estimate(0.0, common),
-        order=order,
-        finest=levels.ladder.resolution(level),
-        periods=max(one.periods for one in runs),
-        effort=sum((one.effort for one in runs), Effort()),
-        converged=not reason,
-        reason=reason,
-        periodic=not reason,
-        ladder=levels.ladder,
-    )
-
-
-def _extrapolated(
-    read: Callable[[Run], float],
-    imposed: bool,
-    floor: float,
-    three: Sequence[Run],
-    others: Sequence[Run],
-) -> tuple[float, dict[str, float], float]:
-    """Value of a quantity, resolution and model errors, and observed order of convergence.
-
-    imposed: whether the resolution is imposed; floor: smallest resolution error.
-    """
-    values = [float(read(one)) for one in three]
-    limit = Extrapolation(*map(float, extrapolate(values)))
-    value = values[-1] if imposed else limit.value
-    errors = {"resolution": max(limit.error, floor) + abs(limit.value - value)}
-    if others:
-        apart = sum(abs(read(one) - values[-1]) for one in others)
-        errors["model"] = READING_SAFETY * apart
-    return value, errors, limit.order
+    accuracy = ladder.accuracy if imposed else min(goal, LOOSEST)
+    estimates: dict[str, Estimate] = {}
+    orders: dict[str, float] = {}
+    for one in [name, *(other for other in three[-1].values if other != name)]:
+        values = [float(run.values.get(one, np.nan)) for run in three]
+        limit = extrapolate(values)
+        extrapolated, least, unit = float(limit.value), SMALLEST_SHARE * accuracy, 1.0
+        if one == "dissipation":
+            # the energy of a small cycle (Mindlin) is proportional to the third power of the force,
+            # and its upper bound to the force: an error of the force changes the energy by their
+            # geometric mean
+            unit, dissipated = energy_unit, abs(values[-1])
+            scale = max(dissipated, (dissipated * energy_unit) ** 0.5)
+            # for a velocity above 1, the tolerance is already proportional to the velocity
+            least *= max(scale / max(1.0, abs(estimates[name].value)), drive_work)
+        value = values[-1] if imposed else extrapolated
+        error = max(float(limit.error), least) + abs(extrapolated - value)
+        errors = {"resolution": error} | {source: unit * e for source, e in common.items()}
+        if others:
+            apart = sum(abs(run.values.get(one, np.nan) - values[-1]) for run in others)
+            errors["model"] = READING_SAFETY * apart
+        estimates[one], orders[one] = Estimate(value, errors), float(limit.order)
+    return estimates, orders[name]
 
 
 def _weighted(weights: Iterable[float], errors: Iterable[float]) -> float:

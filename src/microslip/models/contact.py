@@ -82,8 +82,8 @@ class Contact(Protocol):
         of state[0].
     forward_position, lateral_position : np.ndarray
         Coordinates of the points divided by a, with the shape of state[0].
-    compiled : bool
-        Whether compiled code searches for the periodic state.  If so, the contact has a `system`.
+    direct : bool
+        Whether the contact computes its periodic state directly, see DirectContact.
     stiffness : float
         Force for a uniform displacement u_lim without slip, divided by mu F_z, or an upper bound on
         this value.
@@ -104,7 +104,7 @@ class Contact(Protocol):
     compliance: np.ndarray
     forward_position: np.ndarray
     lateral_position: np.ndarray
-    compiled: bool
+    direct: bool = False
     stiffness: float
     sticks: bool
     grading: float | None = None

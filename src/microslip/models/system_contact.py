@@ -72,8 +72,6 @@ class SystemContact(Contact):
 
     Attributes
     ----------
-    compiled : bool
-        True, because compiled code searches for the periodic state.
     layout : Layout
         Converter between states and fields.
     mirror : np.ndarray of int
@@ -84,7 +82,6 @@ class SystemContact(Contact):
         Forces that symmetry does not cancel; see system.System.
     """
 
-    compiled = True
     sticks = True
     radius = 1.0
     layout: Layout
@@ -142,16 +139,6 @@ class SystemContact(Contact):
     def loading(self, path: Path) -> Loading:
         """Motion and friction bounds that a path imposes on the contact."""
         return Loading(path.motion, self.field_bounds(path), path.carry, float(path.end))
-
-    def affordable(self, work: float) -> float:
-        """Number of marches that can run before the budget must be checked, if each march costs
-        `work`. It is infinite in this base class."""
-        return np.inf
-
-    def take(self, solves: int, iterations: int, unknowns: int) -> None:
-        """Subtract the cost of compiled marches from the budget. Does nothing in this base
-        class."""
-        return
 
     def displacement(self, state: np.ndarray) -> np.ndarray:
         """Elastic displacement A q of each point under tractions q, with the shape of the state."""

@@ -97,19 +97,6 @@ class _Metered:
         return getattr(self._contact, name)
 
     def march(self, *path: Any, **settings: Any) -> March:
-        return self._counted(self._contact.march(*path, **settings))
-
-    def affordable(self, work: float) -> float:
-        """Number of marches before the budget must be checked again, if each march takes `work`."""
-        budget = self._budget
-        if budget.time_limit < math.inf:
-            return 1
-        return max((budget.most_work - budget.taken.work) // work + 1, 1)
-
-    def take(self, solves: int, iterations: int, unknowns: int) -> None:
-        """Count marches of compiled code."""
-        self._budget.take(solves, iterations, unknowns)
-
-    def _counted(self, march: March) -> March:
+        march = self._contact.march(*path, **settings)
         self._budget.take(march.solves, march.iterations, march.state.size)
         return march

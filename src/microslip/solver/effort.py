@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, fields
+from dataclasses import dataclass
 
 
 @dataclass(frozen=True)
@@ -35,5 +35,10 @@ class Effort:
         return Effort(solves, iterations, solves * unknowns, iterations * unknowns)
 
     def __add__(self, other: Effort) -> Effort:
-        names = [one.name for one in fields(self)]
-        return Effort(*(getattr(self, name) + getattr(other, name) for name in names))
+        return Effort(
+            self.solves + other.solves,
+            self.iterations + other.iterations,
+            self.work + other.work,
+            self.updates + other.updates,
+            self.retried + other.retried,
+        )

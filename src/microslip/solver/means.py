@@ -9,7 +9,7 @@ import numpy as np
 from microslip.models.contact import Contact, GrowingContact
 from microslip.models.path import Path
 from microslip.motions.problem import Problem
-from microslip.solver.period_map import PeriodicState
+from microslip.solver.search import PeriodicState
 
 
 def mean_forces(contact: Contact, problem: Problem, path: Path, forces: np.ndarray) -> np.ndarray:
@@ -37,11 +37,11 @@ def dissipated_energy(contact: Contact, path: Path, periodic: PeriodicState) -> 
     path : path.Path
         Path over a period, or over half a period if the second half is the mirror image of the
         first.
-    periodic : period_map.PeriodicState
+    periodic : search.PeriodicState
         The periodic state.
     """
     forces, moves = periodic.forces, np.diff(path.positions, axis=0)
-    if periodic.body is not None:
+    if len(periodic.body):
         moves[:, 0] += np.diff(periodic.body[:, 0])
     work = 0.5 * np.vdot(forces[1:] + forces[:-1], moves)
     return float(work) * 2.0 * np.pi / (path.phase[-1] - path.phase[0])

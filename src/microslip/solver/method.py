@@ -32,7 +32,7 @@ class Method:
     parameters : mapping of str to float
         Keyword arguments of `dress`, with their defaults.
     search : callable or None
-        Function that replaces periodic.find_periodic_state.
+        Function that replaces search.find_periodic_state.
     prepared : bool
         Whether the search starts near the static limit.  Otherwise it starts from full slip.
     run : callable or None

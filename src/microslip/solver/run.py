@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -16,6 +17,9 @@ if TYPE_CHECKING:
     from microslip.models.rings.mesh import Focus
     from microslip.motions.problem import Problem
 from microslip.solver.discretise import Resolution, contact_of
+
+NAMES = ("friction", "torque", "dissipation", "velocity", "displacement")
+"""Names of the values of a run that have error estimates."""
 
 
 @dataclass(frozen=True)
@@ -32,12 +36,16 @@ class Settings:
         Budget of the marches.  None means unlimited.
     focus : mesh.Focus or None
         Grading of the rings.  By default, they are graded towards the radius at which slip starts.
+    slope : float
+        Under a prescribed force: rise of the friction with the velocity.  It converts an unbalanced
+        force, divided by mu times the mean normal load, to an error of the velocity.
     """
 
     method: Method = SHIPPED
     tighter: bool = False
     budget: Budget | None = None
     focus: Focus | None = None
+    slope: float = np.inf
 
     def contact(
         self, problem: Problem, model: str, resolution: Resolution, focus: Focus | None = None
@@ -52,49 +60,53 @@ AS_SHIPPED = Settings()
 
 @dataclass(frozen=True)
 class Run:
-    """Result of one run: forces divided by their full-slip values, and the effort.
-
-    If the normal load oscillates, forces are divided by mu times the mean load.
+    """Result of one run.
 
     Attributes
     ----------
-    mu, torque : float
-        Mean forward friction and torque.
+    values : mapping of str to float
+        Values by name.  All runs have `friction`, the mean forward force divided by mu times the
+        mean normal load, except for runs to rest.  Further values are `torque` (divided by its
+        full-slip value), `dissipation` (energy per period, divided by mu F_z u_lim), `velocity`
+        (mean forward velocity of a driven contact), and, for runs to rest, those listed in
+        rest.py.
     distance : float
-        Estimated distance from the periodic (or steady) state, as a force divided by mu F_z.
-    solver_residual : float
-        Residual of the step solver summed over the last period, as a force divided by mu F_z.
+        Estimated distance from the periodic (or steady) state, in the unit of the result.
+    residual : float
+        Residual of the step solver summed over the last period, in the unit of the result.
     periods : float
         Number of full periods marched in the search for the periodic state; 0 for a steady motion.
     effort : Effort
         Effort of all searches.
-    converged : bool
-        Whether the state is periodic (or steady) and every step was solved.
     reason : str
-        Reason why the run is not converged, otherwise empty.
+        Reason why the state is not periodic (or steady) or a step was not solved, otherwise empty.
     state : np.ndarray or None
         Periodic or steady tractions, used by other runs as an initial guess; None if unknown.
+    place : np.ndarray, shape (2,)
+        Position x and rate x' of a driven body at the start of a period, see models.driven_body.
     static_force : float
         Mean forward force of the static limit, also used by other runs; NaN if unknown.
-    velocity : float
-        Mean forward velocity under a prescribed force, in the unit of the motion; otherwise NaN.
-    energy : float
-        Energy that friction dissipates in a period, divided by mu F_z u_lim, see
-        means.dissipated_energy; NaN if not computed.
     """
 
-    mu: float
-    torque: float
+    values: Mapping[str, float]
     distance: float
-    solver_residual: float
-    periods: float
-    effort: Effort
-    converged: bool
-    reason: str
+    residual: float
+    periods: float = 0.0
+    effort: Effort = Effort()
+    reason: str = ""
     state: np.ndarray | None = None
+    place: np.ndarray = field(default_factory=lambda: np.zeros(2))
     static_force: float = np.nan
-    velocity: float = np.nan
-    energy: float = np.nan
+
+    @property
+    def converged(self) -> bool:
+        """Whether the state is periodic (or steady) and every step was solved."""
+        return not self.reason
+
+    @property
+    def mu(self) -> float:
+        """The value `friction`."""
+        return self.values["friction"]
 
 
 def unsolved(residual: float, solves: int, step_tolerance: float) -> str:
@@ -116,4 +128,4 @@ def unsolved(residual: float, solves: int, step_tolerance: float) -> str:
 
 def failed_run(reason: str) -> Run:
     """The Run for a failed march.  Its numbers are NaN or infinite."""
-    return Run(np.nan, np.nan, np.inf, np.inf, 0.0, Effort(), False, reason)
+    return Run(dict.fromkeys(NAMES, np.nan), np.inf, np.inf, reason=reason)

@@ -1,53 +1,64 @@
-"""One run at one resolution: build the contact and the path, then find the periodic state."""
+"""One run at one resolution: build the contact and the path, then find the periodic state.
+
+The search for the state of a driven contact starts from the periodic state at a prescribed
+velocity: the velocity of the spring's far end, or an approximate velocity under the force.  The
+number of periods in a search does not depend on the number of steps, so a run with many steps
+starts from the result of a run with few steps.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator
 from dataclasses import replace
+from typing import NamedTuple, cast
 
 import numpy as np
 
 from microslip.contacts.coulomb import project
-from microslip.models.contact import (
-    FORWARD,
-    Contact,
-    StepFailure,
-    forces,
-    forward_slip,
-)
-from microslip.models.path import Path
+from microslip.models.contact import FORWARD, StepFailure, forces, forward_slip
+from microslip.models.driven_body import Body
+from microslip.models.system_contact import SystemContact
 from microslip.motions.problem import Problem
 from microslip.solver.discretise import Resolution, path_of
 from microslip.solver.effort import Effort
 from microslip.solver.means import dissipated_energy, mean_forces
-from microslip.solver.method import Method
-from microslip.solver.period_map import MOST_MARCHES, DriftRate, Goal, PeriodicState, PeriodMap
-from microslip.solver.periodic import find_periodic_state
+from microslip.solver.rest import run_to_rest
 from microslip.solver.run import AS_SHIPPED, Run, Settings, failed_run, unsolved
+from microslip.solver.search import (
+    AT_REST,
+    MOST_MARCHES,
+    DriftRate,
+    DrivenMap,
+    Goal,
+    PeriodicState,
+    PeriodMap,
+    find_periodic_state,
+)
 from microslip.solver.static_limit import static_state
 from microslip.solver.static_loop import SLOW_LOOP, loop_limit
+from microslip.solver.static_run import static_run
 from microslip.solver.steady import steady_state
-
-STEP_SHARE = 1e-2
-"""Largest ratio of the step tolerance to the tolerance of the periodic state."""
-SLOW_STEP_SHARE = 3e-4
-"""Smallest ratio of the step tolerance to the tolerance of the periodic state.  The slower the
-motion, the longer its transients, and the more the errors of the steps accumulate."""
-TIGHTER = 0.1
-"""Smallest ratio of the step tolerance in a second attempt to the step tolerance in the first."""
-MARCH_SHARE = 0.16
-"""Largest sum of the step tolerances in half a period, divided by the tolerance of the periodic
-state.  With two stages per step, the residuals add up to a third of the tolerance."""
+from microslip.solver.tolerances import STEP_SHARE, periods_of, step_share
 
 SLOW_EXCESS, LARGEST_EXCESS = 4.0, 0.6
 """A search starts from the static limit plus a forward traction.  This traction is the friction
 bound times SLOW_EXCESS * drift^(2/3), but at most LARGEST_EXCESS times the bound.  Friction rises
 with the same power of the drift.  So the search starts with too much forward traction, which makes
 an accelerated search converge faster."""
-
 MARCHES_FROM_COARSER = 50
 """Largest number of marches in a search that starts from interpolated tractions.  If more are
 needed, a search from the usual start is faster."""
+DRIVEN_MARCHES = 2 * MOST_MARCHES
+"""Largest number of marches in a search for a driven contact, whose body can oscillate."""
+LOOSEST_START = 1e-4
+"""Largest tolerance of the state at a prescribed velocity from which the search for a driven
+contact starts, as a force divided by mu F_z."""
+COARSENING, PREPARED_FROM = 6, 96
+"""A run of a driven contact with at least PREPARED_FROM steps starts from a run with COARSENING
+times fewer steps.  Runs with fewer steps are cheap and start directly; they suffice for a tolerance
+of 1e-3."""
+MOST_SCALED = 4.0
+"""Largest factor by which the initial tractions are scaled to match the prescribed force."""
 
 
 def simulate(
@@ -58,20 +69,24 @@ def simulate(
     guess: Run | None = None,
     settings: Settings = AS_SHIPPED,
 ) -> Run:
-    """Run a model on a problem at one resolution to its periodic (or steady) state.
+    """Run a model of a problem at one resolution.
+
+    The problem decides what is computed: the steady state of a motion without oscillation, the
+    static limit at velocity 0, the way to rest under a force at velocity 0, otherwise the periodic
+    state.
 
     Parameters
     ----------
     problem : problem.Problem
-        The problem, already checked.  Its velocity and amplitude are above 0; for steady motions,
-        the amplitude is None.
+        The problem, already checked.  With a spring, its velocity is that of the spring's far end.
+        Under a prescribed force, a velocity above 0 is an initial guess.
     model : str
         Name in models.registry.MODELS.
     resolution : discretise.Resolution
         Resolution of the model.
     tolerance : float
-        Tolerance of the periodic state, as a force divided by mu F_z.  The tolerance of a step is
-        at least 100 times smaller.
+        Tolerance of the state: a force divided by mu times the mean normal load, a velocity under a
+        prescribed force, or a displacement in u_lim for a run to rest.
     guess : Run or None
         Run of the same point, used as the initial guess.  It is used if it has the same numbers of
         cells and angles, or if the contact can interpolate its tractions.
@@ -81,129 +96,170 @@ def simulate(
     Returns
     -------
     Run
-        The run.  If it did not converge, `converged` is False; no exception is raised.
+        The run.  If it did not converge, its `reason` says why; no exception is raised.
 
     Raises
     ------
     budget.Spent
         If the budget is exceeded.
     """
-    method = settings.method
-    absolute = tolerance * problem.mean_load  # inside a run forces are divided by mu F_z
+    method, drive = settings.method, problem.drive
     try:
         if method.run is not None:
-            return method.run(problem, model, resolution, absolute)
-        return _run(problem, model, resolution, absolute, guess, settings)
+            return method.run(problem, model, resolution, tolerance * problem.mean_load)
+        if not problem.motion.periodic:
+            contact = settings.contact(problem, model, resolution)
+            return steady_state(contact, problem, tolerance * problem.mean_load)
+        if problem.velocity == 0.0 and drive is None:
+            return static_run(problem, model, resolution, tolerance, settings)
+        if problem.velocity == 0.0 and drive is not None and drive.force is not None:
+            return run_to_rest(problem, model, resolution, tolerance, settings)
+        kind = _Prescribed if drive is None else _Driven
+        search = kind(problem, model, resolution, tolerance, settings)
+        find = method.search or find_periodic_state
+        for start in search.starts(guess):
+            most = MARCHES_FROM_COARSER if start.near else search.most_marches
+            goal = Goal(search.tolerance, search.step_tolerance, most, start.near)
+            search.searches.append(find(search.map(start), start.state, goal, start.place))
+            if search.searches[-1].converged:
+                break
+        return search.result()
     except StepFailure as failure:
         return failed_run(str(failure))
 
 
-def _run(
-    problem: Problem,
-    model: str,
-    resolution: Resolution,
-    tolerance: float,
-    guess: Run | None,
-    settings: Settings,
-) -> Run:
-    """Run as in `simulate`, but with a tolerance in units of mu F_z; can raise StepFailure."""
-    contact = settings.contact(problem, model, resolution)
-    if not problem.motion.periodic:
-        return steady_state(contact, problem, tolerance, STEP_SHARE * tolerance)
-    share = step_share(contact.stiffness * problem.drift, resolution.steps, settings.tighter)
-    step_tolerance = share * tolerance
-    search = _Search(contact, problem, settings.method, resolution.steps, tolerance, step_tolerance)
-    return search.run(guess)
+class Start(NamedTuple):
+    """Initial state of a search.
 
-
-def step_share(force_rate: float, steps: int, tighter: bool) -> float:
-    """Ratio of the step tolerance to the tolerance of the periodic state.
-
-    `force_rate` is the rise of the force per radian of phase, divided by mu F_z, for a contact
-    without slip.
+    Attributes
+    ----------
+    state : np.ndarray
+        Tractions.
+    place : np.ndarray, shape (2,)
+        x and x' of a driven body.
+    near : bool
+        Whether the tractions are interpolated from a coarser mesh.
+    friction : float
+        Approximate friction of a driven contact.
     """
-    slow_share = force_rate * np.pi * STEP_SHARE
-    floor = TIGHTER * SLOW_STEP_SHARE if tighter else SLOW_STEP_SHARE
-    return min(max(slow_share, floor), STEP_SHARE, MARCH_SHARE / steps)
+
+    state: np.ndarray
+    place: np.ndarray = AT_REST
+    near: bool = False
+    friction: float = np.nan
 
 
 class _Search:
-    """Search for the periodic state of one run, trying several initial states in turn."""
+    """Search for the periodic state of one run, trying several initial states in turn.
+
+    `unit` is the force, divided by mu F_z, that corresponds to an error of 1 in the result.
+    """
+
+    most_marches = MOST_MARCHES
 
     def __init__(
         self,
-        contact: Contact,
         problem: Problem,
-        method: Method,
-        steps: int,
+        model: str,
+        resolution: Resolution,
         tolerance: float,
-        step_tolerance: float,
+        settings: Settings,
     ):
-        self.contact, self.problem, self.method, self.steps = contact, problem, method, steps
-        self.tolerance, self.step_tolerance = tolerance, step_tolerance
-        interval = np.pi if problem.half_period_mirror else 2.0 * np.pi
-        # for motions on a line a prepared search computes the limit;
-        # for slow loops the limit only sets `least`
-        limit = 0.0 if problem.straight or not contact.sticks else np.nan
-        gain = contact.stiffness * problem.drift * interval
-        self.drift_rate = DriftRate(limit, problem.mean_load, gain)
-        self.path = path_of(problem, contact, steps, method.integrator)
+        self.problem, self.model, self.resolution = problem, model, resolution
+        self.settings, self.method = settings, settings.method
+        self.contact = settings.contact(problem, model, resolution)
+        self.path = path_of(problem, self.contact, resolution.steps, self.method.integrator)
+        self.interval = self.path.phase[-1] - self.path.phase[0]
+        self.rate = self.contact.stiffness * problem.drift
+        self.relative, self.unit = tolerance, self.force_of_result()
+        self.tolerance = tolerance * self.unit
+        share = step_share(self.rate, resolution.steps, settings.tighter)
+        self.step_tolerance = share * self.tolerance
+        self.static_force = self.least = np.nan
         self.searches: list[PeriodicState] = []
+        self.earlier: list[Run] = []
 
-    def run(self, guess: Run | None = None) -> Run:
-        """Run the search.  For `guess` see `simulate`."""
-        start, converged = self._start_from(guess), False
-        if guess is not None and start is not None:
-            self.drift_rate = replace(self.drift_rate, static_force=guess.static_force)
-            converged = self._find(start, near=start is not guess.state).converged
-        if not converged:
-            self._search_afresh()
-        return run_of_searches(
-            self.contact,
-            self.problem,
-            self.path,
-            self.searches,
-            self.step_tolerance,
-            self.problem.mean_load,
-            static_force=self.drift_rate.static_force,
+    def force_of_result(self) -> float:
+        """The attribute `unit`."""
+        return self.problem.mean_load
+
+    def drift_rate(self) -> DriftRate:
+        """Drift rate of a motion whose velocity is known."""
+        gain = self.rate * self.interval
+        return DriftRate(self.static_force, self.problem.mean_load, gain, self.least)
+
+    def map(self, start: Start) -> PeriodMap:
+        """The map for a search from a start."""
+        mirror = self.problem.half_period_mirror
+        return PeriodMap(self.contact, self.path, self.drift_rate(), mirror)
+
+    def starts(self, guess: Run | None) -> Iterator[Start]:
+        """Initial states, best first."""
+        raise NotImplementedError
+
+    def values(self, periodic: PeriodicState) -> dict[str, float]:
+        """Values of a Run."""
+        mean = mean_forces(self.contact, self.problem, self.path, periodic.forces)
+        return {
+            "friction": float(mean[0]) / self.problem.mean_load,
+            "torque": float(mean[2]) / self.problem.pressure.torque,
+            "dissipation": dissipated_energy(self.contact, self.path, periodic),
+        }
+
+    def result(self) -> Run:
+        """The Run of the last search, with the effort of all searches."""
+        periodic, count = self.searches[-1], sum(one.marches for one in self.searches)
+        periods = periods_of(count, self.problem)
+        reason = unsolved(periodic.solver_residual, self.path.solves, self.step_tolerance)
+        if not periodic.converged:
+            reason = f"no periodic state within {periods:g} periods: {periodic.distance:.1e} left"
+        solves = sum(one.solves for one in self.searches)
+        iterations = sum(one.iterations for one in self.searches)
+        effort = Effort.of(solves, iterations, periodic.start.size)
+        return Run(
+            self.values(periodic),
+            distance=periodic.distance / self.unit,
+            residual=periodic.solver_residual / self.unit,
+            periods=periods + sum(one.periods for one in self.earlier),
+            effort=sum((one.effort for one in self.earlier), effort),
+            reason=reason,
+            state=periodic.start,
+            place=periodic.body[0] if len(periodic.body) else AT_REST,
+            static_force=self.static_force,
         )
 
-    def _start_from(self, guess: Run | None) -> np.ndarray | None:
-        """Tractions of a guess at this contact's points, or None if the guess is not usable."""
-        if guess is None or guess.state is None or not guess.converged:
-            return None
-        if guess.state.shape == (2, *self.contact.forward_position.shape):
-            return guess.state
-        start = self.contact.prolonged(guess.state)
-        return None if start is None else project(start, self.contact.bound)
 
-    def _search_afresh(self) -> None:
-        slipping = forward_slip(self.contact)
-        if self.method.prepared and self._find(self._start_near_the_limit(slipping)).converged:
-            return
-        self._find(slipping)
+class _Prescribed(_Search):
+    """Search at a prescribed velocity."""
 
-    def _start_near_the_limit(self, slipping: np.ndarray) -> np.ndarray:
-        """Tractions of the static limit plus forward tractions, or full slip if no point sticks.
-
-        The force at the static limit is stored in `drift_rate`.
-        """
-        slow_loop = not self.problem.straight and self.problem.drift < SLOW_LOOP
-        if not self.contact.sticks or not (self.problem.straight or slow_loop):
-            return slipping
-        rise = self.problem.drift ** (2.0 / 3.0)
-        if slow_loop:  # a factor of 4 would prevent convergence at the smallest drifts
-            limit, excess = self._limit_of_a_loop(rise), rise
-        else:
-            limit, excess = self._limit_of_a_line(), min(SLOW_EXCESS * rise, LARGEST_EXCESS)
-        return project(limit + excess * slipping, self.contact.bound)
-
-    def _limit_of_a_line(self) -> np.ndarray:
-        limit = static_state(self.contact, self.problem.oscillation, self.step_tolerance)
-        if not unsolved(limit.solver_residual, limit.solves, self.step_tolerance):
-            force = float(forces(self.contact, limit.residual)[FORWARD])
-            self.drift_rate = replace(self.drift_rate, static_force=force)
-        return limit.residual + limit.oscillating
+    def starts(self, guess: Run | None) -> Iterator[Start]:
+        # for motions on a line a prepared search computes the limit;
+        # for slow loops the limit only sets `least`
+        if self.problem.straight or not self.contact.sticks:
+            self.static_force = 0.0
+        problem, contact, start = self.problem, self.contact, None
+        if guess is not None and guess.state is not None and guess.converged:
+            start = guess.state
+            if start.shape != (2, *contact.forward_position.shape):
+                start = contact.prolonged(start)
+        if guess is not None and start is not None:
+            self.static_force = guess.static_force
+            near = start is not guess.state
+            yield Start(project(start, contact.bound) if near else start, near=near)
+        slipping = forward_slip(contact)
+        if self.method.prepared:
+            start, rise = slipping, problem.drift ** (2.0 / 3.0)
+            if contact.sticks and problem.straight:
+                limit = static_state(contact, problem.oscillation, self.step_tolerance)
+                if not unsolved(limit.solver_residual, limit.solves, self.step_tolerance):
+                    self.static_force = float(forces(contact, limit.residual)[FORWARD])
+                excess = min(SLOW_EXCESS * rise, LARGEST_EXCESS)
+                start = limit.residual + limit.oscillating + excess * slipping
+            elif contact.sticks and problem.drift < SLOW_LOOP:
+                # a factor of SLOW_EXCESS would prevent convergence at the smallest drifts
+                start = self._limit_of_a_loop(rise) + rise * slipping
+            yield Start(project(start, contact.bound))
+        yield Start(slipping)
 
     def _limit_of_a_loop(self, rise: float) -> np.ndarray:
         """Tractions of the static limit, computed with reduced accuracy.
@@ -212,62 +268,100 @@ class _Search:
         reduced accuracy, the limit's force only sets `least`.
         """
         rest = replace(self.problem, velocity=0.0)
-        path = path_of(rest, self.contact, self.steps, self.method.integrator)
+        path = path_of(rest, self.contact, self.resolution.steps, self.method.integrator)
         tolerance = max(rise, self.tolerance)
         limit = loop_limit(self.contact, rest, path, tolerance, STEP_SHARE * tolerance)
         self.searches.append(limit.periodic)
-        self.drift_rate = replace(self.drift_rate, least=limit.force)
+        self.least = limit.force
         return limit.periodic.start + limit.shift
 
-    def _find(self, start: np.ndarray, near: bool = False) -> PeriodicState:
-        period_map = PeriodMap(
-            self.contact, self.path, self.drift_rate, self.problem.half_period_mirror
-        )
-        most = MARCHES_FROM_COARSER if near else MOST_MARCHES
-        goal = Goal(self.tolerance, self.step_tolerance, most, near)
-        search = self.method.search or find_periodic_state
-        self.searches.append(search(period_map, start, goal))
-        return self.searches[-1]
 
+class _Driven(_Search):
+    """Search under a prescribed force or on a spring."""
 
-def run_of_searches(
-    contact: Contact,
-    problem: Problem,
-    path: Path,
-    searches: Sequence[PeriodicState],
-    step_tolerance: float,
-    unit: float,
-    **others: float,
-) -> Run:
-    """Build the Run of the last search, with the effort of all searches.
+    contact: SystemContact
+    most_marches = DRIVEN_MARCHES
 
-    `unit` is a force divided by mu F_z; the distance and the residual are divided by it.  `others`
-    are further fields of the Run.
-    """
-    periodic = searches[-1]
-    forward, _, torque = mean_forces(contact, problem, path, periodic.forces)
-    periods = periods_of(sum(one.marches for one in searches), problem)
-    reason = unsolved(periodic.solver_residual, path.solves, step_tolerance)
-    if not periodic.converged:
-        reason = f"no periodic state within {periods:g} periods: {periodic.distance:.1e} left"
-    solves = sum(one.solves for one in searches)
-    iterations = sum(one.iterations for one in searches)
-    return Run(
-        mu=float(forward) / problem.mean_load,
-        torque=float(torque) / problem.pressure.torque,
-        distance=periodic.distance / unit,
-        solver_residual=periodic.solver_residual / unit,
-        periods=periods,
-        effort=Effort.of(solves, iterations, periodic.start.size),
-        converged=not reason,
-        reason=reason,
-        state=periodic.start,
-        energy=dissipated_energy(contact, path, periodic),
-        **others,
-    )
+    @property
+    def body(self) -> Body:
+        """The driven body."""
+        drive = self.problem.drive
+        assert drive is not None  # true for all driven contacts
+        load = -drive.damping * self.problem.drift
+        if drive.force is not None:
+            load += drive.force * self.problem.mean_load
+        return Body(drive.stiffness, drive.damping, drive.mass, load)
 
+    def force_of_result(self) -> float:
+        """For a spring, the result is a force.  For a prescribed force, the result is a velocity,
+        and there are two estimates.  The first divides the force by the stiffness and by the length
+        of the interval.  The second divides the unbalanced force by the rise of friction with the
+        velocity.  The smaller force is used."""
+        problem = self.problem
+        if problem.drive is None or problem.drive.force is None:
+            return problem.mean_load
+        stuck = self.contact.stiffness * self.interval * problem.unit_drift
+        return min(stuck, self.settings.slope * problem.mean_load)
 
-def periods_of(marches: int, problem: Problem) -> float:
-    """Convert a number of marches, each over a period or half a period, to a number of full
-    periods."""
-    return 0.5 * marches if problem.half_period_mirror else float(marches)
+    def map(self, start: Start) -> DrivenMap:
+        drift_rate, slope, full, problem = None, np.inf, self.problem.mean_load, self.problem
+        if self.body.stiffness > 0.0:
+            drift_rate = self.drift_rate()
+            # 1 - mu decreases at most as fast as 1 / velocity^2, the rate at large velocities
+            slope = 2.0 * (1.0 - start.friction) * full / (problem.drift * self.interval)
+        mirror = problem.half_period_mirror
+        contact = cast(SystemContact, self.contact)  # or a contact that counts its marches
+        return DrivenMap(contact, self.path, self.body, drift_rate, mirror, slope)
+
+    def starts(self, guess: Run | None) -> Iterator[Start]:
+        for one in self._similar_runs(guess):
+            if one.converged and one.state is not None and one.state.shape == self._shape:
+                self.static_force = one.static_force
+                yield Start(one.state, one.place, friction=one.mu)
+        prescribed = self._at_prescribed_velocity()
+        self.earlier.append(prescribed)
+        self.static_force, slipping = prescribed.static_force, forward_slip(self.contact)
+        if prescribed.state is not None:
+            mean = prescribed.mu * self.problem.mean_load
+            yield self._start(prescribed.state, mean, prescribed.mu)
+        full = float(forces(self.contact, slipping)[FORWARD])
+        yield self._start(slipping, full, prescribed.mu)
+
+    @property
+    def _shape(self) -> tuple[int, ...]:
+        return (2, *self.contact.forward_position.shape)
+
+    def _similar_runs(self, guess: Run | None) -> Iterator[Run]:
+        """The guess, and a Run with COARSENING times fewer steps."""
+        if guess is not None:
+            yield guess
+        if self.resolution.steps >= PREPARED_FROM:
+            fewer = replace(self.resolution, steps=self.resolution.steps // COARSENING)
+            coarse = simulate(
+                self.problem, self.model, fewer, self.relative, settings=self.settings
+            )
+            self.earlier.append(coarse)
+            yield coarse
+
+    def _at_prescribed_velocity(self) -> Run:
+        """The Run without a drive, at the prescribed velocity of the problem."""
+        there = replace(self.problem, drive=None)
+        share = max(self.tolerance, LOOSEST_START) / self.problem.mean_load
+        return simulate(there, self.model, self.resolution, share, settings=self.settings)
+
+    def _start(self, tractions: np.ndarray, mean: float, friction: float) -> Start:
+        """Build a Start from tractions whose mean force over a period is about `mean`."""
+        drive = self.problem.drive
+        if drive is not None and drive.force is not None:
+            force = drive.force * self.problem.mean_load
+            if mean > 0.0 and 0.0 <= force < MOST_SCALED * mean:
+                tractions = tractions * (force / mean)
+            tractions = project(tractions, self.contact.bound)
+        body = self.body
+        place = (body.load - mean) / body.stiffness if body.stiffness else 0.0
+        return Start(tractions, np.array([place, 0.0]), friction=friction)
+
+    def values(self, periodic: PeriodicState) -> dict[str, float]:
+        rate = float(periodic.body[-1, 0] - periodic.body[0, 0]) / self.interval
+        velocity = self.problem.velocity + rate / self.problem.unit_drift
+        return super().values(periodic) | {"velocity": velocity}

@@ -60,9 +60,8 @@ def frames(
     Frames
         Tractions and forces, shape (steps + 1, ...).
     """
-    if contact.compiled and path.end == 1.0:
-        march = contact.march(path, state, tolerance, previous)
-        assert march.fields is not None  # true for all compiled contacts
+    march = contact.march(path, state, tolerance, previous)
+    if march.fields is not None and path.end == 1.0:
         stages = np.moveaxis(march.fields[:: path.stages.shape[1]], 1, 0)
         at_phases = np.moveaxis(project(stages, bounds_at_phases(contact, path)), 1, 0)
         return Frames(at_phases, march.forces, march.residual, march.solves)

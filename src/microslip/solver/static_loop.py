@@ -25,8 +25,7 @@ from microslip.models.contact import FORWARD, Contact
 from microslip.models.path import Path
 from microslip.motions.problem import Problem
 from microslip.solver.means import mean_forces
-from microslip.solver.period_map import Goal, PeriodicState, PeriodMap
-from microslip.solver.periodic import find_periodic_state
+from microslip.solver.search import Goal, PeriodicState, PeriodMap, find_periodic_state
 from microslip.solver.snapshots import bounds_at_phases, frames
 
 SLOW_LOOP = 0.02

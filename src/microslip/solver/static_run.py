@@ -7,17 +7,17 @@ from dataclasses import replace
 
 import numpy as np
 
-from microslip.models.contact import FORWARD, Contact, StepFailure, forces
+from microslip.models.contact import FORWARD, Contact, forces
 from microslip.models.rings.mesh import Focus
 from microslip.motions.problem import Problem
 from microslip.solver.discretise import STRONGEST_FOCUS, Resolution, path_of
 from microslip.solver.effort import Effort
 from microslip.solver.means import dissipated_energy
-from microslip.solver.run import AS_SHIPPED, Run, Settings, failed_run, unsolved
-from microslip.solver.simulate import MARCH_SHARE, STEP_SHARE, periods_of
+from microslip.solver.run import AS_SHIPPED, Run, Settings, unsolved
 from microslip.solver.snapshots import bounds_at_phases
 from microslip.solver.static_limit import at_turning_points, loop_energy, static_state
 from microslip.solver.static_loop import loop_limit
+from microslip.solver.tolerances import MARCH_SHARE, STEP_SHARE, periods_of
 
 FELT = 4.0
 """Ratio of the limit's error to the distance between the tractions and the periodic state of the
@@ -40,24 +40,17 @@ LARGEST_SHIFT = 1e-2
 """Largest shift of a ring outside the stick radius, divided by the largest friction bound."""
 
 
-def simulate_static(
-    problem: Problem,
-    model: str,
-    resolution: Resolution,
-    tolerance: float,
-    settings: Settings = AS_SHIPPED,
+def static_run(
+    problem: Problem, model: str, resolution: Resolution, tolerance: float, settings: Settings
 ) -> Run:
     """Compute the static limit at one resolution; for arguments and result, see simulate.simulate.
 
     The velocity of the problem is 0.  For a rigid contact and an oscillation on a line, the limit
     is 0.
     """
-    try:
-        if at_turning_points(problem):
-            return _on_a_line(settings.contact(problem, model, resolution), problem, tolerance)
-        return _on_a_loop(problem, model, resolution, tolerance, settings)
-    except StepFailure as failure:
-        return failed_run(str(failure))
+    if at_turning_points(problem):
+        return _on_a_line(settings.contact(problem, model, resolution), problem, tolerance)
+    return _on_a_loop(problem, model, resolution, tolerance, settings)
 
 
 def _on_a_line(contact: Contact, problem: Problem, tolerance: float) -> Run:
@@ -69,17 +62,13 @@ def _on_a_line(contact: Contact, problem: Problem, tolerance: float) -> Run:
         force = float(forces(contact, limit.residual)[FORWARD])
         solves, residual = limit.solves, limit.solver_residual
     reason = unsolved(residual, solves, step_tolerance)
-    return Run(
-        mu=force / problem.mean_load,
-        torque=0.0,
-        distance=0.0,
-        solver_residual=residual / problem.mean_load,
-        energy=loop_energy(contact, problem.displacement, oscillating),
-        periods=0.0,  # the limit needs a march of a quarter period and no search
-        effort=Effort.of(solves, 0, 2 * contact.forward_position.size),
-        converged=not reason,
-        reason=reason,
-    )
+    values = {
+        "friction": force / problem.mean_load,
+        "dissipation": loop_energy(contact, problem.displacement, oscillating),
+    }
+    # the limit needs a march of a quarter period and no search, so there are no periods
+    effort = Effort.of(solves, 0, 2 * contact.forward_position.size)
+    return Run(values, 0.0, residual / problem.mean_load, effort=effort, reason=reason)
 
 
 def _on_a_loop(
@@ -104,7 +93,7 @@ def edges_on_a_loop(
     """Find the edges of the stick zone for a motion on a loop.  No formula gives them, so runs
     compute them.
 
-    The arguments are those of `simulate_static`.  In addition, `progress` is called before every
+    The arguments are those of `static_run`.  In addition, `progress` is called before every
     run, with the run's Resolution.  Returns the Runs and the radii of the edges; the last Run is
     the result.  There are no radii if the whole contact sticks or slips, or if the contact has no
     rings.
@@ -215,16 +204,17 @@ def _on_these_points(
     reason = unsolved(limit.solver_residual, limit.solves, inner)
     if not near:
         reason = f"no periodic state within {periods:g} periods: {periodic.distance:.1e} left"
+    values = {
+        "friction": limit.force / problem.mean_load,
+        # a constant traction does no work over a closed loop
+        "dissipation": dissipated_energy(contact, path, periodic),
+    }
     run = Run(
-        mu=limit.force / problem.mean_load,
-        torque=0.0,
+        values,
         distance=FELT * periodic.distance / problem.mean_load,
-        solver_residual=limit.solver_residual / problem.mean_load,
+        residual=limit.solver_residual / problem.mean_load,
         periods=periods,
         effort=Effort.of(periodic.solves, periodic.iterations, periodic.start.size),
-        converged=not reason,
         reason=reason,
-        # a constant traction does no work over a closed loop
-        energy=dissipated_energy(contact, path, periodic),
     )
     return run, sticks

@@ -9,6 +9,7 @@ from microslip.models.path import EULER, make_path
 from microslip.motions.problem import Problem
 from microslip.solver.effort import Effort
 from microslip.solver.run import Run
+from microslip.solver.tolerances import STEP_SHARE
 
 STEADY_STRETCH = 8
 """Number of steps in a stretch.  The state is checked after each stretch."""
@@ -18,9 +19,7 @@ MAX_STRETCHES = 200
 """Largest number of stretches."""
 
 
-def steady_state(
-    contact: Contact, problem: Problem, tolerance: float, step_tolerance: float
-) -> Run:
+def steady_state(contact: Contact, problem: Problem, tolerance: float) -> Run:
     """March a steady motion until its tractions no longer change.
 
     Parameters
@@ -29,8 +28,8 @@ def steady_state(
         The contact, in full forward slip at the start.
     problem : problem.Problem
         The steady motion; its velocity sets the length of a step.
-    tolerance, step_tolerance : float
-        Tolerances of the state and of a step, as forces divided by mu F_z.
+    tolerance : float
+        Tolerance of the state, as a force divided by mu F_z.
 
     Returns
     -------
@@ -38,6 +37,7 @@ def steady_state(
         Forces and tractions at the end of the march, and the residual of the last stretch.  The run
         is not converged if the tractions still change after MAX_STRETCHES stretches.
     """
+    step_tolerance = STEP_SHARE * tolerance
     step = STEADY_TRAVEL / max(1.0, problem.velocity)
     state, iterations, solves = forward_slip(contact), 0, 0
     previous = distance = np.inf
@@ -56,15 +56,15 @@ def steady_state(
         if distance <= tolerance:
             break
     solved = march.residual <= march.solves * step_tolerance
-    converged = bool(distance <= tolerance and solved)
+    values = {
+        "friction": float(march.forces[-1, FORWARD]),
+        "torque": float(march.forces[-1, TORQUE]) / problem.pressure.torque,
+    }
     return Run(
-        mu=float(march.forces[-1, FORWARD]),
-        torque=float(march.forces[-1, TORQUE]) / problem.pressure.torque,
-        distance=distance,
-        solver_residual=march.residual,
-        periods=0.0,
+        values,
+        distance=float(distance),
+        residual=march.residual,
         effort=Effort.of(solves, iterations, state.size),
-        converged=converged,
-        reason="" if converged else f"no steady state: {distance:.1e} left",
+        reason="" if distance <= tolerance and solved else f"no steady state: {distance:.1e} left",
         state=state,
     )

@@ -19,7 +19,7 @@ from microslip.models.path import Path
 class DahlContact(contact.Contact):
     """A single bristle (see models.contact.Contact); states have shape (2, 1, 1)."""
 
-    compiled = False
+    direct = True
     sticks = False  # the static limit of friction is 0
     angles = 1
 

@@ -23,7 +23,7 @@ class RigidContact(contact.Contact):
     """Rigid contact with points on rings and at angles on half the disc, or with a single point for
     a translation (see models.contact)."""
 
-    compiled = False
+    direct = True
     sticks = False
     grading = GRADING
 

@@ -81,8 +81,6 @@ def nothing(matrix: np.ndarray, scale: np.ndarray) -> float:
 class DenseContact:
     """A contact (see models.contact.Contact) whose steps are solved by `solve`."""
 
-    compiled = False
-
     def __init__(
         self, contact: Contact, solve: Callable, prepare: Callable = nothing, **parameters: float
     ):

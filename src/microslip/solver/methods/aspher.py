@@ -113,13 +113,11 @@ def _run(problem: Problem, model: str, resolution: Resolution, tolerance: float)
             if not change > tolerance:
                 break
     return Run(
-        mu=sum(means[-2:]) / 2.0,
-        torque=0.0,
+        {"friction": sum(means[-2:]) / 2.0},
         distance=change,
-        solver_residual=sum(residuals[-2:]),
+        residual=sum(residuals[-2:]),
         periods=0.5 * len(means),
         effort=Effort.of(solver.solves, solver.iterations, solver.unknowns),
-        converged=solver.failed == 0 and change <= tolerance,
         reason=_reason(solver, 0.5 * len(means), change, tolerance),
     )
 

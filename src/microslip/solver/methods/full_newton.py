@@ -11,7 +11,6 @@ import numpy as np
 from microslip.foundation.compiled import kernel
 from microslip.solver.method import Method
 from microslip.solver.methods._dense import Points, Stage, dense, judge, project_in_place
-from microslip.solver.methods._searches import accelerated
 
 MAX_ITERATIONS = 60
 
@@ -69,4 +68,4 @@ def _solve(points: Points, stage: Stage, settings: float) -> tuple[int, float]:
     return MAX_ITERATIONS, judge(points, b, q, slip)
 
 
-METHOD = Method("semismooth Newton, full steps", dress=dense(_solve), search=accelerated)
+METHOD = Method("semismooth Newton, full steps", dress=dense(_solve))

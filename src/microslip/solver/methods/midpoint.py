@@ -8,8 +8,5 @@ from __future__ import annotations
 
 from microslip.models.path import theta_method
 from microslip.solver.method import Method
-from microslip.solver.methods import _searches
 
-METHOD = Method(
-    "implicit midpoint rule, undamped", integrator=theta_method(0.5), search=_searches.accelerated
-)
+METHOD = Method("implicit midpoint rule, undamped", integrator=theta_method(0.5))

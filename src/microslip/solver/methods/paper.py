@@ -42,16 +42,9 @@ def _run(problem: Problem, model: str, resolution: Resolution, tolerance: float)
     contact = CartesianContact(CELLS, problem.poisson, problem.pressure)
     march = contact.march(path_of(problem), forward_slip(contact), STRESS_TOLERANCE)
     mean, before = last_means(march)
-    return Run(
-        mu=mean,
-        torque=0.0,
-        distance=abs(mean - before),
-        solver_residual=march.residual,
-        periods=STEPS / STEPS_PER_PERIOD,
-        effort=Effort.of(march.solves, march.iterations, march.state.size),
-        converged=True,
-        reason="",
-    )
+    effort = Effort.of(march.solves, march.iterations, march.state.size)
+    periods = STEPS / STEPS_PER_PERIOD
+    return Run({"friction": mean}, abs(mean - before), march.residual, periods, effort)
 
 
 METHOD = Method(

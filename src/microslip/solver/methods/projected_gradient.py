@@ -10,7 +10,6 @@ import numpy as np
 
 from microslip.solver.method import Method
 from microslip.solver.methods._dense import dense, descend, safe_length
-from microslip.solver.methods._searches import accelerated
 
 
 def _lengths(matrix: np.ndarray, scale: np.ndarray, step: float) -> np.ndarray:
@@ -21,6 +20,5 @@ def _lengths(matrix: np.ndarray, scale: np.ndarray, step: float) -> np.ndarray:
 METHOD = Method(
     "projected gradient, fixed step",
     dress=dense(descend, _lengths),
-    search=accelerated,
     parameters={"step": 1.0},
 )

@@ -8,7 +8,6 @@ between successive doublings of this number decay at least as fast as a geometri
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import cast
 
 import numpy as np
@@ -21,8 +20,8 @@ from microslip.motions.motion import HALF_PERIOD
 from microslip.motions.problem import Problem
 from microslip.solver.discretise import Resolution, path_of
 from microslip.solver.effort import Effort
-from microslip.solver.period_map import PeriodMap
-from microslip.solver.run import Run, Settings, failed_run, unsolved
+from microslip.solver.run import Run, Settings, unsolved
+from microslip.solver.search import PeriodMap
 
 FIRST_LOOK, MOST_INTERVALS = 16, 16384
 """Number of (half) periods before the first check for rest, and largest number of (half)
@@ -44,43 +43,16 @@ MOST_SHARE = 0.9
 displacement."""
 
 
-@dataclass(frozen=True)
-class ShakedownRun(Run):
-    """A Run with the displacement of the contact.  `distance` bounds the remaining displacement.
-
-    Attributes
-    ----------
-    displacement : float
-        Displacement of the contact from its position without a force to its position at rest, in
-        u_lim.
-    pushed : float
-        Part of the displacement caused by the force alone.
-    most_after : float
-        Number of periods in which the contact covers the fraction MOST_SHARE of the displacement
-        caused by the oscillation.
-    """
-
-    displacement: float = np.nan
-    pushed: float = np.nan
-    most_after: float = np.nan
-
-
 def run_to_rest(
-    problem: Problem,
-    force: float,
-    model: str,
-    resolution: Resolution,
-    tolerance: float,
-    settings: Settings,
-) -> ShakedownRun:
+    problem: Problem, model: str, resolution: Resolution, tolerance: float, settings: Settings
+) -> Run:
     """Run a contact under a constant force until it comes to rest.
 
     Parameters
     ----------
     problem : problem.Problem
-        The problem at velocity 0.  Its motion must be even, see under_force.is_even.
-    force : float
-        Force divided by mu times the mean normal load.  It is below the static limit.
+        The problem at velocity 0 with a Force below the static limit.  Its motion must be even, see
+        under_force.is_even.
     model : str
         Name in models.registry.MODELS of a model that supports drives.
     resolution : discretise.Resolution
@@ -92,16 +64,18 @@ def run_to_rest(
 
     Returns
     -------
-    ShakedownRun
-        The run.  It is not converged if the contact does not come to rest or a step failed.
+    Run
+        The run, with the values `displacement` (from the position without a force to the position
+        at rest, in u_lim), `pushed` (the part of it caused by the force alone), and `most_after`
+        (the number of periods in which the contact covers the fraction MOST_SHARE of the
+        displacement caused by the oscillation).  Its `distance` bounds the remaining displacement.
+        It is not converged if the contact does not come to rest or a step failed.
     """
     # or a contact wrapped to count its marches
     contact = cast(SystemContact, settings.contact(problem, model, resolution))
-    body = Body(0.0, 0.0, 0.0, force * problem.mean_load)
-    try:
-        return _Walk(problem, contact, resolution.steps, body).to_rest(tolerance)
-    except StepFailure as failure:
-        return ShakedownRun(**vars(failed_run(str(failure))))
+    assert problem.drive is not None and problem.drive.force is not None
+    body = Body(0.0, 0.0, 0.0, problem.drive.force * problem.mean_load)
+    return _Walk(problem, contact, resolution.steps, body).to_rest(tolerance)
 
 
 class _Walk:
@@ -116,7 +90,7 @@ class _Walk:
         self.ways: list[float] = []
         self.residual, self.iterations, self.solves = 0.0, 0, 0
 
-    def to_rest(self, tolerance: float) -> ShakedownRun:
+    def to_rest(self, tolerance: float) -> Run:
         """March to rest; `tolerance` refers to the remaining displacement."""
         step_tolerance = STEP_SHARE * tolerance
         state = 0.0 * forward_slip(self.contact)
@@ -219,7 +193,7 @@ class _Walk:
 
     def _summary(
         self, parts: tuple[float, float], remaining: float, reason: str, state: np.ndarray
-    ) -> ShakedownRun:
+    ) -> Run:
         pushed, first_way = parts
         travel = np.cumsum([first_way, *self.ways])
         added = travel[-1] + (0.5 * remaining if np.isfinite(remaining) else 0.0)
@@ -227,17 +201,17 @@ class _Walk:
         if added <= self.residual / self.contact.stiffness:  # within the residual of the steps
             most = 0
         periods = self.interval / (2.0 * np.pi)
-        return ShakedownRun(
-            mu=self.body.load / self.problem.mean_load,
-            torque=0.0,
+        values = {
+            "displacement": float(pushed + added),
+            "pushed": float(pushed),
+            "most_after": float(most * periods),
+        }
+        return Run(
+            values,
             distance=0.5 * remaining,
-            solver_residual=self.residual / self.contact.stiffness,
+            residual=self.residual / self.contact.stiffness,
             periods=self._periods,
             effort=Effort.of(self.solves, self.iterations, state.size),
-            converged=not reason,
             reason=reason,
             state=state,
-            displacement=float(pushed + added),
-            pushed=float(pushed),
-            most_after=float(most * periods),
         )

@@ -1,0 +1,397 @@
+"""Search for the periodic state, the fixed point of the march over a period or half a period.
+
+The transients of a plain march last about 1/(2 pi v~) periods.  Anderson acceleration of the map
+finds its fixed point much sooner.  Convergence is judged by three quantities: the residual of the
+plain map, the distance to the next state, and an error computed from the residual and the drift
+rate of the motion.  The last quantity is needed near the static limit, where the state changes so
+slowly that a small residual is no evidence of convergence.
+
+The state of a driven body includes two more numbers, its position x and rate x' (see
+contacts/drive.py).  In one period, unbalanced forces hardly change the state of a heavy body or of
+a body on a soft spring.  So the map scales up the changes of x and x', as if the spring were
+stiffer and the body lighter, to match the stiffness of the contact.  The fixed point of the map
+stays the same.  A contact in full slip is much more compliant than a sticking contact.  Its
+stiffness is the rise of the mean force with the displacement.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any, NamedTuple, cast
+
+import numpy as np
+
+from microslip.contacts.coulomb import project
+from microslip.models.contact import Contact, DirectContact, March, StepFailure, energy_norm
+from microslip.models.driven_body import Body
+from microslip.models.path import Path
+from microslip.models.system_contact import SystemContact
+from microslip.solver.anderson import DEPTH, accelerated, remember
+
+MOST_MARCHES = 200
+"""Default limit on the number of marches in a search."""
+FORCING = 1e-3
+"""Tolerance of the steps in a march, divided by the last change of the state."""
+LOOSEST, LOOSEST_NEAR = 1e-4, 1e-5
+"""Largest tolerance of a step.  The first value is for an initial state far from the periodic
+state, and the second value is for one near it."""
+NOISE = 1e-2
+"""Largest accepted residual of a march, divided by the force that the drift adds in this march.  An
+error of the state decays no faster than the state drifts."""
+DRIFTING, MOST_RETURNS = 0.5, 3
+"""DRIFTING: a state below the static limit is stuck if its residual exceeds this fraction of the
+force that the drift adds.  Such a state drifts without slip, so its change does not measure the
+distance to the periodic state.  The search then goes halfway back to the last state that was not
+stuck, at most MOST_RETURNS times in a row."""
+FORGETFUL = 0.2
+"""The plain map is not accelerated if its contraction factor is below this value."""
+CAUTION = 0.3
+"""Largest ratio of the effective stiffness of a soft spring to that of the contact.  With a larger
+ratio, the search would overshoot."""
+AT_REST = np.zeros(2)
+"""Position x and rate x' of a contact without a driven body."""
+
+
+class Goal(NamedTuple):
+    """Goal of a search for the periodic state.
+
+    Attributes
+    ----------
+    tolerance, step_tolerance : float
+        Tolerances of the state and of a step, as forces divided by mu F_z.
+    most_marches : int
+        Largest number of marches.
+    near : bool
+        Whether the initial state is near the periodic state.  In this case, the first steps are
+        solved more accurately.
+    """
+
+    tolerance: float
+    step_tolerance: float
+    most_marches: int = MOST_MARCHES
+    near: bool = False
+
+
+@dataclass(frozen=True, eq=False)
+class PeriodicState:
+    """Result of a search for the periodic state.
+
+    Attributes
+    ----------
+    forces : np.ndarray, shape (steps + 1, 3)
+        Forces at the phases of the last (half) period.
+    start : np.ndarray
+        Tractions at the beginning of the last (half) period.
+    residual : float
+        Upper bound on the change of the state by the plain map, as a force divided by mu F_z.
+    distance : float
+        Estimated distance from the fixed point, as a force divided by mu F_z.
+    solver_residual : float
+        Residual of the step solver summed over the stages of the last (half) period.
+    marches : int
+        Number of marches.
+    iterations, solves : int
+        Number of iterations of the step solver and number of stages, summed over all marches.
+    converged : bool
+        Whether the distance is within the tolerance.
+    body : np.ndarray, shape (steps + 1, 2)
+        x and x' of a driven body at the phases of the last (half) period.
+    fields : np.ndarray or None
+        contact.March.fields of the last (half) period, used as the initial guess for a march from
+        `start`.
+    """
+
+    forces: np.ndarray
+    start: np.ndarray
+    residual: float
+    distance: float
+    solver_residual: float
+    marches: int
+    iterations: int
+    solves: int
+    converged: bool
+    body: np.ndarray
+    fields: np.ndarray | None = None
+
+
+@dataclass(frozen=True)
+class DriftRate:
+    """Data for the error estimate of slow motions, whose states change little in a period.
+
+    If the plain map still changes the state by a force r, the velocity of the state has a relative
+    error of r / `gain`.  Only the difference between the force and the static limit depends on the
+    velocity.  So the error of the force is at most r / `gain` times this difference.
+
+    Attributes
+    ----------
+    static_force : float
+        Mean forward force of the static limit, divided by mu F_z; NaN if unknown.
+    full : float
+        Mean forward force in full slip, the largest possible force.
+    gain : float
+        Rise of the force in a (half) period for a contact without slip.
+    least : float
+        Mean forward force below which a state sticks and changes slowly.  It approximately equals
+        the static limit.  NaN means that `static_force` is used.
+    """
+
+    static_force: float = 0.0
+    full: float = 0.0
+    gain: float = np.inf
+    least: float = np.nan
+
+    def error(self, force: float, change: float) -> float:
+        """Error of a mean force if the plain map still changes the state by the force `change`."""
+        if self.gain == np.inf:
+            return 0.0
+        return largest_excess(force, self.static_force, self.full) * change / self.gain
+
+    @property
+    def sticking(self) -> float:
+        """Mean forward force below which a state sticks; NaN if unknown."""
+        return self.static_force if np.isnan(self.least) else self.least
+
+
+def largest_excess(force: float, static_force: float, full: float) -> float:
+    """Largest possible difference between a mean force and the static limit, which can be NaN."""
+    if np.isnan(static_force):  # the limit can be any force from 0 to full slip
+        return max(abs(force), abs(full - force))
+    return abs(force - static_force)
+
+
+class PeriodMap:
+    """The map of a contact's state over a path.
+
+    Parameters
+    ----------
+    contact : contact.Contact
+        The contact.
+    path : path.Path
+        Path over half a period, from turning point to turning point.  Without `mirror`, the path
+        covers a whole period.
+    drift_rate : DriftRate or None
+        Data for slow motions, or None if the motion is not slow.
+    mirror : bool
+        Whether the other half of the period is the lateral mirror image of the path.
+    """
+
+    driven = False
+
+    def __init__(
+        self, contact: Contact, path: Path, drift_rate: DriftRate | None = None, mirror: bool = True
+    ):
+        self.contact, self.path, self.mirror = contact, path, mirror
+        self.drift_rate, shape = drift_rate or DriftRate(), contact.forward_position.shape
+        scale = np.sqrt(np.broadcast_to(contact.weight * contact.compliance, shape))
+        self.metric = np.append(np.tile(scale.ravel(), 2), np.zeros(2))
+
+    def image(self, state: np.ndarray) -> np.ndarray:
+        """Convert the tractions at the end of an interval to those at the start of the next
+        interval.
+
+        The map is linear.
+        """
+        return self.contact.mirrored(state) if self.mirror else state
+
+    def drive(self, place: np.ndarray) -> dict[str, Any]:
+        """Arguments of Contact.march for a body at (x, x')."""
+        return {}
+
+    def norm(self, change: np.ndarray, moved: np.ndarray) -> float:
+        """Upper bound on the force due to changes of the tractions and of (x, x')."""
+        return energy_norm(self.contact, change)
+
+    def following(self, march: March) -> tuple[np.ndarray, np.ndarray]:
+        """Tractions at the start of the next interval, and the extrapolated change of (x, x')."""
+        return self.image(march.state), AT_REST
+
+    def gained(self, march: March, change: np.ndarray, residual: float) -> float:
+        """Change of the state by the plain map, as a force."""
+        return residual
+
+
+class DrivenMap(PeriodMap):
+    """Map of the state of a driven contact: tractions, and (x, x') of the body.
+
+    Parameters
+    ----------
+    body : driven_body.Body
+        The body and its drive.
+    slope : float
+        Largest rise of the mean forward force if the body advances by one unit of x per interval.
+    contact, path, drift_rate, mirror
+        See PeriodMap.
+    """
+
+    contact: SystemContact
+    driven = True
+
+    def __init__(
+        self,
+        contact: SystemContact,
+        path: Path,
+        body: Body,
+        drift_rate: DriftRate | None = None,
+        mirror: bool = True,
+        slope: float = np.inf,
+    ):
+        super().__init__(contact, path, drift_rate, mirror)
+        self.body = body
+        bound = np.broadcast_to(contact.bound, contact.forward_position.shape)
+        load = float(np.sum(contact.weight * bound))
+        # without contact at the start of a period there are no tractions to correct
+        self.spread = bound / load if load > 0.0 else 0.0 * bound
+        interval, stiffness = path.phase[-1] - path.phase[0], contact.stiffness
+        mass = min(body.mass, stiffness * interval**2)
+        slow = max(1.0, body.damping / (stiffness * interval))
+        place = rate = 1.0
+        if body.stiffness > 0.0:
+            place = max(1.0, min(CAUTION * stiffness, slope) / body.stiffness * slow)
+        if body.mass > 0.0:
+            rate = max(1.0, body.mass / (mass * slow))
+        self.factors = np.array([place, rate])
+        self.weights = np.array([body.stiffness * min(1.0, body.stiffness / stiffness), mass])
+        self.metric[-2:] = np.sqrt(self.weights)
+
+    def drive(self, place: np.ndarray) -> dict[str, Any]:
+        return {"body": self.body, "start": place}
+
+    def norm(self, change: np.ndarray, moved: np.ndarray) -> float:
+        force, body = energy_norm(self.contact, change), self.body
+        held = 0.0
+        if body.remembers:
+            held = float(self.weights @ moved**2)
+        elif body.stiffness > 0.0:
+            advance = float(np.sum(self.contact.weight * change[0])) / body.stiffness
+            held = self.weights[0] * advance**2
+        return float(np.sqrt(force**2 + self.contact.stiffness * held))
+
+    def following(self, march: March) -> tuple[np.ndarray, np.ndarray]:
+        image, change = self.image(march.state), march.body[-1] - march.body[0]
+        if self.body.remembers:
+            return image, self.factors * change
+        if self.factors[0] > 1.0:
+            # from the motion of the body, more accurate than from the forces of the steps
+            force = march.forces[0, 0] - self.factors[0] * self.body.stiffness * change[0]
+            image = image.copy()
+            image[0] += (force - march.forces[-1, 0]) * self.spread
+        return image, AT_REST
+
+    def gained(self, march: March, change: np.ndarray, residual: float) -> float:
+        advance = abs(march.body[-1, 0] - march.body[0, 0])
+        return float(advance * self.contact.stiffness + energy_norm(self.contact, change))
+
+
+def find_periodic_state(
+    period_map: PeriodMap, start: np.ndarray, goal: Goal, place: np.ndarray = AT_REST
+) -> PeriodicState:
+    """March periods until the state is periodic to within the tolerance.
+
+    Parameters
+    ----------
+    period_map : PeriodMap
+        The map over a (half) period.
+    start : np.ndarray
+        Initial tractions.
+    goal : Goal
+        Tolerances and largest number of marches.
+    place : np.ndarray, shape (2,)
+        Initial x and x' of a driven body.
+
+    Returns
+    -------
+    PeriodicState
+        The result of the search.  `converged` is False if the search failed.
+
+    Raises
+    ------
+    StepFailure
+        If the tractions diverge.
+    """
+    contact, path, rate = period_map.contact, period_map.path, period_map.drift_rate
+    if contact.direct:
+        return _direct_state(period_map, goal)
+    loosest, tightest = LOOSEST_NEAR if goal.near else LOOSEST, goal.step_tolerance
+    inner = max(tightest, min(loosest, NOISE * rate.gain / path.solves))
+    state = above = np.array(start, dtype=float, order="C")
+    pairs, count = np.empty((2, DEPTH + 1, state.size + 2)), 0
+    last, forgets, returns, iterations, sticking = np.inf, True, 0, 0, rate.sticking
+    previous = best = None
+    for marches in range(1, goal.most_marches + 1):
+        march = previous = contact.march(path, state, inner, previous, **period_map.drive(place))
+        iterations += march.iterations
+        image, moved = period_map.following(march)
+        change = image - state
+        residual = period_map.norm(change, moved)
+        if not np.isfinite(residual):
+            raise StepFailure("diverged: tractions are not finite")
+        solved = inner <= tightest
+        inner = max(tightest, min(FORCING * residual, inner))
+        forgets, last = forgets and residual <= FORGETFUL * last, residual
+        mean = float(path.mean(march.forces[:, 0]))
+        stuck = marches > 1 and mean < sticking and residual > DRIFTING * rate.gain
+        back = stuck and not period_map.driven and returns < MOST_RETURNS
+        returns = returns + 1 if back else returns if stuck else 0
+        above = above if stuck else state
+        proposal = np.append(image, place + moved)
+        if back:  # halfway
+            count, proposal = 0, np.append(0.5 * (state + above), place)
+        else:
+            count = remember(pairs, count, proposal, np.append(change, moved))
+            if not forgets:
+                accelerated(pairs, count, period_map.metric, proposal := np.empty_like(proposal))
+        following, there = proposal[:-2].reshape(state.shape), proposal[-2:]
+        if path.end == 1.0:
+            following = project(following, contact.bound)
+        distance = max(period_map.norm(following - state, there - place), residual)
+        distance = max(distance, rate.error(mean, period_map.gained(march, change, residual)))
+        near_enough = distance <= goal.tolerance
+        converged = solved and near_enough
+        if near_enough:  # solve the steps of the next march to the final tolerance
+            inner = tightest
+        if converged or best is None or distance < best[0]:
+            best = distance, residual, state, march
+        if converged:
+            break
+        state, place = following, there
+    assert best is not None  # there is at least one march
+    distance, residual, state, march = best
+    counts = {"marches": marches, "iterations": iterations}
+    return result_of(march, state, distance, residual, converged=converged, **counts)
+
+
+def result_of(
+    march: March,
+    start: np.ndarray,
+    distance: float,
+    residual: float,
+    *,
+    marches: int,
+    iterations: int,
+    converged: bool,
+) -> PeriodicState:
+    """Build the PeriodicState of a march; the other arguments are its attributes."""
+    return PeriodicState(
+        forces=march.forces,
+        start=start,
+        residual=residual,
+        distance=float(distance),
+        solver_residual=march.residual,
+        marches=marches,
+        iterations=iterations,
+        solves=marches * march.solves,
+        converged=bool(converged),
+        body=march.body,
+        fields=march.fields,
+    )
+
+
+def _direct_state(period_map: PeriodMap, goal: Goal) -> PeriodicState:
+    """The PeriodicState of a contact with a direct solution, checked by one march."""
+    contact, path = cast(DirectContact, period_map.contact), period_map.path
+    start = contact.periodic_state(path, period_map.mirror)
+    march = contact.march(path, start, goal.step_tolerance)
+    distance = energy_norm(contact, period_map.image(march.state) - start)
+    counts = {"marches": 1, "iterations": march.iterations}
+    converged = distance <= goal.tolerance
+    return result_of(march, start, distance, distance, converged=converged, **counts)

@@ -1,1 +1,0 @@
-"""Searches for the periodic state of a contact."""
