@@ -66,30 +66,44 @@ def test_batches_of_points_hold_every_request_once_and_in_order(size):
         assert len({batch.name for batch in cut}) == len(cut)
 
 
-def test_the_mean_size_of_batches_is_the_one_asked_for():
+def sizes_of(points, size):
+    return [len(batch.requests) for batch in sweep.divide(points, size)]
+
+
+@pytest.mark.parametrize("size", [1, 2, 10, 100, 300])
+def test_batches_are_equal_within_an_eighth_or_a_row(size):
     points = points_of(amplitude=list(range(1000)))
-    for size in (1, 10, 100):
-        assert len(sweep.divide(points, size)) == pytest.approx(2000 / size, rel=0.5)
-    assert len(sweep.cut(points.requests, 10)) == pytest.approx(200, rel=0.5)
+    sizes = sizes_of(points, size)
+    assert len(sizes) == pytest.approx(2000 / size, rel=0.1)
+    assert max(sizes) - min(sizes) <= max(2, 0.25 * size)
+    assert sum(sizes) == 2000
+
+
+def test_the_batches_of_the_default_sweeps_keep_two_cores_busy():
+    configuration = load.load("config/config.yaml")
+    points = sweep.points_of(configuration.sweeps["bore"])
+    sizes = sizes_of(points, configuration.points_per_job["bore"])
+    assert len(sizes) % 2 == 0
+    assert max(sizes) - min(sizes) <= len(points.values)
 
 
 def names_of(size, **transverse):
     return {batch.name for batch in sweep.divide(points_of(**transverse), size)}
 
 
-@pytest.mark.parametrize("amplitude", [0.5, 11.5, 40])
-def test_an_amplitude_more_changes_the_block_that_it_falls_into(amplitude):
-    axis = [float(value) for value in range(1, 40)]
-    before, after = (names_of(8, amplitude=values) for values in (axis, [*axis, amplitude]))
-    assert len(before) > 5
-    assert 1 <= len(after - before) <= 2 and len(before - after) <= 1
-
-
-def test_a_velocity_more_changes_a_part_of_each_long_row():
+def test_long_rows_are_cut_along_the_velocity():
     axis = [float(value) for value in range(1, 200)]
-    before, after = (names_of(10, velocity=values) for values in (axis, [*axis, 77.5]))
-    assert len(before) > 30
-    assert 3 <= len(after - before) <= 6  # a part of each of the three rows
+    sizes = sizes_of(points_of(velocity=axis), 50)
+    assert len(sizes) == 3 * 4
+    assert 44 <= min(sizes) <= max(sizes) <= 56
+
+
+@pytest.mark.parametrize("amplitude", [0.5, 500.5, 2000])
+def test_an_amplitude_more_changes_few_of_the_large_batches(amplitude):
+    axis = [float(value) for value in range(1, 1000)]
+    before, after = (names_of(200, amplitude=values) for values in (axis, [*axis, amplitude]))
+    assert len(before) == len(after) == 10
+    assert 1 <= len(after - before) <= 5
 
 
 def test_a_batch_is_named_by_its_requests_and_the_code(monkeypatch):
