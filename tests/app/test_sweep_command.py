@@ -45,6 +45,9 @@ REFUSED = [
     ("fig2_transverse", "TARGET = 'fig2_transverse'", "did you mean fig2_transverse_map?"),
     ("-n --config poisson", "--config = 'poisson'", "KEY=VALUE"),
     ("-n --configfile none.yaml", "--configfile = 'none.yaml'", "no such file", "a YAML file"),
+    ("--configfile good.yaml results/x.nc", "'results/x.nc'", "targets go before --configfile"),
+    ("--configfile good.yaml made.nc", "--configfile = 'made.nc'", "targets go before"),
+    ("-n --configfile good.yaml fig2", "'fig2': no such file", "targets go before --configfile"),
     ("-n --configfile good.yaml --configfile good.yaml", "--configfile", "--configfile A B"),
     ("-n --configfile good.yaml tabs.yaml", "tabs.yaml: not valid YAML:"),
     (
@@ -73,6 +76,7 @@ def here(monkeypatch, tmp_path):
 def test_bad_arguments_are_one_line_before_snakemake_starts(arguments, parts, here):
     (here / "good.yaml").write_text(GOOD)
     (here / "tabs.yaml").write_bytes(FILES["tabs"][0])
+    (here / "made.nc").write_bytes(b"")
     refused(in_process.run("sweep", *arguments.split()), parts)
 
 
@@ -113,6 +117,27 @@ def test_a_folder_that_is_gone_is_one_line(tmp_path):
 
 
 # The end of a run
+
+SMALL = """
+sweeps:
+  transverse: {velocity: [0.5], amplitude: [0], model: rigid, tolerance: 1.0e-2}
+"""
+
+
+@pytest.mark.slow
+@pytest.mark.skipif(not Path("/proc/self/stat").exists(), reason="needs Linux")
+def test_results_that_cannot_be_written_are_one_line_with_the_folder(tmp_path):
+    """Nobody can make folders in /proc."""
+    (tmp_path / "small.yaml").write_text(SMALL)
+    process = in_process.run_apart(
+        *["sweep", "-c1", "--configfile", "small.yaml", "--config", "results=/proc/microslip"],
+        folder=tmp_path,
+    )
+    assert process.returncode == 1
+    (line,) = [line for line in process.stderr.splitlines() if "/proc/microslip" in line]
+    assert line.startswith("Error in small.yaml") and "choose another folder for results" in line
+    assert "Traceback" not in process.stderr
+
 
 # Two jobs of hours.
 SLOW = """

@@ -164,9 +164,12 @@ def _check_configuration(options: argparse.Namespace) -> None:
     from snakemake.cli import parse_config
     from snakemake.utils import update_config
 
-    for file in options.configfile or ():
-        if not os.path.isfile(file):
-            raise InputError("--configfile", str(file), "no such file; allowed is a YAML file")
+    for index, file in enumerate(map(str, options.configfile or ())):
+        is_product = file.endswith((".nc", ".html", ".pdf", ".png"))
+        if is_product or not os.path.isfile(file):
+            problem = "not a configuration" if is_product else "no such file"
+            hint = "; targets go before --configfile" if index or is_product else ""
+            raise InputError("--configfile", file, f"{problem}; allowed is a YAML file{hint}")
     paths = [os.path.relpath(file) for file in options.configfile or ()]
     if not paths:
         places = (Path(options.directory or "."), snakefile().parent)

@@ -74,7 +74,9 @@ def complain(text: str) -> None:
 def _code_of(command: Callable[[], int]) -> int:
     try:
         return command()
-    except SystemExit as error:  # from argparse
+    except SystemExit as error:  # from argparse, or with a message from the rules of the workflow
+        if isinstance(error.code, str):
+            complain(error.code)
         return error.code if isinstance(error.code, int) else int(error.code is not None)
 
 
