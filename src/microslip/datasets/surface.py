@@ -110,5 +110,5 @@ def largest_around(values: np.ndarray) -> np.ndarray:
     axis.
     """
     padded = np.pad(values, [(1, max(1, 3 - n)) for n in values.shape], mode="edge")
-    windows = np.lib.stride_tricks.sliding_window_view(padded, (4))
+    windows = np.lib.stride_tricks.sliding_window_view(padded, (4, 4))
     return windows.max(axis=(-2, -1))
