@@ -6,8 +6,12 @@ import subprocess
 import sys
 import tempfile
 from concurrent.futures import ThreadPoolExecutor
+from contextlib import suppress
 from importlib.util import find_spec
 from pathlib import Path
+
+with suppress(ImportError):
+    import pty
 
 import pytest
 from stubs.new_process import PACKAGE, output, run
@@ -232,6 +236,26 @@ def test_processes_that_compile_at_the_same_time_do_not_disturb_each_other(tmp_p
 @pytest.mark.long
 def test_code_that_numba_does_not_optimise_gives_the_same_numbers(tmp_path):
     said(tmp_path, "float64", NUMBA_OPT="0")
+
+
+def shown(folder, *kinds):
+    """What a terminal shows while a kernel is called for some types."""
+    terminal, end = pty.openpty()
+    environment = os.environ | {"PYTHONPATH": str(PACKAGE.parent), "NUMBA_CACHE_DIR": str(folder)}
+    command = [sys.executable, "-c", TWO_TYPES, *kinds]
+    subprocess.run(command, env=environment, stdout=subprocess.DEVNULL, stderr=end, check=True)
+    os.write(end, b"(end)")
+    os.close(end)
+    return os.read(terminal, 10_000).decode().removesuffix("(end)").splitlines()
+
+
+@pytest.mark.long
+@pytest.mark.skipif(find_spec("termios") is None, reason="needs a terminal of Unix")
+def test_a_terminal_says_that_the_solver_is_compiled_for_each_new_kind(tmp_path):
+    for kinds in (BOTH[:1], BOTH):
+        (line,) = shown(tmp_path, *kinds)
+        assert "compiling the solver, once" in line
+    assert shown(tmp_path, *BOTH) == []
 
 
 @pytest.mark.slow

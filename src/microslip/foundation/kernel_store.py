@@ -11,6 +11,7 @@ import hashlib
 import os
 import pickle
 import sys
+import time
 from typing import Any
 
 from numba.core.caching import CompileResultCacheImpl, FunctionCache
@@ -19,6 +20,38 @@ from numba.core.serialize import dumps
 REPORTED = "MICROSLIP_SAID_UNSTORED"
 """Environment variable that is set after the message about an unwritable folder.  The jobs of a
 sweep inherit it."""
+
+
+SPELL = 1.0
+"""Seconds without compilation after which the next compilation is announced again.  Between the
+kernels of one solution, milliseconds pass."""
+
+
+class Announcement:
+    """One line on a terminal when compilation begins.
+
+    Attributes
+    ----------
+    running : int
+        Number of functions that are being compiled, since one calls the other.
+    ended : float
+        Time of the end of the last compilation.
+    """
+
+    running, ended = 0, -SPELL
+
+    def begin(self) -> None:
+        """Announce a compilation, unless it belongs to one that was announced."""
+        if not self.running and time.monotonic() - self.ended > SPELL and sys.stderr.isatty():
+            print("microslip: compiling the solver, once for each kind of contact", file=sys.stderr)
+        self.running += 1
+
+    def end(self) -> None:
+        """Record the end of a compilation."""
+        self.running, self.ended = self.running - 1, time.monotonic()
+
+
+ANNOUNCEMENT = Announcement()
 
 
 class CheckedCode(CompileResultCacheImpl):
@@ -50,15 +83,19 @@ class KernelStore(FunctionCache):
     _impl_class = CheckedCode
 
     def load_overload(self, sig: Any, target_context: Any) -> Any:
-        """Return the stored code for the argument types `sig`, or None."""
+        """Return the stored code for the argument types `sig`, or None; then Numba compiles."""
         try:
             cres = super().load_overload(sig, target_context)
         except Exception:  # a damaged pickle can raise any error
-            return None
-        return cres if cres is not None and tuple(cres.signature.args) == tuple(sig) else None
+            cres = None
+        if cres is not None and tuple(cres.signature.args) == tuple(sig):
+            return cres
+        ANNOUNCEMENT.begin()
+        return None
 
     def save_overload(self, sig: Any, data: Any) -> None:
         """Store compiled code for the argument types `sig`.  If this fails, a line is printed."""
+        ANNOUNCEMENT.end()
         try:
             try:
                 super().save_overload(sig, data)
