@@ -16,7 +16,6 @@ from microslip.app.question import (
     write_files,
 )
 from microslip.app.terminal import complain
-from microslip.si.motions import FIT_MOTIONS
 
 OPTIONS = {
     "speed": ("V", "forward speed of all rows, such as '1 mm/s', in place of a column"),
@@ -48,8 +47,7 @@ def fill(parser: argparse.ArgumentParser) -> None:
         "Exit codes: 0 both numbers determined; 1 only mu determined, or unreadable lines left "
         "out; 2 bad input, or neither number determined."
     )
-    motions = ", ".join(FIT_MOTIONS)
-    text = f"the motion: {motions}"
+    text = "the motion: transverse, longitudinal or zigzag"
     parser.add_argument("motion", action=StoreSpelling, metavar="MOTION", help=text)
     parser.add_argument("measured", action=StoreSpelling, metavar="CSV", help="the table")
     add_options(parser, OPTIONS)

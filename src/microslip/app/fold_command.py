@@ -21,7 +21,7 @@ from microslip.foundation.errors import InputError
 from microslip.foundation.number_text import number_text
 
 if TYPE_CHECKING:
-    from microslip.si.record import Fold
+    from microslip.si.fold import Fold
 
 OPTIONS = {
     "output": ("FILE", "CSV file for the period, which is then the motion file:FILE"),
@@ -56,7 +56,7 @@ def fill(parser: argparse.ArgumentParser) -> None:
 
 def _answer(options: argparse.Namespace) -> Answer:
     from microslip.si.quantities import read
-    from microslip.si.record import ROWS, fold
+    from microslip.si.fold import ROWS, fold
     from microslip.si.strokes import read_record
 
     arguments = typed_options(options, wholes=("rows",))

@@ -10,6 +10,7 @@ forward [um],lateral [um],load [N]
 from __future__ import annotations
 
 import math
+import os
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from functools import lru_cache
@@ -23,7 +24,6 @@ from microslip.foundation import spec
 from microslip.foundation.csv_table import LABELS, table_of
 from microslip.foundation.errors import InputError, shown
 from microslip.si.bodies import TwoBodies
-from microslip.si.fitting.measured import named
 from microslip.si.inputs import OF_CONTACT, contact_of, read_inputs
 from microslip.si.quantities import read
 from microslip.si.strokes import UNITS, scales
@@ -245,6 +245,11 @@ def read_path(
     if not columns:
         raise InputError("path", named(path), f"allowed are some of {', '.join(units)}")
     return {"forward": np.zeros(len(cells))} | columns
+
+
+def named(source: Any) -> str | list:
+    """Name of a table for messages: the path, or the names of the columns."""
+    return str(source) if isinstance(source, str | os.PathLike) else list(source)
 
 
 def _number(where: int, cell: object, name: str, unit: str) -> float:

@@ -13,7 +13,7 @@ from matplotlib.lines import Line2D
 from microslip.report.figures import panels
 from microslip.report.figures import style as look
 from microslip.report.figures.data import columns, finite_or_nan
-from microslip.si.fitting.curves import abscissa as abscissa_of
+from microslip.si.fit import abscissa as abscissa_of
 
 CONDITIONS = {
     "speed_m_s": ("speed", "m/s"),

@@ -1,0 +1,340 @@
+"""One period of a motion from a long record, such as that of a laser vibrometer.
+
+A record contains many periods, noise, and a slow drift.  The drift is the moving mean over one
+period.  For a periodic motion it is constant.  The difference from the drift is averaged over all
+whole periods.  The scatter between the periods gives the standard error of the average.
+
+If the frequency drifts, the periods are averaged out of phase, and the average is too small.  The
+covariance of the phases of neighbouring periods is the variance of this slow phase drift, because
+the noise of neighbouring periods is uncorrelated.  The average of the harmonic m is smaller by the
+factor exp(-x), where x is half of the variance of m times the phase.  This loss is part of the
+error.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from microslip.foundation.arguments import count, real
+from microslip.foundation.errors import InputError
+from microslip.motions.from_file import COLUMNS, EVEN
+from microslip.motions.samples import FEWEST_SAMPLES, NORMAL
+
+FEWEST_PERIODS, FEWEST_PER_PERIOD = 4, 4
+"""Smallest number of periods in a record, of which half a period is lost at each end, and of
+samples in a period."""
+ROWS, MOST_ROWS = 32, 10_000
+"""Default and largest number of samples in the period.  More samples keep more harmonics, and more
+noise."""
+REFINEMENTS = 3
+"""Number of corrections of the frequency.  After each correction, only the error of the phases
+remains."""
+PERIODIC, QUARTERS = 0.5, 4
+"""Smallest amplitude in a quarter of the record, divided by the largest one of a quarter, and the
+number of quarters.  A motion with a smaller ratio is not periodic throughout."""
+MOST_DECIMALS = 12
+"""Largest number of decimals of times that count as rounded.  More decimals need no allowance."""
+LARGEST_LOSS = 0.01
+"""Largest relative loss of the strongest harmonic by a drift of the frequency.  The estimate of the
+loss is of first order, so it is correct for small losses only."""
+SIGNIFICANT = 5.0
+"""Smallest ratio of the peak-to-peak value to its standard error.  White noise at the frequency of
+its strongest component reaches about 3."""
+PHASE_OF_A_DRIFT = 0.5 * math.sqrt(1.0 / 80.0 - 1.0 / 144.0)
+"""Standard deviation of the phase, in periods, for a frequency that changes linearly by one period
+per duration of the record: that of u**2 / 2 for u from -1/2 to 1/2."""
+FINER = 32
+"""Number of interpolated points per sample for the peak-to-peak value.  With 32 samples, the peak
+of a sine is too small by at most 5e-6 of its amplitude."""
+CONSTANT = 1e-12
+"""Largest variation of a constant column, divided by its largest value: rounding errors."""
+TREND, SLOWEST = 3, 3
+"""Degree of the polynomial that is subtracted before the search for the frequency, and smallest
+number of periods per record in this search."""
+
+
+@dataclass(frozen=True, eq=False)
+class Fold:
+    """The mean period of a record.
+
+    Attributes
+    ----------
+    frequency, frequency_error : float
+        Frequency and its standard error, Hz.
+    periods : int
+        Number of averaged periods.
+    columns : dict of str to np.ndarray, shape (rows,)
+        The mean period, without its end point.  Displacements are relative to their mean.
+    errors : dict of str to np.ndarray, shape (rows,)
+        Standard error of each sample of `columns`, from the scatter between the periods, plus the
+        loss of amplitude by a drift of the frequency.
+    drift : dict of str to float
+        Mean rate of the slow drift of each column, per second.
+    """
+
+    frequency: float
+    frequency_error: float
+    periods: int
+    columns: dict[str, np.ndarray]
+    errors: dict[str, np.ndarray]
+    drift: dict[str, float]
+
+    @property
+    def time(self) -> np.ndarray:
+        """Times of the samples, (rows,)."""
+        rows = len(next(iter(self.columns.values())))
+        return np.arange(rows) / (rows * self.frequency)
+
+    def peak_to_peak(self, name: str) -> tuple[float, float]:
+        """Peak to peak value of a column between its samples, too, and its standard error.
+
+        The standard error is twice the largest one of a sample, which is an upper bound.
+        """
+        return _peak_to_peak(self.columns[name]), 2.0 * float(np.max(self.errors[name]))
+
+
+def _peak_to_peak(values: np.ndarray) -> float:
+    return float(np.ptp(np.fft.irfft(np.fft.rfft(values), FINER * len(values)) * FINER))
+
+
+def fold(
+    time: Any, columns: Mapping[str, Any], *, frequency: float | None = None, rows: int = ROWS
+) -> Fold:
+    """Average a record over its periods, without its slow drift.
+
+    Parameters
+    ----------
+    time : array_like, shape (samples,)
+        Equally spaced times, s.  Each time may be rounded to its last digit.
+    columns : mapping of array_like, shape (samples,)
+        Columns forward, lateral, angle, and load or indentation, in any units.
+    frequency : float or None
+        Approximate frequency, Hz, which is refined.  Over the whole record, its error must be less
+        than half a period.  The default is the frequency of the strongest component.
+    rows : int
+        Number of samples in the period, an even number.  Harmonics up to the order rows / 2 - 1 are
+        kept.
+
+    Returns
+    -------
+    Fold
+
+    Raises
+    ------
+    InputError
+        If an argument is invalid, if the record has fewer than FEWEST_PERIODS periods, if its
+        frequency drifts, or if its oscillation is not larger than the noise.
+    """
+    from scipy.interpolate import CubicSpline  # only here: it takes a while to load
+
+    rows = count("rows", rows, 2 * FEWEST_SAMPLES, most=MOST_ROWS, even=True)
+    step, names, values = _checked(time, columns)
+    longest, typed = (len(values) - 1) * step, frequency is not None
+    hz = real("frequency", frequency, 0.0) if typed else _strongest(values) / (len(values) * step)
+    spline = CubicSpline(step * np.arange(len(values)), values - values.mean(axis=0))
+    integral = spline.antiderivative()
+
+    def drift(time: Any) -> np.ndarray:
+        """The mean from half a period before a time to half a period after it."""
+        return (integral(time + 0.5 / hz) - integral(time - 0.5 / hz)) * hz
+
+    def harmonics() -> np.ndarray:
+        """Fourier coefficients of each whole period, shape (periods, rows / 2 + 1, columns)."""
+        _check_periods(hz, longest, step, typed)
+        points = max(rows, math.ceil(1.0 / (hz * step)))
+        periods = np.arange(int(hz * longest * (1.0 + 1e-12)) - 1)
+        times = (0.5 + periods[:, None] + np.arange(points) / points) / hz
+        parts = np.fft.rfft(spline(times) - drift(times), axis=1)[:, : rows // 2 + 1] / points
+        parts[:, -1] = 0.0
+        return parts
+
+    for _ in range(REFINEMENTS):
+        change, error, variance, order = _phases(parts := harmonics())
+        hz += change * hz
+    parts = harmonics()
+    periods = np.fft.irfft(parts, rows, axis=1) * rows
+    mean, scatter = periods.mean(axis=0), periods.std(axis=0, ddof=1) / math.sqrt(len(periods))
+    _check_throughout(parts, longest, order)
+    sizes = np.array([_peak_to_peak(one) for one in mean.T])
+    ratios = sizes / np.maximum(2.0 * scatter.max(axis=0), 1e-300)
+    best = int(np.argmax(ratios))
+    if ratios[best] <= SIGNIFICANT:  # before the drift, since the phases of noise look like one
+        problem = (
+            f"peak to peak at {hz:.6g} Hz, only {ratios[best]:.2g} times its standard error; "
+            f"allowed is at least {SIGNIFICANT:g} times; use a longer record, or give the correct "
+            "approximate frequency of the motion"
+        )
+        raise InputError(names[best], float(f"{sizes[best]:.3g}"), problem)
+    loss = 0.5 * (2.0 * np.pi * np.arange(parts.shape[1])) ** 2 * variance
+    if loss[order] > LARGEST_LOSS:
+        change = math.sqrt(variance) / (PHASE_OF_A_DRIFT * longest)
+        most = change * math.sqrt(LARGEST_LOSS / loss[order])
+        problem = f"the frequency changes by about {change:.2g} Hz during the record of "
+        allowed = f"allowed are {most:.2g} Hz at this length; cut the record into shorter ones"
+        raise _of_record(longest, f"{problem}{longest:.6g} s; {allowed}")
+    lost = np.fft.irfft(-np.expm1(-loss)[:, None] * parts.mean(axis=0), rows, axis=0) * rows
+    mean += values.mean(axis=0) * [name in NORMAL for name in names]
+    first, last = drift(np.array([0.5 / hz, longest - 0.5 / hz]))
+    rates = (last - first) / (longest - 1.0 / hz)
+    return Fold(
+        frequency=float(hz),
+        frequency_error=float(error * hz),
+        periods=len(periods),
+        columns=dict(zip(names, mean.T, strict=True)),
+        errors=dict(zip(names, (scatter + np.abs(lost)).T, strict=True)),
+        drift=dict(zip(names, map(float, rates), strict=True)),
+    )
+
+
+def _of_record(longest: float, problem: str) -> InputError:
+    return InputError("time", float(f"{longest:.6g}"), problem)
+
+
+def _check_periods(frequency: float, longest: float, step: float, typed: bool) -> None:
+    """Raise InputError if the record has too few periods, or too few samples in a period."""
+    periods, samples = frequency * longest, 1.0 / max(frequency * step, 1e-300)
+    if periods < FEWEST_PERIODS:
+        problem = f"the record of {longest:.6g} s has {periods:.6g} periods"
+        problem += f"; allowed are at least {FEWEST_PERIODS}"
+    elif samples < FEWEST_PER_PERIOD:
+        problem = f"a period has {samples:.3g} samples in steps of {step:.6g} s"
+        problem += f"; allowed are at least {FEWEST_PER_PERIOD}"
+    else:
+        return
+    if typed:
+        raise InputError("frequency", float(f"{frequency:.6g}"), problem)
+    hint = "if this is not the frequency of the motion, give its approximate frequency"
+    where = f"at {frequency:.6g} Hz, the strongest component"
+    raise _of_record(longest, f"{where}, {problem}; {hint}")
+
+
+def _check_throughout(parts: np.ndarray, longest: float, order: int) -> None:
+    """Raise InputError if the oscillation begins, ends, or changes its size a lot."""
+    power = np.abs(parts) ** 2
+    size = np.sqrt((power[:, order] / np.maximum(power.mean(axis=(0, 1)), 1e-300)).sum(axis=-1))
+    sizes = [float(np.median(one)) for one in np.array_split(size, QUARTERS)]
+    if min(sizes) >= PERIODIC * max(sizes):
+        return
+    share = 100.0 * min(sizes) / max(sizes)
+    problem = (
+        f"not periodic throughout: in quarter {int(np.argmin(sizes)) + 1} of the record of "
+        f"{longest:.6g} s, the oscillation is only {share:.2g} % as large as in quarter "
+        f"{int(np.argmax(sizes)) + 1}; allowed is a steady oscillation; cut off the rest"
+    )
+    raise _of_record(longest, problem)
+
+
+def _phases(parts: np.ndarray) -> tuple[float, float, float, int]:
+    """The relative correction of the frequency, its standard error, the variance of the slow phase
+    drift in periods squared, and the order of the strongest harmonic, from whose phases they
+    follow."""
+    power = np.mean(np.abs(parts) ** 2, axis=0)
+    share = power / np.maximum(power.sum(axis=0), 1e-300)
+    column = int(np.argmax(share[1:].max(axis=0)))
+    order = int(np.argmax(share[1:, column])) + 1
+    if not power[order, column] > 0.0:
+        raise InputError("columns", 0.0, "constant; allowed is an oscillation")
+    turns = np.unwrap(np.angle(parts[:, order, column])) / (2.0 * np.pi * order)
+    place = np.arange(len(turns)) - 0.5 * (len(turns) - 1)
+    slope, spread = float(place @ turns / (place @ place)), float(place @ place)
+    rest = turns - turns.mean() - slope * place
+    error = math.sqrt(float(rest @ rest) / max(len(turns) - 2, 1) / spread)
+    return slope, error, max(float(np.mean(rest[1:] * rest[:-1])), 0.0), order
+
+
+def _checked(time: Any, columns: Mapping[str, Any]) -> tuple[float, list[str], np.ndarray]:
+    """The time step, the names of the columns, and their values, (samples, columns)."""
+    if not hasattr(columns, "keys"):
+        raise InputError("columns", columns, f"allowed is a mapping with {', '.join(COLUMNS)}")
+    names = list(columns)
+    unknown = next((name for name in names if name not in COLUMNS), None)
+    if unknown is not None or not names:
+        kind = "unknown" if names else "allowed is one column or more"
+        raise InputError("columns", unknown, f"{kind}; allowed are {', '.join(COLUMNS)}")
+    if set(NORMAL) <= set(names):
+        raise InputError("indentation", "with a load", "allowed is one of the two")
+    arrays: list[np.ndarray] = []
+    for name in ("time", *names):
+        value = time if name == "time" else columns[name]
+        try:
+            array = np.array(value, float)
+        except (TypeError, ValueError):
+            raise InputError(name, value, "allowed is an array of numbers") from None
+        if array.ndim != 1:
+            raise InputError(name, value, "allowed is an array of one dimension")
+        if arrays and len(array) != len(arrays[0]):
+            allowed = f"allowed are as many numbers as times: {len(arrays[0])}"
+            raise InputError(name, array.shape, allowed)
+        if not np.isfinite(array).all():
+            raise InputError(name, math.nan, "allowed are finite numbers")
+        if arrays:
+            _check_marks(name, array)
+        if name in NORMAL and array.mean() <= 0.0:
+            mean = float(f"{array.mean():.6g}")
+            raise InputError(name, mean, "the mean; allowed is a mean above 0")
+        arrays.append(array)
+    fewest = FEWEST_PER_PERIOD * FEWEST_PERIODS
+    if len(arrays[0]) < fewest:
+        allowed = f"the record is too short; allowed are at least {fewest} samples"
+        raise InputError("time", arrays[0].shape, allowed)
+    return _step(arrays[0]), names, np.stack(arrays[1:], axis=1)
+
+
+def _check_marks(name: str, values: np.ndarray) -> None:
+    """Raise InputError for a value that is repeated exactly and lies far outside of all others."""
+    levels, counts = np.unique(values, return_counts=True)
+    if len(levels) <= QUARTERS:  # a motion with few levels
+        return
+    for end, other in ((0, 1), (-1, -2)):
+        if counts[end] > 1 and abs(levels[end] - levels[other]) > levels[-2] - levels[1]:
+            problem = f"stands in {counts[end]} rows, far outside of all others, from "
+            problem += f"{levels[other]:.6g} on"
+            allowed = "allowed are measured values; such a value often marks a missing sample"
+            raise InputError(name, float(levels[end]), f"{problem}; {allowed}")
+
+
+def _step(time: np.ndarray) -> float:
+    """The time step.  Raises InputError if the steps differ by more than rounding."""
+    if not time[-1] > time[0]:
+        problem = f"the last time, and the first is {time[0]:.9g} s; allowed are increasing times"
+        raise InputError("time", float(time[-1]), problem)
+    index = np.arange(len(time))
+    step, start = np.polyfit(index, time - time[0], 1)
+    rest = np.abs(time - time[0] - start - step * index)
+    # Numbers with a fixed number of significant digits have the fewest decimals at the end.
+    end = time[-len(time) // 8 :]
+    places = (10.0**-k for k in range(MOST_DECIMALS + 1))
+    rounded = (one for one in places if np.abs(end / one - np.rint(end / one)).max() <= 1e-6)
+    half = 0.5 * next(rounded, 0.0)
+    most = 1.02 * half + EVEN * step
+    if half <= 0.5 * step:  # a missing sample shifts some times by at least half a step
+        most = min(most, (0.5 - EVEN) * step)
+    row = int(np.argmax(rest))
+    if rest[row] > most:
+        allowed = "allowed are equal steps, and times rounded to their last digit"
+        problem = f"not equally spaced, in row {row} (the first is 0); {allowed}"
+        raise InputError("time", float(time[row]), problem)
+    return float(step)
+
+
+def _strongest(values: np.ndarray) -> float:
+    """Number of periods of the strongest component, from the record's spectrum."""
+    x = np.linspace(-1.0, 1.0, len(values))
+    trend = np.polynomial.polynomial.polyvander(x, TREND)
+    rest = values - trend @ np.linalg.lstsq(trend, values, rcond=None)[0]
+    moves = np.abs(rest).max(axis=0) > CONSTANT * np.abs(values).max(axis=0)
+    if not moves.any():
+        raise InputError("columns", 0.0, "constant; allowed is an oscillation")
+    window = np.hanning(len(values))[:, None]
+    spectrum = np.abs(np.fft.rfft(rest[:, moves] * window, axis=0)) ** 2
+    height = np.sqrt((spectrum / spectrum.sum(axis=0)).sum(axis=1))
+    first = SLOWEST + int(np.argmax(height[SLOWEST:]))
+    low, top, high = (height[min(n, len(height) - 1)] for n in (first - 1, first, first + 1))
+    curve = low - 2.0 * top + high
+    shift = 0.5 * (low - high) / curve if curve else 0.0
+    return float(first + np.clip(shift, -0.5, 0.5))
