@@ -234,7 +234,7 @@ def test_a_file_and_its_frame_are_read_alike(closed, tmp_path):
     assert one.understood["load"] == "0.01 kN"
     data = one.to_xarray()
     assert (data.sizes["row"], data.fitted.units, data.mu.units) == (8, "N", "1")
-    assert data.speed_m_s.units == "m/s" and data.label.values.tolist() == list("abcdefgh")
+    assert data.speed_m_s.units == "m s-1" and data.label.values.tolist() == list("abcdefgh")
     assert json.loads(json.dumps(one.to_dict()))["told"] == ["mu", "u_lim"]
 
 

@@ -22,7 +22,7 @@ import os
 import re
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
-from typing import Any, TypeVar, cast
+from typing import Any, NamedTuple, TypeVar
 
 from microslip.foundation.errors import InputError
 from microslip.foundation.files import content_of
@@ -79,12 +79,11 @@ class Table:
     @property
     def columns(self) -> dict[str, list[Any]]:
         """The cells with the units of their headings, such as "10 N"."""
-        return {
-            name: cells
-            if (unit := self.units[name]) is None
-            else [None if one is None else f"{one} {unit}".strip() for one in cells]
-            for name, cells in self.cells.items()
-        }
+        out = dict(self.cells)
+        for name, unit in self.units.items():
+            if unit is not None:
+                out[name] = [c if c is None else f"{c} {unit}".strip() for c in self.cells[name]]
+        return out
 
     @property
     def labels(self) -> dict[str, list[Any]]:
@@ -103,13 +102,8 @@ class Table:
         if self.errors:
             raise ValueError(next(iter(self.errors.values())))
         limits = dict.fromkeys(self.cells, -math.inf) | dict(least or {})
-        return {
-            name: [
-                number(where, name, cell or "", limits[name])
-                for where, cell in zip(self.lines, cells, strict=True)
-            ]
-            for name, cells in self.cells.items()
-        }
+        columns = {n: zip(self.lines, cells, strict=True) for n, cells in self.cells.items()}
+        return {n: [number(k, n, c or "", limits[n]) for k, c in one] for n, one in columns.items()}
 
 
 def check_format(decimal: str, encoding: str) -> None:
@@ -154,10 +148,8 @@ def table_of(
         form: dict[str, Any] = {"decimal": decimal, "encoding": encoding, "need_units": need_units}
         table = parsed_file(argument, source, lambda content: read_table(content, names, **form))
         if len(table.errors) == len(table.lines):
-            problem = next(
-                iter(table.errors.values()), "no line follows the heading; allowed: some"
-            )
-            raise InputError(argument, str(source), problem)
+            problems = [*table.errors.values(), "no line follows the heading; allowed: some"]
+            raise InputError(argument, str(source), problems[0])
         return table
     if not (isinstance(source, Mapping) or hasattr(source, "iloc") and hasattr(source, "columns")):
         raise InputError(argument, source, SOURCES)
@@ -227,47 +219,54 @@ def read_table(
         If the content is no text, if the heading is invalid, if units are below the heading, or if
         points may separate thousands.  The message begins with the line number.
     """
-    lines, form = lines_of(content, encoding), (names, need_units, complete, decimal)
+    lines, form = lines_of(content, encoding), _Form(names, need_units, complete, decimal)
     first = next((k for k, line in enumerate(lines) if is_row(k, line)), 0)
     mark = next((k for k in range(first)[::-1] if lines[k].lstrip().startswith("#")), first)
-    problem, (separator, units, row) = _heading(lines, first, *form)
+    problem, separator, units, row = _heading(lines, first, form)
     if problem and mark < first:  # a heading behind a comment mark
-        comment = [*lines[:mark], lines[mark].lstrip("# \t")]
-        hidden, (other, others, _) = _heading(comment, mark, *form)
-        if not hidden:
-            problem, separator, units, row = "", other, others, first
+        hidden = _heading([*lines[:mark], lines[mark].lstrip("# \t")], mark, form)
+        if not hidden[0]:
+            problem, separator, units, row = *hidden[:3], first
     if problem:
         raise ValueError(problem)
     table = Table({name: [] for name in units}, units, [], {})
     quantities = [name for name in units if names.get(name) is not None]
     while row < len(lines):
-        where, cells = row + 1, cast(list[str | None], [None] * len(units))
+        where = row + 1
         text, row = _joined(lines, row, separator)
         if not is_row(where - 1, text):
             continue
+        cells = _parsed(text, separator) or []
+        while len(cells) > len(units) and not cells[-1]:
+            cells.pop()
         if not table.lines and not any(map(str.isdigit, text)):
-            bare = [name for name in quantities if units[name] is None]
-            _refuse_units(
-                where, dict(zip(units, _parsed(text, separator) or [], strict=False)), bare
-            )
+            below = {n: c for n, c in zip(units, cells, strict=False) if n in quantities}
+            _refuse_units(where, below, units)
         try:
-            texts = _cells(where, text, separator, len(units))
-            pairs = zip(units, texts, strict=True)
-            cells = [_cell(where, n, c, units[n], names.get(n), decimal) for n, c in pairs]
+            _check_count(where, len(cells), len(units), separator)
+            pairs = zip(units, cells, strict=True)
+            values = [_cell(where, name, cell, units[name], form) for name, cell in pairs]
         except ValueError as error:
             table.errors[len(table.lines)] = str(error)
-            known = _parsed(text, separator) or []
-            cells = [
-                known[k] or None if name in LABELS and k < len(known) else None
-                for k, name in enumerate(units)
-            ]
+            cells += [""] * len(units)
+            pairs = zip(units, cells, strict=False)
+            values = [cell or None if name in LABELS else None for name, cell in pairs]
         table.lines.append(where)
-        for column, cell in zip(table.cells.values(), cells, strict=True):
-            column.append(cell)
+        for column, value in zip(table.cells.values(), values, strict=True):
+            column.append(value)
     if "," not in (separator, decimal):
         for name in quantities:
             refuse_thousands(name, table.cells[name], table.lines)
     return table
+
+
+class _Form(NamedTuple):
+    """Allowed columns and format of a file; see read_table."""
+
+    names: Mapping[str, str | None]
+    need_units: bool
+    complete: str
+    decimal: str
 
 
 def lines_of(content: bytes, encoding: str) -> list[str]:
@@ -295,15 +294,11 @@ def is_row(index: int, line: str) -> bool:
 
 
 def _heading(
-    lines: list[str],
-    index: int,
-    names: Mapping[str, str | None],
-    need_units: bool,
-    complete: str,
-    decimal: str,
-) -> tuple[str, tuple[str, dict[str, str | None], int]]:
-    """What is wrong with a heading, and the separator, the unit of each column, and the index of
-    the line below."""
+    lines: list[str], index: int, form: _Form
+) -> tuple[str, str, dict[str, str | None], int]:
+    """What is wrong with a heading, the separator, the unit of each column, and the index of the
+    line below."""
+    names, need_units, complete, decimal = form
     for separator in sorted(SEPARATORS, key=decimal.__eq__):  # the comma last if it is decimal
         text, end = _joined(lines, index, separator)
         titles = _parsed(text, separator) or [text]
@@ -333,7 +328,7 @@ def _heading(
         problem, allowed = f"{bare[0]} has no unit", f"one such as {bare[0]} [{names[bare[0]]}]"
     if problem:
         problem = f"line {index + 1}: {problem}; allowed: {allowed}"
-    return problem, (separator, units, end)
+    return problem, separator, units, end
 
 
 def _unit(heading: re.Match) -> str | None:
@@ -363,43 +358,34 @@ def _parsed(text: str, separator: str) -> list[str] | None:
         return None
 
 
-def _cells(where: int, text: str, separator: str, count: int) -> list[str]:
-    """Cells of a row without empty cells at the end.  Raises ValueError unless there are `count`
-    cells."""
-    cells = _parsed(text, separator)
-    if cells is None:
+def _check_count(where: int, count: int, columns: int, separator: str) -> None:
+    """Raise ValueError unless a row has a cell for each column.  count: 0 for open quotes."""
+    if not count:
         allowed = "allowed are cells in whole pairs of double quotes"
         raise ValueError(f"line {where}: a double quote is open or inside a cell; {allowed}")
-    while len(cells) > count and not cells[-1]:
-        cells.pop()
-    if len(cells) != count:
-        hint = "; for decimal commas in quotes give decimal = ','" if len(cells) > count else ""
-        allowed = (
-            f"{count}, parted by a {SEPARATORS[separator]} as in the heading, one with such a "
-        )
-        allowed += f"sign in double quotes{hint}"
-        raise ValueError(f"line {where}: {len(cells)} cells; allowed: {allowed}")
-    return cells
+    if count != columns:
+        hint = "; for decimal commas in quotes give decimal = ','" if count > columns else ""
+        parted = f"parted by a {SEPARATORS[separator]} as in the heading"
+        allowed = f"{columns}, {parted}, one with such a sign in double quotes{hint}"
+        raise ValueError(f"line {where}: {count} cells; allowed: {allowed}")
 
 
-def _refuse_units(where: int, row: dict[str, str], quantities: list[str]) -> None:
-    """Raise ValueError for a row of units below the heading."""
-    for name in quantities:
-        if UNIT.fullmatch(row.get(name, "")):
-            problem = f"line {where}: {name} is {row[name]!r}; allowed: a number"
-            example = f"{name} [{row[name].strip('[]()')}]"
+def _refuse_units(where: int, row: Mapping[str, str], units: Mapping[str, str | None]) -> None:
+    """Raise ValueError for a row of units below a heading without them."""
+    for name, cell in row.items():
+        if units[name] is None and UNIT.fullmatch(cell):
+            problem = f"line {where}: {name} is {cell!r}; allowed: a number"
+            example = f"{name} [{cell.strip('[]()')}]"
             raise ValueError(f"{problem}, with its unit in the heading, as in {example}")
 
 
-def _cell(
-    where: int, name: str, cell: str, unit: str | None, si: str | None, decimal: str
-) -> str | None:
-    """Text of a cell with decimal points, or None if it is empty.  si: SI unit; None for a text."""
+def _cell(where: int, name: str, cell: str, unit: str | None, form: _Form) -> str | None:
+    """Text of a cell with decimal points, or None if it is empty."""
     if name in LABELS or not cell:
         return cell or None
-    if si is None:
-        return DECIMAL_COMMA.sub(r"\1.", cell) if decimal == "," else cell
-    cell = with_point(where, name, cell, decimal)
+    if form.names[name] is None:
+        return DECIMAL_COMMA.sub(r"\1.", cell) if form.decimal == "," else cell
+    cell = with_point(where, name, cell, form.decimal)
     if unit is not None:
         number(where, name, cell, unit=unit)
     return cell

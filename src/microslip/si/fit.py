@@ -218,7 +218,14 @@ class Fit:
         import xarray as xr
 
         measured = "N" if self.quantity == "friction" else "1"
-        ends = {"_Pa": "Pa", "_m_s": "m/s", "_Hz": "Hz", "_N": "N", "_m": "m", "amplitude_si": "m"}
+        ends = {
+            "_Pa": "Pa",
+            "_m_s": "m s-1",
+            "_Hz": "Hz",
+            "_N": "N",
+            "_m": "m",
+            "amplitude_si": "m",
+        }
         ends |= dict.fromkeys(("measured", "fitted", "standard_error"), measured)
         ends |= {f"{name}_error": measured for name in ("measured", "fitted")}
         variables: dict[str, tuple] = {n: ("row", texts) for n, texts in self.labels.items()}
