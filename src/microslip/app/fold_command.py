@@ -55,8 +55,8 @@ def fill(parser: argparse.ArgumentParser) -> None:
 
 
 def _answer(options: argparse.Namespace) -> Answer:
-    from microslip.si.quantities import read
     from microslip.si.fold import ROWS, fold
+    from microslip.si.quantities import read
     from microslip.si.strokes import read_record
 
     arguments = typed_options(options, wholes=("rows",))
