@@ -23,14 +23,18 @@ MODULES = {
 """Modules that the source may use.  In those of a package, the names in `__all__` are public."""
 OTHERS = {module.partition(".")[0] for module in MODULES}
 EXCEPTIONS = {
-    ROOT / "src/microslip/foundation/compiled.py": {"numba.config", "numba.np.arraymath"},
+    ROOT / "src/microslip/foundation/compiled.py": {
+        "numba.config",
+        "numba.core.event",
+        "numba.np.arraymath",
+    },
     ROOT / "src/microslip/foundation/kernel_store.py": {
         "numba.core.caching",
         "numba.core.serialize",
     },
 }
-"""Other modules: the settings of Numba, an import that Numba would do more slowly, and the classes
-from which storage of compiled code is derived."""
+"""Other modules: settings and events of Numba, an import that it would do more slowly, and the
+classes from which storage of compiled code is derived."""
 STANDARD = {"_asdict", "_exit", "_fields", "_replace"}
 """Public names of the standard library that begin with an underscore."""
 ARGPARSE = {"_actions", "_option_string_actions", "_AppendAction"}
