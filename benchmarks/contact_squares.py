@@ -10,9 +10,9 @@ from __future__ import annotations
 import numpy as np
 from scipy.optimize import brentq
 
-from microslip.models.path import EULER, make_path
-from microslip.models.squares.contact import CartesianContact
-from microslip.models.squares.convolution import influence
+from microslip.contact.convolution import influence
+from microslip.contact.path import EULER, make_path
+from microslip.contact.squares import CartesianContact
 from microslip.pressures.pressure import Pressure
 
 RESIDUAL = 1e-11

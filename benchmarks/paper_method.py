@@ -20,8 +20,8 @@ from statistics import median
 import tables
 
 import microslip
-from microslip.models.contact import forward_slip
-from microslip.models.squares.contact import CartesianContact
+from microslip.contact.contact import forward_slip
+from microslip.contact.squares import CartesianContact
 from microslip.motions.by_name import motion_named
 from microslip.motions.problem import Problem
 from microslip.solver.methods.paper import (

@@ -1,4 +1,4 @@
-"""Iterations of the step solvers in microslip.contacts, for several values of their constants.
+"""Iterations of the step solvers in microslip.contact, for several values of their constants.
 
     PYTHONPATH=src python benchmarks/splitting.py
 
@@ -8,11 +8,9 @@ search for the periodic state. The cases are few and many rings, bores, and squa
 
 import numpy as np
 
-from microslip.contacts import splitting
-from microslip.models.polar import angular_modes
-from microslip.models.polar.contact import PolarContact
-from microslip.models.rings import contact as rings
-from microslip.models.squares import contact as squares
+from microslip.contact import ring_contact, splitting, squares
+from microslip.contact.modes import PolarContact
+from microslip.contact.ring_contact import RadialContact
 from microslip.motions.by_name import motion_named
 from microslip.motions.problem import Problem
 from microslip.solver.discretise import Resolution
@@ -43,7 +41,7 @@ def table(name, values, set_value, contacts):
     print(f"{name:20s}" + "".join(f"{contact:>16s}" for contact in contacts))
     for value in values:
         set_value(value)
-        for cached in (rings._resolved, PolarContact.resolved):
+        for cached in (RadialContact.resolved, PolarContact.resolved):
             cached.cache_clear()
         counts = [iterations(*CONTACTS[contact]) for contact in contacts]
         print(f"{value:<20g}" + "".join(f"{count:16.1f}" for count in counts))
@@ -61,7 +59,7 @@ def main():
     def ratio(value):
         """Set the ratio of consecutive penalties. With 1, all steps have the same penalty."""
         penalties = value ** (np.arange(4) - 1.5)
-        for module in (splitting, rings, angular_modes):
+        for module in (splitting, ring_contact):
             module.PENALTIES = penalties
 
     table("ratio of penalties", (1.0, 1.5, 2.0, 3.0), ratio, contacts)

@@ -9,8 +9,8 @@ is transverse for rings and bore for all other models.
 import time
 from statistics import median
 
-from microslip.models.contact import forward_slip
-from microslip.models.path import EULER, half_period_phases, make_path
+from microslip.contact.contact import forward_slip
+from microslip.contact.path import EULER, half_period_phases, make_path
 from microslip.motions.named import Bore, Transverse
 from microslip.motions.problem import Problem
 from microslip.solver.discretise import Resolution, contact_of

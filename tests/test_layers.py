@@ -8,7 +8,7 @@ import microslip
 
 PACKAGE = Path(microslip.__file__).parent
 RULE = (
-    "foundation < theory < pressures < motions < contacts < models < solver < estimate "
+    "foundation < theory < pressures < motions < contact < solver < estimate "
     "< adaptive < si < config < sweeps < datasets < studies < report < app"
 )
 ROOMS = RULE.split(" < ")

@@ -9,7 +9,7 @@ from stubs.agreement import assert_agree
 import microslip
 from microslip.adaptive.choice import choose_model
 from microslip.adaptive.closed_forms import closed_form
-from microslip.models.registry import MODELS
+from microslip.contact.registry import MODELS
 from microslip.motions.by_name import MOTIONS, motion_named
 from microslip.motions.named import Bore, ContinuousBore, Transverse
 from microslip.motions.problem import Problem

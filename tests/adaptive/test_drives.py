@@ -10,12 +10,12 @@ from stubs.agreement import assert_agree
 
 import microslip
 from microslip.adaptive import driven_contact
+from microslip.contact.path import EULER
 from microslip.estimate.estimate import Estimate
 from microslip.estimate.ladder import Ladder
 from microslip.estimate.refine import Refined
 from microslip.foundation.arguments import SMALLEST_STIFFNESS
 from microslip.foundation.errors import InputError
-from microslip.models.path import EULER
 from microslip.motions.by_name import motion_named
 from microslip.motions.drive import Force, Spring
 from microslip.motions.problem import Problem

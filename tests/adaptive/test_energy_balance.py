@@ -13,9 +13,9 @@ import pytest
 import microslip
 from microslip.adaptive.checks import checked_driven_problem
 from microslip.adaptive.choice import choose_model
-from microslip.contacts.coulomb import project
-from microslip.models.contact import FORWARD, forces, rigid_displacement
-from microslip.models.path import make_path
+from microslip.contact.contact import FORWARD, forces, rigid_displacement
+from microslip.contact.coulomb import project
+from microslip.contact.path import make_path
 from microslip.solver import simulate, static_run
 
 BENCHMARKS = Path(__file__).parents[2] / "benchmarks"
@@ -28,7 +28,7 @@ QUARTER = 256
 def energy_of_slip(contact, path, periodic):
     """Friction bound times slip in a period, summed over all points and steps."""
     stages = path.stages.shape[1]
-    bounds = contact.layout.unpack(contact.field_bounds(path))
+    bounds = contact.bound[None] if path.depth is None else contact.bounds_along(path)[:, None]
     bounds = bounds if len(bounds) == 1 else bounds[::stages]
     tractions = np.moveaxis(project(np.moveaxis(periodic.fields[::stages], 1, 0), bounds), 1, 0)
     places = path.positions.copy()

@@ -8,10 +8,10 @@ from scipy.integrate import quad
 from scipy.optimize import brentq
 
 import microslip
+from microslip.contact.contact import FORWARD, forward_slip
+from microslip.contact.path import make_path, phases_between
 from microslip.foundation.errors import InputError
 from microslip.foundation.number_text import number_text
-from microslip.models.contact import FORWARD, forward_slip
-from microslip.models.path import make_path, phases_between
 from microslip.motions.by_name import motion_named
 from microslip.motions.problem import Problem
 from microslip.pressures.hertz import HERTZ

@@ -86,7 +86,7 @@ def test_torsion_of_lubkin():
 
 def independent_march(rows, load, rings, substeps):
     """Forces at every row by the reference march with backward Euler steps, nu = 0."""
-    from microslip.models.rings.contact import RadialContact
+    from microslip.contact.ring_contact import RadialContact
 
     largest = load.max() ** (1 / 3)
     contact = RadialContact.resolved(rings).at_indentation(largest**2, load[0] ** (2 / 3))

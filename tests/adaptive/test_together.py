@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import microslip
-from microslip.models.contact import forward_slip, full_slip
+from microslip.contact.contact import forward_slip, full_slip
 from microslip.motions.by_name import motion_named
 from microslip.motions.problem import Problem
 from microslip.solver.discretise import Resolution, contact_of

@@ -12,7 +12,7 @@ from bad_input_tables.bad_configurations import GOOD
 
 from microslip.config import load as config
 from microslip.config.load import ConfigError, load
-from microslip.models.registry import MODELS
+from microslip.contact.registry import MODELS
 from microslip.motions.by_name import motion_named
 from microslip.motions.problem import Problem
 from microslip.solver import method_names

@@ -34,8 +34,8 @@ from stubs.workflow_project import ENVIRONMENT
 
 import microslip
 from microslip.config import load
+from microslip.contact.registry import MODELS
 from microslip.datasets import certified_map, netcdf, sweep_dataset
-from microslip.models.registry import MODELS
 from microslip.report.figures import drawing
 from microslip.solver import method_names
 from microslip.sweeps import batches

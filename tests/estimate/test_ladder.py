@@ -8,8 +8,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from microslip.adaptive.choice import choose_model
+from microslip.contact.registry import MODELS
 from microslip.estimate.ladder import LEVELS, Ladder, ladder_for
-from microslip.models.registry import MODELS
 from microslip.motions.by_name import MOTIONS, motion_named
 from microslip.motions.named import Transverse
 from microslip.motions.problem import Problem

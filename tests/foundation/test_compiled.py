@@ -65,12 +65,12 @@ def test_an_edited_law_of_friction_is_the_one_that_runs(copy):
     """After an edit of an inlined function, the compiled code of its caller is not used."""
     (copy / "caller.py").write_text(
         "from microslip.foundation.compiled import kernel\n"
-        "from microslip.contacts.coulomb import shrink\n\n\n"
+        "from microslip.contact.coulomb import shrink\n\n\n"
         "@kernel\ndef called(x):\n    return x * shrink(x, 0.0, 1.0)\n"
     )
     program = "from microslip.caller import called; print(called(4.0))"
     assert float(output(program, package=copy)) == pytest.approx(1.0)
-    law = copy / "contacts" / "coulomb.py"
+    law = copy / "contact" / "coulomb.py"
     text = law.read_text()
     law.write_text(text.replace("return min(1.0, bound /", "return min(1.0, 0.5 * bound /", 1))
     assert law.read_text() != text
@@ -118,7 +118,7 @@ def test_where_neither_package_nor_home_can_be_written_it_runs_all_the_same_and_
     environment = {"HOME": str(tmp_path / "home"), "TMPDIR": str(tmp_path / "temporary")}
     environment |= {"XDG_CACHE_HOME": "", "PYTHONDONTWRITEBYTECODE": "1"}
     program = (
-        f"{FOLDER}; from microslip.contacts.coulomb import shrink; print(shrink(4.0, 0.0, 1.0))"
+        f"{FOLDER}; from microslip.contact.coulomb import shrink; print(shrink(4.0, 0.0, 1.0))"
     )
     process = run(program, package=copy, **environment)
     folder, number = process.stdout.split()
@@ -135,7 +135,7 @@ def test_where_neither_package_nor_home_can_be_written_it_runs_all_the_same_and_
 
 TWO_TYPES = """
 import sys, numpy as np
-from microslip.contacts.coulomb import shrink
+from microslip.contact.coulomb import shrink
 for kind in sys.argv[1:]:
     number = np.dtype(kind).type(4.0)
     print(shrink(number, number * 0, number / number))
@@ -275,7 +275,7 @@ def test_without_a_compiler_one_line_refuses(command, tmp_path):
 
 BESIDE_LINEAR_ALGEBRA = """
 import sys
-from microslip.contacts.coulomb import shrink
+from microslip.contact.coulomb import shrink
 assert shrink(4.0, 0.0, 1.0) == 0.25
 print("scipy.linalg" in sys.modules)
 import numba, numpy as np

@@ -3,14 +3,13 @@
 import numpy as np
 import pytest
 
-from microslip.contacts.operators import multiply
-from microslip.contacts.splitting import PENALTIES
-from microslip.foundation.compiled import kernel
-from microslip.models.contact import energy_norm
-from microslip.models.path import EULER, SDIRK2, make_path
-from microslip.models.polar.contact import PolarContact
-from microslip.models.rings.influence import ring_influence
-from microslip.models.rings.mesh import make_rings
+from microslip.contact.contact import energy_norm
+from microslip.contact.influence import ring_influence
+from microslip.contact.modes import PolarContact
+from microslip.contact.operators import multiply
+from microslip.contact.path import EULER, SDIRK2, make_path
+from microslip.contact.rings import make_rings
+from microslip.contact.splitting import PENALTIES, best_penalty
 
 CASES = [
     (4, 2, True, 0.0, None),
@@ -74,19 +73,15 @@ def plain_displacement(state, cells, angles, rotates, nu, focus):
     return np.stack([u.imag, u.real])
 
 
-@kernel
-def apply_here(operators, number, field, image):
-    multiply(operators, number, field, image)
-
-
 def operator_of(contact, number=0):
     """An operator of a contact as a function of states (2, M, N)."""
 
     def apply(state):
-        field = contact.layout.pack(state)
+        field, (sectors, waves, rows) = contact.pack(state), contact.operators[0].shape
         image = np.empty_like(field)
-        apply_here(contact.system().operators, number, field, image)
-        return contact.layout.unpack(image)
+        scratch = np.empty((2, sectors * waves, 2 * field.shape[1] // (sectors * rows)))
+        multiply(contact.operators, number, field, image, scratch)
+        return contact.unpack(image)
 
     return apply
 
@@ -117,16 +112,14 @@ def test_resolvents_undo_the_shifted_operator(cells, angles, rotates, nu, focus,
     contact = PolarContact(cells, angles, rotates, nu, focus)
     apply = operator_of(contact)
     for number, factor in enumerate(PENALTIES, start=1):
-        inverse, shift = operator_of(contact, number), factor * contact_penalty(contact)
+        inverse, shift = (
+            operator_of(contact, number),
+            factor * best_penalty(contact.compliance, cells),
+        )
         state = rng.normal(size=(2, angles, cells))
         assert inverse(apply(state) + shift * state) == pytest.approx(state, abs=1e-10)
         back = inverse(state)
         assert apply(back) + shift * back == pytest.approx(state, abs=1e-10)
-
-
-def contact_penalty(contact):
-    """Penalty of the solver at every point of a state."""
-    return contact.layout.unpack(contact.system().solver.penalty)
 
 
 MOTIONS = {

@@ -6,7 +6,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
-from microslip.contacts.coulomb import coulomb_residual, project, shrink
+from microslip.contact.coulomb import coulomb_residual, project, shrink
 
 POINTS = 4
 NUMBER = st.floats(-3.0, 3.0, allow_subnormal=False)

@@ -5,10 +5,9 @@ import pytest
 from reference_pull import pulled_march
 from stubs.small_contacts import CONTACTS
 
-from microslip.models.contact import forward_slip
-from microslip.models.driven_body import Body
-from microslip.models.path import EULER, SDIRK2, half_period_phases, make_path
-from microslip.models.rings.contact import RadialContact
+from microslip.contact.contact import Body, forward_slip
+from microslip.contact.path import EULER, SDIRK2, half_period_phases, make_path
+from microslip.contact.ring_contact import RadialContact
 from microslip.motions.by_name import motion_named
 
 BODIES = {

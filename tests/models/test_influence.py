@@ -6,13 +6,12 @@ Complex notation: q = lateral + i forward.
 import numpy as np
 import pytest
 
-from microslip.models.contact import forces
-from microslip.models.polar.contact import PolarContact
-from microslip.models.rings.contact import RadialContact
-from microslip.models.rings.influence import ring_influence
-from microslip.models.rings.mesh import make_rings
-from microslip.models.rings.mode_kernels import coupling_kernels, toroidal_kernels
-from microslip.models.squares.contact import CartesianContact
+from microslip.contact.contact import forces
+from microslip.contact.influence import coupling_kernels, ring_influence, toroidal_kernels
+from microslip.contact.modes import PolarContact
+from microslip.contact.ring_contact import RadialContact
+from microslip.contact.rings import make_rings
+from microslip.contact.squares import CartesianContact
 from microslip.theory import hertz
 
 RADII = [(0.3, 0.9), (0.9, 0.3), (0.5, 0.52), (0.52, 0.5), (0.7, 0.7001), (0.999, 1e-3), (0.4, 0.5)]

@@ -12,15 +12,15 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from reference_march import solved_stage
 
-from microslip.contacts.coulomb import project
-from microslip.contacts.splitting import PENALTIES, Resolvent
-from microslip.models.contact import energy_norm, forces, forward_slip
-from microslip.models.path import EULER, SDIRK2, half_period_phases, make_path
-from microslip.models.polar.contact import PolarContact
-from microslip.models.reduced.slider import slider_contact
-from microslip.models.registry import MODELS
-from microslip.models.rings.contact import RadialContact
-from microslip.models.squares.contact import CartesianContact
+from microslip.contact.contact import energy_norm, forces, forward_slip
+from microslip.contact.coulomb import project
+from microslip.contact.modes import PolarContact
+from microslip.contact.path import EULER, SDIRK2, half_period_phases, make_path
+from microslip.contact.reduced import slider_contact
+from microslip.contact.registry import MODELS
+from microslip.contact.ring_contact import RadialContact, RingContact
+from microslip.contact.splitting import PENALTIES, best_penalty
+from microslip.contact.squares import CartesianContact
 from microslip.motions.named import Bore, Transverse
 from microslip.motions.problem import Problem
 from microslip.solver.discretise import Resolution
@@ -304,10 +304,9 @@ def larger_residual(contact):
     weight = np.broadcast_to(contact.weight, (2, *contact.forward_position.shape)).ravel()
     scale = np.broadcast_to(contact.compliance, (2, *contact.forward_position.shape)).ravel()
     elastic = ((weight / scale) @ matrix / weight).max()
-    solver = contact.system().solver
-    if not isinstance(solver, Resolvent):
+    if not isinstance(contact, RingContact):
         return 1.0 + elastic
-    penalty = PENALTIES.max() * contact.layout.unpack(solver.penalty)
+    penalty = PENALTIES.max() * best_penalty(contact.compliance, len(contact.bound))
     return max(1.0, float(np.max(penalty / contact.compliance))) + elastic
 
 

@@ -5,11 +5,10 @@ import pytest
 from scipy.integrate import quad, solve_ivp
 
 import microslip
-from microslip.models.contact import forces
-from microslip.models.path import EULER, make_path
-from microslip.models.reduced.dahl import DahlContact
-from microslip.models.reduced.mdr import mdr_contact
-from microslip.models.rings.contact import RadialContact
+from microslip.contact.contact import forces
+from microslip.contact.path import EULER, make_path
+from microslip.contact.reduced import DahlContact, mdr_contact
+from microslip.contact.ring_contact import RadialContact
 from microslip.pressures.hertz import HERTZ
 from microslip.theory import hertz, paper
 

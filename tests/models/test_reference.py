@@ -5,9 +5,9 @@ import pytest
 from reference_march import march, periodic
 from stubs import small_contacts
 
-from microslip.models.contact import forward_slip
-from microslip.models.path import EULER, SDIRK2, half_period_phases, make_path
-from microslip.models.rings.contact import RadialContact
+from microslip.contact.contact import forward_slip
+from microslip.contact.path import EULER, SDIRK2, half_period_phases, make_path
+from microslip.contact.ring_contact import RadialContact
 from microslip.motions.by_name import motion_named
 from microslip.solver.search import Goal, PeriodMap, find_periodic_state
 

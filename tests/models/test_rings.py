@@ -4,11 +4,11 @@ import numpy as np
 import pytest
 from models.test_models import larger_residual
 
-from microslip.contacts.coulomb import coulomb_residual, project
-from microslip.models.contact import energy_norm, forward_slip
-from microslip.models.path import EULER, SDIRK2, half_period_phases, make_path
-from microslip.models.reduced.slider import slider_contact
-from microslip.models.rings.contact import RadialContact
+from microslip.contact.contact import energy_norm, forward_slip
+from microslip.contact.coulomb import coulomb_residual, project
+from microslip.contact.path import EULER, SDIRK2, half_period_phases, make_path
+from microslip.contact.reduced import slider_contact
+from microslip.contact.ring_contact import RadialContact
 from microslip.motions.named import Transverse
 
 # Friction of ``exponential_contact`` after six half periods from forward slip, from a solver in

@@ -6,14 +6,12 @@ import pytest
 from reference_march import solved_stage
 from scipy.integrate import dblquad
 
-from microslip.contacts.coulomb import coulomb_residual, project
-from microslip.contacts.descent import MOST_ITERATIONS
-from microslip.contacts.step import Balance, Fields, Step, solve_step
-from microslip.foundation.compiled import kernel
-from microslip.models.contact import forward_slip
-from microslip.models.path import EULER, SDIRK2, half_period_phases, make_path
-from microslip.models.squares.contact import CartesianContact
-from microslip.models.squares.convolution import convolve, influence, square_convolution, workspace
+from microslip.contact.contact import forward_slip
+from microslip.contact.convolution import convolve, influence, square_convolution, workspace
+from microslip.contact.coulomb import coulomb_residual, project
+from microslip.contact.descent import MOST_ITERATIONS, PATIENCE
+from microslip.contact.path import EULER, SDIRK2, half_period_phases, make_path
+from microslip.contact.squares import CartesianContact, StepSolver
 from microslip.motions.named import Bore, Transverse
 from microslip.theory.hertz import G_STAR
 
@@ -121,24 +119,10 @@ def plain_step(contact, nu, b):
     return solved_stage(matrix, b, contact.bound, np.zeros_like(b))
 
 
-NO_BODY = Balance(0.0, 0.0, np.empty((0, 2, 0)), np.empty(0))
-
-
-@kernel
-def solve_here(system, balance, step, fields):
-    return solve_step(system, balance, step, fields)
-
-
-def solved(contact, b, start, tolerance, patience=None):
+def solved(contact, b, start, tolerance, patience=PATIENCE):
     """Solve a step; returns (tractions, slip, residual, iterations)."""
-    system, shape = contact.system(), b.shape
-    b, start, bound = (field.reshape(*field.shape[:-2], -1) for field in (b, start, contact.bound))
-    scratch = tuple(np.empty_like(b) for _ in range(3))
-    if patience is not None:
-        system = system._replace(solver=system.solver._replace(patience=patience))
-    fields = Fields(start.copy(), np.empty_like(b), np.empty_like(b), scratch)
-    iterations, residual, _ = solve_here(system, NO_BODY, Step(b, bound, tolerance), fields)
-    return fields.q.reshape(shape), fields.slip.reshape(shape), residual, iterations
+    q, slip, iterations, residual, _ = StepSolver(contact, tolerance, patience).solve(b, start)
+    return q, slip, residual, iterations
 
 
 @pytest.mark.parametrize("nu", NUS)

@@ -4,14 +4,13 @@ import numpy as np
 import pytest
 from models.test_squares import direct_sum
 
-from microslip.models.contact import LATERAL, TORQUE, energy_norm, forces, forward_slip
-from microslip.models.driven_body import Body
-from microslip.models.path import make_path
-from microslip.models.registry import MODELS
-from microslip.models.squares import contact as squares_contact
-from microslip.models.squares.contact import CartesianContact
-from microslip.models.squares.convolution import convolve, square_convolution, workspace
-from microslip.models.squares.half import MIRROR, TURN
+from microslip.contact import squares as squares_contact
+from microslip.contact.contact import LATERAL, TORQUE, Body, energy_norm, forces, forward_slip
+from microslip.contact.convolution import convolve, square_convolution, workspace
+from microslip.contact.half import MIRROR, TURN
+from microslip.contact.path import make_path
+from microslip.contact.registry import MODELS
+from microslip.contact.squares import CartesianContact
 from microslip.motions.by_name import motion_named
 from microslip.motions.problem import Problem
 from microslip.pressures.by_name import pressure_named
@@ -121,7 +120,7 @@ def test_squares_count_for_their_images(kind, rng):
     energies = energy_norm(every, full), energy_norm(fewer, state)
     assert energies[1] == pytest.approx(energies[0], rel=1e-13)
     assert np.array_equal(whole(kind, fewer.mirrored(state)), every.mirrored(full))
-    rooms = [workspace(contact.operators.convolution)[0].nbytes for contact in (every, fewer)]
+    rooms = [workspace(contact.convolution)[0].nbytes for contact in (every, fewer)]
     assert rooms[1] <= 0.6 * rooms[0]
 
 

@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from microslip.models.path import SDIRK2, make_path
-from microslip.models.polar.contact import PolarContact
+from microslip.contact.modes import PolarContact
+from microslip.contact.path import SDIRK2, make_path
 
 RINGS, ANGLES = 5, 6
 RATIOS = [0.0, 0.3, 0.5]

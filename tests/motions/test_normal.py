@@ -5,13 +5,12 @@ import pytest
 from stubs.agreement import assert_agree
 
 import microslip
-from microslip.contacts.coulomb import project
-from microslip.models import varying_load
-from microslip.models.contact import energy_norm
-from microslip.models.path import EULER, make_path
-from microslip.models.reduced.mdr import mdr_contact
-from microslip.models.registry import MODELS
-from microslip.models.rings.contact import RadialContact
+from microslip.contact.contact import energy_norm
+from microslip.contact.coulomb import project
+from microslip.contact.path import EULER, make_path
+from microslip.contact.reduced import load_on_springs, mdr_contact
+from microslip.contact.registry import MODELS
+from microslip.contact.ring_contact import RadialContact, load_on_rings
 from microslip.motions.by_name import motion_named
 from microslip.motions.problem import Problem
 from microslip.pressures.hertz import HERTZ
@@ -122,7 +121,7 @@ def test_the_mean_load_is_that_of_the_sum():
             )
 
 
-@pytest.mark.parametrize("carried", [varying_load.load_on_rings, varying_load.load_on_springs])
+@pytest.mark.parametrize("carried", [load_on_rings, load_on_springs])
 def test_the_parts_of_a_contact_carry_its_load(carried):
     edges, depths = np.linspace(0.0, 1.3, 14), np.array([0.0, 0.3, 1.0, 1.69])
     load = carried(HERTZ, edges, depths)

@@ -5,7 +5,7 @@ import pytest
 from stubs.agreement import assert_agree
 
 import microslip
-from microslip.models.path import make_path
+from microslip.contact.path import make_path
 from microslip.motions.by_name import motion_named
 from microslip.motions.problem import Problem
 from microslip.pressures.hertz import HERTZ

@@ -10,11 +10,11 @@ from scipy.signal import fftconvolve
 from stubs.agreement import assert_agree
 
 import microslip
+from microslip.contact.contact import forward_slip
+from microslip.contact.path import EULER, make_path
+from microslip.contact.registry import MODELS
+from microslip.contact.rings import make_rings
 from microslip.foundation.errors import InputError
-from microslip.models.contact import forward_slip
-from microslip.models.path import EULER, make_path
-from microslip.models.registry import MODELS
-from microslip.models.rings.mesh import make_rings
 from microslip.motions.by_name import motion_named
 from microslip.motions.problem import Problem
 from microslip.pressures.by_name import PRESSURES, pressure_named

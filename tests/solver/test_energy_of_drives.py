@@ -12,9 +12,8 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
-from microslip.models.contact import forces, rigid_displacement
-from microslip.models.driven_body import Body
-from microslip.models.path import make_path
+from microslip.contact.contact import Body, forces, rigid_displacement
+from microslip.contact.path import make_path
 from microslip.motions.by_name import motion_named
 from microslip.motions.drive import Force, Spring
 from microslip.motions.problem import Problem

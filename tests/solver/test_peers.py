@@ -13,10 +13,10 @@ from stubs.studies_stub import configured
 import microslip
 from microslip.adaptive import single_run as trial
 from microslip.config.records import MODELS_OF_MOTION
+from microslip.contact.path import EULER, make_path
+from microslip.contact.registry import MODELS
+from microslip.contact.squares import CartesianContact
 from microslip.foundation import canonical
-from microslip.models.path import EULER, make_path
-from microslip.models.registry import MODELS
-from microslip.models.squares.contact import CartesianContact
 from microslip.motions.by_name import MOTIONS
 from microslip.motions.named import Transverse
 from microslip.motions.problem import Problem

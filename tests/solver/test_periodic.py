@@ -5,9 +5,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from microslip.models.contact import energy_norm, forward_slip
-from microslip.models.path import EULER, SDIRK2, half_period_phases, make_path
-from microslip.models.registry import MODELS
+from microslip.contact.contact import energy_norm, forward_slip
+from microslip.contact.path import EULER, SDIRK2, half_period_phases, make_path
+from microslip.contact.registry import MODELS
 from microslip.motions.named import Bore, Transverse
 from microslip.motions.problem import Problem
 from microslip.solver import discretise

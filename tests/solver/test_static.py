@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import microslip
-from microslip.models.registry import MODELS
+from microslip.contact.registry import MODELS
 from microslip.motions.named import Bore, Transverse
 from microslip.motions.problem import Problem
 from microslip.solver.static_limit import residual_part, static_state

@@ -5,8 +5,8 @@ import pytest
 
 import microslip
 from microslip.adaptive.history import STARTS
-from microslip.models.polar.contact import PolarContact
-from microslip.models.squares.contact import CartesianContact
+from microslip.contact.modes import PolarContact
+from microslip.contact.squares import CartesianContact
 from microslip.motions.named import ContinuousBore
 from microslip.motions.problem import Problem
 from microslip.solver.steady import steady_state

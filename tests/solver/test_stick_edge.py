@@ -5,8 +5,8 @@ import pytest
 from stubs.agreement import assert_agree
 
 import microslip
+from microslip.contact.rings import Focus, make_rings
 from microslip.foundation.errors import InputError
-from microslip.models.rings.mesh import Focus, make_rings
 from microslip.motions.by_name import motion_named
 from microslip.motions.problem import Problem
 from microslip.pressures.by_name import pressure_named

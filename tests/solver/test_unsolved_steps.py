@@ -5,9 +5,9 @@ import pytest
 
 import microslip
 from microslip.adaptive import period
+from microslip.contact.modes import PolarContact
+from microslip.contact.ring_contact import RadialContact
 from microslip.foundation.errors import SolverError
-from microslip.models.polar.contact import PolarContact
-from microslip.models.rings.contact import RadialContact
 from microslip.motions.by_name import motion_named
 from microslip.motions.problem import Problem
 from microslip.solver import static_loop

@@ -1,8 +1,8 @@
 """One small contact of every kind, each with a suitable motion."""
 
-from microslip.models.polar.contact import PolarContact
-from microslip.models.rings.contact import RadialContact
-from microslip.models.squares.contact import CartesianContact
+from microslip.contact.modes import PolarContact
+from microslip.contact.ring_contact import RadialContact
+from microslip.contact.squares import CartesianContact
 
 CONTACTS = {
     "rings": (lambda: RadialContact.resolved(5, 0.7), "transverse", 0.0),

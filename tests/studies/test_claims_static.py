@@ -11,7 +11,7 @@ from stubs.claims_stub import configured
 import microslip
 from microslip.adaptive.period import NoPeriodicState
 from microslip.adaptive.stick_area import patches
-from microslip.models.contact import StepFailure
+from microslip.contact.contact import StepFailure
 from microslip.studies.claims import claims, static_limits
 from microslip.sweeps import batches
 from microslip.sweeps.store import Store

@@ -5,10 +5,10 @@ import pytest
 from stubs.agreement import assert_agree
 
 import microslip
-from microslip.models.contact import FORWARD, energy_norm, forward_slip
-from microslip.models.path import SDIRK2, make_path
-from microslip.models.reduced.slider import slider_contact
-from microslip.models.rings.contact import RadialContact
+from microslip.contact.contact import FORWARD, energy_norm, forward_slip
+from microslip.contact.path import SDIRK2, make_path
+from microslip.contact.reduced import slider_contact
+from microslip.contact.ring_contact import RadialContact
 from microslip.motions.named import Bore, Transverse
 from microslip.motions.problem import Problem
 from microslip.solver.discretise import Resolution, contact_of, path_of

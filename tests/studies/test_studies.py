@@ -20,10 +20,10 @@ import microslip
 from microslip.adaptive import single_run
 from microslip.adaptive.choice import choose_model
 from microslip.config import load, settings
+from microslip.contact.contact import StepFailure
+from microslip.contact.registry import MODELS
 from microslip.foundation.canonical import canonical_json
 from microslip.foundation.errors import SolverError
-from microslip.models.contact import StepFailure
-from microslip.models.registry import MODELS
 from microslip.motions.by_name import MOTIONS, motion_named
 from microslip.motions.problem import Problem
 from microslip.solver.methods import paper
@@ -398,7 +398,7 @@ def test_the_papers_run_is_under_the_pressure_that_is_asked_for(monkeypatch):
     def march(contact, path, state, tolerance):
         raise Seen(contact.bound * contact.widths.prod())
 
-    monkeypatch.setattr("microslip.models.squares.contact.CartesianContact.march", march)
+    monkeypatch.setattr("microslip.contact.squares.CartesianContact.march", march)
     for name in ("hertz", CONE):
         with pytest.raises(Seen) as caught:
             single_run.run_trial(

@@ -10,9 +10,9 @@ from stubs.sweep_stub import EFFORT, Solver
 
 import microslip
 from microslip.config import load
+from microslip.contact.contact import StepFailure
 from microslip.foundation import source_digest
 from microslip.foundation.errors import CacheError, InputError, SolverError
-from microslip.models.contact import StepFailure
 from microslip.solver.budget import Spent
 from microslip.sweeps import batches as sweep
 from microslip.sweeps import evaluate

@@ -178,7 +178,7 @@ METHOD = '''
 """Backward Euler under another name."""
 
 from microslip.solver.method import Method
-from microslip.models.path import EULER
+from microslip.contact.path import EULER
 
 METHOD = Method("my own way", integrator=EULER)
 '''

@@ -47,12 +47,12 @@ def test_an_edit_makes_again_what_it_concerns_and_comments_and_dates_do_not_coun
     for path in (project.folder / "src").rglob("*.py"):
         path.touch()
     (project.folder / "tiny.yaml").touch()
-    project.append("src/microslip/models/rings/influence.py", "\n# More to read.\n")
+    project.append("src/microslip/contact/influence.py", "\n# More to read.\n")
     project.append("src/microslip/report/figures/field.py", "\nSPARE = 1\n")
     assert project.planned() == {"draw": 1, "all": 1}
     project.append("src/microslip/datasets/sweep_dataset.py", "\nSPARE = 1\n")
     assert project.planned() == {"collect": 3, "draw": 6, "all": 1}
-    project.append("src/microslip/models/rings/influence.py", "\nSPARE = 1\n")
+    project.append("src/microslip/contact/influence.py", "\nSPARE = 1\n")
     assert project.planned() == ALL_JOBS
     shutil.rmtree(project.folder / "src")
     shutil.copytree(ROOT / "src", project.folder / "src", ignore=COMPILED)

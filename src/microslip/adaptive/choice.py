@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
+from microslip.contact.registry import MODELS
 from microslip.foundation.errors import InputError
-from microslip.models.registry import MODELS
 from microslip.motions.problem import Problem
 from microslip.pressures.hertz import HERTZ
 from microslip.solver.method import SHIPPED, Method
@@ -26,7 +26,7 @@ def choose_model(problem: Problem, model: str = "auto") -> str:
     problem : problem.Problem
         The problem.  At velocity 0 without a drive, the result is the static limit.
     model : str
-        "auto", or a name in models.registry.MODELS.
+        "auto", or a name in contact.registry.MODELS.
 
     Raises
     ------

@@ -9,11 +9,11 @@ import numpy as np
 from microslip.adaptive.checks import checked_problem
 from microslip.adaptive.choice import choose_model
 from microslip.adaptive.whole_disc import points_of, whole_disc
+from microslip.contact.contact import Contact, StepFailure, forward_slip, full_slip
+from microslip.contact.modes import PolarContact
+from microslip.contact.path import make_path
 from microslip.foundation.arguments import LARGEST, count, real
 from microslip.foundation.errors import InputError
-from microslip.models.contact import Contact, StepFailure, forward_slip, full_slip
-from microslip.models.path import make_path
-from microslip.models.polar.contact import PolarContact
 from microslip.motions.motion import Motion
 from microslip.motions.problem import Problem
 from microslip.pressures.hertz import HERTZ
@@ -109,7 +109,7 @@ def history(
     ------
     InputError
         If an argument is invalid.  The message names the argument.
-    microslip.models.contact.StepFailure
+    microslip.contact.contact.StepFailure
         If a step is not solved.
     """
     problem = checked_problem(motion, velocity, amplitude, pressure=pressure, poisson=poisson)
@@ -178,7 +178,7 @@ def traction_field(
     ------
     InputError
         If an argument is invalid or the motion is not "continuous-bore".
-    microslip.models.contact.StepFailure
+    microslip.contact.contact.StepFailure
         If no steady state is reached, or a step is not solved.
     """
     problem = checked_problem(motion, velocity, amplitude, poisson=poisson)

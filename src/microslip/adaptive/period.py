@@ -10,11 +10,11 @@ from microslip.adaptive.checks import checked_problem
 from microslip.adaptive.choice import choose_model
 from microslip.adaptive.history import ANGLES, STEP_TOLERANCE
 from microslip.adaptive.whole_disc import points_of, whole_disc
+from microslip.contact.contact import FORWARD, LATERAL, TORQUE, rigid_displacement
+from microslip.contact.modes import PolarContact
+from microslip.contact.path import Path
 from microslip.foundation.arguments import LARGEST, count
 from microslip.foundation.errors import InputError, SolverError
-from microslip.models.contact import FORWARD, LATERAL, TORQUE, rigid_displacement
-from microslip.models.path import Path
-from microslip.models.polar.contact import PolarContact
 from microslip.motions.motion import Motion
 from microslip.motions.problem import Problem
 from microslip.pressures.hertz import HERTZ

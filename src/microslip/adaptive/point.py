@@ -66,7 +66,7 @@ def solve(
     poisson : float
         Poisson's ratio, 0 to 0.5.
     model : str
-        "auto" or a name in models.registry.MODELS.
+        "auto" or a name in contact.registry.MODELS.
     tolerance : float or None
         Absolute tolerance of mu_macro.  Under a force, it is the tolerance of the velocity,
         relative for a velocity above 1.  If cells and steps are imposed, the tolerance can be None,

@@ -48,7 +48,7 @@ class Request:
     problem : problem.Problem
         The problem.
     model : str
-        Name in models.registry.MODELS.
+        Name in contact.registry.MODELS.
     chosen : bool
         Whether the requested model is "auto", so that a closed form can replace the model.
     method : str

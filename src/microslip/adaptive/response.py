@@ -16,14 +16,14 @@ import numpy as np
 from microslip.adaptive.choice import choose_model
 from microslip.adaptive.history import STARTS, tractions_at_start
 from microslip.adaptive.period import ON_BOUND
-from microslip.contacts.coulomb import project
+from microslip.contact.contact import Contact, March
+from microslip.contact.coulomb import project
+from microslip.contact.path import LONG_STROKE, Path, make_path
 from microslip.estimate.ladder import LOAD, ladder_for
 from microslip.estimate.refine import READING_SAFETY, SMALLEST_SHARE
 from microslip.estimate.richardson import WEIGHTS, extrapolate
 from microslip.foundation.arguments import SMALLEST_TOLERANCE, real
 from microslip.foundation.errors import InputError
-from microslip.models.contact import Contact, March
-from microslip.models.path import LONG_STROKE, Path, make_path
 from microslip.motions.problem import Problem
 from microslip.motions.samples import SampledPath
 from microslip.pressures.by_name import pressure_named

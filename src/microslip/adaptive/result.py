@@ -7,9 +7,9 @@ from collections.abc import Mapping
 from dataclasses import dataclass, fields
 from typing import Any
 
+from microslip.contact.registry import MODELS
 from microslip.estimate.estimate import SOURCES, Estimate
 from microslip.foundation.number_text import number_text
-from microslip.models.registry import MODELS
 from microslip.motions.by_name import motion_named
 from microslip.motions.problem import Problem
 from microslip.solver.effort import Effort

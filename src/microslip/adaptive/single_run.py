@@ -7,7 +7,7 @@ discretisation error.
 from __future__ import annotations
 
 from microslip.adaptive.choice import method_refusal
-from microslip.models.registry import MODELS
+from microslip.contact.registry import MODELS
 from microslip.motions.by_name import motion_named
 from microslip.motions.problem import Problem
 from microslip.pressures.by_name import pressure_named

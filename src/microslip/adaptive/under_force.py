@@ -13,8 +13,8 @@ from typing import NamedTuple
 
 import numpy as np
 
+from microslip.contact.registry import MODELS
 from microslip.foundation.errors import InputError
-from microslip.models.registry import MODELS
 from microslip.motions.drive import Drive
 from microslip.motions.motion import LOOP
 from microslip.motions.problem import Problem

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from microslip.models.polar.contact import PolarContact
+from microslip.contact.modes import PolarContact
 
 
 def points_of(contact: PolarContact) -> list[np.ndarray]:

@@ -18,12 +18,12 @@ from typing import NamedTuple
 
 import numpy as np
 
+from microslip.contact.contact import Contact
+from microslip.contact.path import LONG_STROKE
+from microslip.contact.registry import MODELS
 from microslip.estimate.richardson import ORDER
 from microslip.foundation.arguments import SMALLEST_TOLERANCE
 from microslip.foundation.errors import InputError
-from microslip.models.contact import Contact
-from microslip.models.path import LONG_STROKE
-from microslip.models.registry import MODELS
 from microslip.motions.problem import Problem
 from microslip.solver.discretise import Resolution, path_of
 from microslip.solver.static_limit import at_turning_points
@@ -161,7 +161,7 @@ def ladder_for(
     problem : problem.Problem
         The problem, already checked.
     model : str
-        Name in models.registry.MODELS.
+        Name in contact.registry.MODELS.
     tolerance : float
         Absolute tolerance of the friction.  If only the cells are imposed, it determines the steps.
         If only the steps are imposed, it determines the cells.

@@ -12,8 +12,8 @@ import math
 import time
 from typing import Any
 
+from microslip.contact.contact import Contact, March
 from microslip.foundation.errors import SolverError
-from microslip.models.contact import Contact, March
 from microslip.solver.effort import Effort
 
 
@@ -87,7 +87,7 @@ def _seconds() -> float:
 
 
 class _Metered:
-    """A contact (see models.contact.Contact) that counts its marches."""
+    """A contact (see contact.Contact) that counts its marches."""
 
     def __init__(self, contact: Contact, budget: Budget):
         self._contact: Any = contact  # not every contact has every method

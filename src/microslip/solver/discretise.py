@@ -9,8 +9,8 @@ from typing import Protocol
 
 import numpy as np
 
-from microslip.models.contact import Contact
-from microslip.models.path import (
+from microslip.contact.contact import Contact
+from microslip.contact.path import (
     SDIRK2,
     Integrator,
     Path,
@@ -19,8 +19,8 @@ from microslip.models.path import (
     turning_point_grading,
     turning_point_width,
 )
-from microslip.models.registry import MODELS
-from microslip.models.rings.mesh import Focus
+from microslip.contact.registry import MODELS
+from microslip.contact.rings import Focus
 from microslip.motions.problem import Problem
 
 WEAKEST_FOCUS, STRONGEST_FOCUS, STATIC_FOCUS = 0.3, 1.0 - 2.0**-6, 0.9
@@ -84,7 +84,7 @@ def contact_of(
         The problem.  If its normal load oscillates, the contact carries the load at the start of a
         period.
     model : str
-        Name in models.registry.MODELS.
+        Name in contact.registry.MODELS.
     resolution : Resolution
         Resolution of the model.
     focus : mesh.Focus or None

@@ -6,8 +6,8 @@ from typing import cast
 
 import numpy as np
 
-from microslip.models.contact import Contact, GrowingContact
-from microslip.models.path import Path
+from microslip.contact.contact import Contact, GrowingContact
+from microslip.contact.path import Path
 from microslip.motions.problem import Problem
 from microslip.solver.search import PeriodicState
 

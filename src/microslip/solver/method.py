@@ -10,8 +10,8 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 
-from microslip.models.contact import Contact
-from microslip.models.path import SDIRK2, Integrator
+from microslip.contact.contact import Contact
+from microslip.contact.path import SDIRK2, Integrator
 
 
 @dataclass(frozen=True)

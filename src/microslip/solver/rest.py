@@ -12,10 +12,9 @@ from typing import cast
 
 import numpy as np
 
-from microslip.models.contact import March, StepFailure, forward_slip
-from microslip.models.driven_body import Body
-from microslip.models.path import EULER, Path, make_path
-from microslip.models.system_contact import SystemContact
+from microslip.contact.contact import Body, March, StepFailure, forward_slip
+from microslip.contact.path import EULER, Path, make_path
+from microslip.contact.ring_contact import RingContact
 from microslip.motions.motion import HALF_PERIOD
 from microslip.motions.problem import Problem
 from microslip.solver.discretise import Resolution, path_of
@@ -54,7 +53,7 @@ def run_to_rest(
         The problem at velocity 0 with a Force below the static limit.  Its motion must be even, see
         under_force.is_even.
     model : str
-        Name in models.registry.MODELS of a model that supports drives.
+        Name in contact.registry.MODELS of a model that supports drives.
     resolution : discretise.Resolution
         Resolution of the model.
     tolerance : float
@@ -72,7 +71,7 @@ def run_to_rest(
         It is not converged if the contact does not come to rest or a step failed.
     """
     # or a contact wrapped to count its marches
-    contact = cast(SystemContact, settings.contact(problem, model, resolution))
+    contact = cast(RingContact, settings.contact(problem, model, resolution))
     assert problem.drive is not None and problem.drive.force is not None
     body = Body(0.0, 0.0, 0.0, problem.drive.force * problem.mean_load)
     return _Walk(problem, contact, resolution.steps, body).to_rest(tolerance)
@@ -81,7 +80,7 @@ def run_to_rest(
 class _Walk:
     """The march of a contact to its position at rest."""
 
-    def __init__(self, problem: Problem, contact: SystemContact, steps: int, body: Body):
+    def __init__(self, problem: Problem, contact: RingContact, steps: int, body: Body):
         self.problem, self.contact, self.steps, self.body = problem, contact, steps, body
         path = path_of(problem, contact, steps)
         self.map = PeriodMap(contact, path, mirror=problem.half_period_mirror)

@@ -8,13 +8,13 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from microslip.models.contact import Contact
+from microslip.contact.contact import Contact
 from microslip.solver.budget import Budget
 from microslip.solver.effort import Effort
 from microslip.solver.method import SHIPPED, Method
 
 if TYPE_CHECKING:
-    from microslip.models.rings.mesh import Focus
+    from microslip.contact.rings import Focus
     from microslip.motions.problem import Problem
 from microslip.solver.discretise import Resolution, contact_of
 

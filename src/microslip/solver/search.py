@@ -7,7 +7,7 @@ rate of the motion.  The last quantity is needed near the static limit, where th
 slowly that a small residual is no evidence of convergence.
 
 The state of a driven body includes two more numbers, its position x and rate x' (see
-contacts/drive.py).  In one period, unbalanced forces hardly change the state of a heavy body or of
+contact/march.py).  In one period, unbalanced forces hardly change the state of a heavy body or of
 a body on a soft spring.  So the map scales up the changes of x and x', as if the spring were
 stiffer and the body lighter, to match the stiffness of the contact.  The fixed point of the map
 stays the same.  A contact in full slip is much more compliant than a sticking contact.  Its
@@ -21,11 +21,10 @@ from typing import Any, NamedTuple, cast
 
 import numpy as np
 
-from microslip.contacts.coulomb import project
-from microslip.models.contact import Contact, DirectContact, March, StepFailure, energy_norm
-from microslip.models.driven_body import Body
-from microslip.models.path import Path
-from microslip.models.system_contact import SystemContact
+from microslip.contact.contact import Body, Contact, DirectContact, March, StepFailure, energy_norm
+from microslip.contact.coulomb import project
+from microslip.contact.path import Path
+from microslip.contact.ring_contact import RingContact
 from microslip.solver.anderson import DEPTH, accelerated, remember
 
 MOST_MARCHES = 200
@@ -215,7 +214,7 @@ class DrivenMap(PeriodMap):
 
     Parameters
     ----------
-    body : driven_body.Body
+    body : contact.Body
         The body and its drive.
     slope : float
         Largest rise of the mean forward force if the body advances by one unit of x per interval.
@@ -223,12 +222,12 @@ class DrivenMap(PeriodMap):
         See PeriodMap.
     """
 
-    contact: SystemContact
+    contact: RingContact
     driven = True
 
     def __init__(
         self,
-        contact: SystemContact,
+        contact: RingContact,
         path: Path,
         body: Body,
         drift_rate: DriftRate | None = None,

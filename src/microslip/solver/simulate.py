@@ -14,10 +14,9 @@ from typing import NamedTuple, cast
 
 import numpy as np
 
-from microslip.contacts.coulomb import project
-from microslip.models.contact import FORWARD, StepFailure, forces, forward_slip
-from microslip.models.driven_body import Body
-from microslip.models.system_contact import SystemContact
+from microslip.contact.contact import FORWARD, Body, StepFailure, forces, forward_slip
+from microslip.contact.coulomb import project
+from microslip.contact.ring_contact import RingContact
 from microslip.motions.problem import Problem
 from microslip.solver.discretise import Resolution, path_of
 from microslip.solver.effort import Effort
@@ -81,7 +80,7 @@ def simulate(
         The problem, already checked.  With a spring, its velocity is that of the spring's far end.
         Under a prescribed force, a velocity above 0 is an initial guess.
     model : str
-        Name in models.registry.MODELS.
+        Name in contact.registry.MODELS.
     resolution : discretise.Resolution
         Resolution of the model.
     tolerance : float
@@ -279,7 +278,7 @@ class _Prescribed(_Search):
 class _Driven(_Search):
     """Search under a prescribed force or on a spring."""
 
-    contact: SystemContact
+    contact: RingContact
     most_marches = DRIVEN_MARCHES
 
     @property
@@ -310,7 +309,7 @@ class _Driven(_Search):
             # 1 - mu decreases at most as fast as 1 / velocity^2, the rate at large velocities
             slope = 2.0 * (1.0 - start.friction) * full / (problem.drift * self.interval)
         mirror = problem.half_period_mirror
-        contact = cast(SystemContact, self.contact)  # or a contact that counts its marches
+        contact = cast(RingContact, self.contact)  # or a contact that counts its marches
         return DrivenMap(contact, self.path, self.body, drift_rate, mirror, slope)
 
     def starts(self, guess: Run | None) -> Iterator[Start]:

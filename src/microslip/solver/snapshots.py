@@ -7,9 +7,9 @@ from typing import NamedTuple, cast
 
 import numpy as np
 
-from microslip.contacts.coulomb import project
-from microslip.models.contact import Contact, GrowingContact, Guess
-from microslip.models.path import Path
+from microslip.contact.contact import Contact, GrowingContact, Guess
+from microslip.contact.coulomb import project
+from microslip.contact.path import Path
 
 
 class Frames(NamedTuple):

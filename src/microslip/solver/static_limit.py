@@ -20,8 +20,8 @@ from typing import NamedTuple, cast
 
 import numpy as np
 
-from microslip.models.contact import Contact, DirectContact, full_slip, rigid_displacement
-from microslip.models.path import EULER, Path, make_path
+from microslip.contact.contact import Contact, DirectContact, full_slip, rigid_displacement
+from microslip.contact.path import EULER, Path, make_path
 from microslip.motions.problem import Problem
 
 STEPS = 4

@@ -21,8 +21,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from microslip.models.contact import FORWARD, Contact
-from microslip.models.path import Path
+from microslip.contact.contact import FORWARD, Contact
+from microslip.contact.path import Path
 from microslip.motions.problem import Problem
 from microslip.solver.means import mean_forces
 from microslip.solver.search import Goal, PeriodicState, PeriodMap, find_periodic_state

@@ -7,8 +7,8 @@ from dataclasses import replace
 
 import numpy as np
 
-from microslip.models.contact import FORWARD, Contact, forces
-from microslip.models.rings.mesh import Focus
+from microslip.contact.contact import FORWARD, Contact, forces
+from microslip.contact.rings import Focus
 from microslip.motions.problem import Problem
 from microslip.solver.discretise import STRONGEST_FOCUS, Resolution, path_of
 from microslip.solver.effort import Effort

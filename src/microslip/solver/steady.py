@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from microslip.models.contact import FORWARD, TORQUE, Contact, energy_norm, forward_slip
-from microslip.models.path import EULER, make_path
+from microslip.contact.contact import FORWARD, TORQUE, Contact, energy_norm, forward_slip
+from microslip.contact.path import EULER, make_path
 from microslip.motions.problem import Problem
 from microslip.solver.effort import Effort
 from microslip.solver.run import Run

@@ -10,8 +10,8 @@ from collections.abc import Callable
 from dataclasses import replace
 from functools import lru_cache, partial
 
-from microslip.models.contact import StepFailure
-from microslip.models.rings.mesh import Focus
+from microslip.contact.contact import StepFailure
+from microslip.contact.rings import Focus
 from microslip.motions.problem import Problem
 from microslip.pressures.hertz import HERTZ
 from microslip.solver.budget import Budget
@@ -55,7 +55,7 @@ def edge_focus(
     problem : problem.Problem
         The problem.
     model : str
-        Name in models.registry.MODELS.
+        Name in contact.registry.MODELS.
     budget : budget.Budget or None
         Budget of the search.  None means unlimited.
     progress : callable or None

@@ -15,9 +15,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from microslip.contacts.coulomb import coulomb_residual, shrink
-from microslip.foundation.compiled import kernel
-from microslip.models.contact import (
+from microslip.contact.contact import (
     Contact,
     Guess,
     March,
@@ -25,7 +23,9 @@ from microslip.models.contact import (
     forces,
     rigid_displacement,
 )
-from microslip.models.path import Path
+from microslip.contact.coulomb import coulomb_residual, shrink
+from microslip.contact.path import Path
+from microslip.foundation.compiled import kernel
 
 FAR_FROM_SOLVED = 1e-2
 """Residual of a step, divided by mu F_z, above which the solver is considered diverged."""
@@ -79,7 +79,7 @@ def nothing(matrix: np.ndarray, scale: np.ndarray) -> float:
 
 
 class DenseContact:
-    """A contact (see models.contact.Contact) whose steps are solved by `solve`."""
+    """A contact (see contact.Contact) whose steps are solved by `solve`."""
 
     def __init__(
         self, contact: Contact, solve: Callable, prepare: Callable = nothing, **parameters: float

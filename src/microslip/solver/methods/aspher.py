@@ -26,9 +26,9 @@ import math
 
 import numpy as np
 
-from microslip.contacts.coulomb import project
-from microslip.models.path import EULER, Path
-from microslip.models.squares.convolution import square_convolution
+from microslip.contact.convolution import square_convolution
+from microslip.contact.coulomb import project
+from microslip.contact.path import EULER, Path
 from microslip.motions.problem import Problem
 from microslip.solver.discretise import Resolution, path_of
 from microslip.solver.effort import Effort

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from microslip.models.path import EULER
+from microslip.contact.path import EULER
 from microslip.solver.method import Method
 
 METHOD = Method("backward Euler, first order", integrator=EULER)

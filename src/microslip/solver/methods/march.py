@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from microslip.models.contact import StepFailure
+from microslip.contact.contact import StepFailure
 from microslip.solver.method import Method
 from microslip.solver.search import AT_REST, Goal, PeriodicState, PeriodMap, result_of
 

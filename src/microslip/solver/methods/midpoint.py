@@ -6,7 +6,7 @@ can exceed the friction bound.  The error of a step recurs in the next step with
 
 from __future__ import annotations
 
-from microslip.models.path import theta_method
+from microslip.contact.path import theta_method
 from microslip.solver.method import Method
 
 METHOD = Method("implicit midpoint rule, undamped", integrator=theta_method(0.5))

@@ -11,9 +11,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from microslip.models.contact import FORWARD, March, forward_slip
-from microslip.models.path import EULER, Path, make_path
-from microslip.models.squares.contact import CartesianContact
+from microslip.contact.contact import FORWARD, March, forward_slip
+from microslip.contact.path import EULER, Path, make_path
+from microslip.contact.squares import CartesianContact
 from microslip.motions.problem import Problem
 from microslip.solver.discretise import Resolution
 from microslip.solver.effort import Effort

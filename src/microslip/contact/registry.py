@@ -17,7 +17,7 @@ An exact model converges to the solution of the contact problem as cells and ste
 approximate model neglects elasticity, partial slip or the interaction of points, whatever its
 resolution.
 
-Every model has the interface `models.contact.Contact`.  To add a model, add a file to this folder
+Every model has the interface `contact.Contact`.  To add a model, add a file to this folder
 and an entry to `MODELS`.  A model is imported when its first contact is built, because compiled
 code takes a while to load and closed forms do not need it.
 """
@@ -29,8 +29,8 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from microslip.models.contact import Contact
-    from microslip.models.rings.mesh import Focus
+    from microslip.contact.contact import Contact
+    from microslip.contact.rings import Focus
     from microslip.motions.problem import Problem
 
 
@@ -116,37 +116,37 @@ _NO_ROTATION = _any_of(_refuse_rotation, _refuse_pulsation)
 
 
 def _rigid(problem: Problem, cells: int, angles: int, focus: Focus | float | None) -> Contact:
-    from microslip.models.reduced.rigid import RigidContact
+    from microslip.contact.reduced import RigidContact
 
     return RigidContact(cells, angles, problem.motion.rotates, problem.pressure)
 
 
 def _slider(problem: Problem, cells: int, angles: int, focus: Focus | float | None) -> Contact:
-    from microslip.models.reduced.slider import slider_contact
+    from microslip.contact.reduced import slider_contact
 
     return slider_contact()
 
 
 def _dahl(problem: Problem, cells: int, angles: int, focus: Focus | float | None) -> Contact:
-    from microslip.models.reduced.dahl import DahlContact
+    from microslip.contact.reduced import DahlContact
 
     return DahlContact(problem.pressure.stiffness)
 
 
 def _mdr(problem: Problem, cells: int, angles: int, focus: Focus | float | None) -> Contact:
-    from microslip.models.reduced.mdr import mdr_contact
+    from microslip.contact.reduced import mdr_contact
 
     return mdr_contact(cells, focus, problem.pressure)
 
 
 def _radial(problem: Problem, cells: int, angles: int, focus: Focus | float | None) -> Contact:
-    from microslip.models.rings.contact import RadialContact
+    from microslip.contact.ring_contact import RadialContact
 
     return RadialContact.resolved(cells, focus, problem.pressure)
 
 
 def _polar(problem: Problem, cells: int, angles: int, focus: Focus | float | None) -> Contact:
-    from microslip.models.polar.contact import PolarContact
+    from microslip.contact.modes import PolarContact
 
     motion, whole = problem.motion, not problem.motion.half_disc
     place = (problem.poisson, focus, problem.pressure)
@@ -154,8 +154,8 @@ def _polar(problem: Problem, cells: int, angles: int, focus: Focus | float | Non
 
 
 def _cartesian(problem: Problem, cells: int, angles: int, focus: Focus | float | None) -> Contact:
-    from microslip.models.squares import half
-    from microslip.models.squares.contact import CartesianContact
+    from microslip.contact import half
+    from microslip.contact.squares import CartesianContact
 
     symmetry = ""  # symmetry of the tractions, if the pressure has the same one
     if problem.motion.half_disc:

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from microslip.contacts.lanes import fused
+from microslip.contact.operators import fused
 from microslip.foundation.compiled import kernel
 
 Parts = tuple[np.ndarray, np.ndarray]

@@ -17,10 +17,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from microslip.contacts.operators import operator
+from microslip.contact import half, quarter
+from microslip.contact.transform import backward, forward
 from microslip.foundation.compiled import kernel
-from microslip.models.squares import half, quarter
-from microslip.models.squares.transform import backward, forward
 from microslip.theory.hertz import G_STAR
 
 
@@ -144,7 +143,7 @@ def influence(
     """Compute the influence coefficients for the traction and for its complex conjugate, (P, P)
     each.
 
-    The kernels of rings/influence.py are integrated over a cell in closed form, and evaluated at
+    The kernels of influence.py are integrated over a cell in closed form, and evaluated at
     the centres of cells.  Units are u_lim per unit of traction.  The first axis is the forward
     offset, and the second axis is the lateral offset.  Negative offsets are wrapped around.
     """
@@ -216,62 +215,6 @@ def convolve(operator: Convolution, scratch: tuple, q: np.ndarray, out: np.ndarr
     _turn_back(operator, columns, second, first)
     backward(first[0], first[1], columns, radices, roots)
     _gather(operator, first, out)
-
-
-class Convolved(NamedTuple):
-    """The operator A on fields of one or several equal contacts of squares.
-
-    Attributes
-    ----------
-    convolution : Convolution
-        Convolution of each contact.
-    extents : np.ndarray, shape (contacts,)
-        u_lim of each contact divided by u_lim of the body.
-    first, second : np.ndarray
-        Scratch arrays, see `workspace`.
-    traction, displacement : np.ndarray, shape (2, rows, columns)
-        Scratch arrays.
-    """
-
-    convolution: Convolution
-    extents: np.ndarray
-    first: np.ndarray
-    second: np.ndarray
-    traction: np.ndarray
-    displacement: np.ndarray
-
-    def own(self) -> Convolved:
-        """Return a copy of this operator with separate scratch arrays."""
-        return convolved(self.convolution, *self.traction.shape[1:])._replace(extents=self.extents)
-
-
-def convolved(convolution: Convolution, rows: int, columns: int) -> Convolved:
-    """Create the operator of one contact on fields of shape (2, rows, columns), with scratch
-    arrays."""
-    scratch = np.empty((2, 2, rows, columns))
-    return Convolved(convolution, np.ones(1), *workspace(convolution), scratch[0], scratch[1])
-
-
-@operator(Convolved)
-@kernel
-def apply_convolution(
-    convolved: Convolved, number: int, field: np.ndarray, image: np.ndarray
-) -> None:
-    """Fill `image` with A applied to `field`, see operators.operator."""
-    scratch = (convolved.first, convolved.second)
-    traction, displacement = convolved.traction, convolved.displacement
-    points = traction[0].size
-    for contact in range(len(convolved.extents)):
-        first, extent = contact * points, convolved.extents[contact]
-        for c in range(2):
-            squares = traction[c].ravel()
-            for i in range(points):
-                squares[i] = field[c, first + i]
-        convolve(convolved.convolution, scratch, traction, displacement)
-        for c in range(2):
-            squares = displacement[c].ravel()
-            for i in range(points):
-                image[c, first + i] = extent * squares[i]
 
 
 @kernel

@@ -156,8 +156,8 @@ class Path:
 
     @cached_property
     def motion(self) -> np.ndarray:
-        """Displacement at the start and at every stage, (1 + steps stages, contacts, 3)."""
-        return np.concatenate([self.positions[:1], self.stages.reshape(-1, 3)])[:, None]
+        """Displacement at the start and at every stage, (1 + steps stages, 3)."""
+        return np.concatenate([self.positions[:1], self.stages.reshape(-1, 3)])
 
     @cached_property
     def share(self) -> np.ndarray:

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, field
 from typing import Protocol
 
 import numpy as np
 
+from microslip.contact.path import Path
 from microslip.foundation.errors import SolverError
-from microslip.models.path import Path
 
 FORWARD, LATERAL, TORQUE = range(3)
 """Columns of the forces of a march."""
@@ -50,6 +51,40 @@ class March:
     body: np.ndarray = field(default_factory=lambda: np.empty((0, 2)))
 
 
+@dataclass(frozen=True)
+class Body:
+    """A driven body and its drive, in working units.
+
+    Attributes
+    ----------
+    stiffness, damping, mass : float
+        Stiffness k, damping c and mass m in units of mu F_z and u_lim, with the phase as time. All
+        are 0 for a massless body driven by a constant force.
+    load : float
+        Constant force divided by mu F_z.
+    """
+
+    stiffness: float
+    damping: float
+    mass: float
+    load: float
+
+    @property
+    def remembers(self) -> bool:
+        """Whether x and x' are part of the state. Otherwise x is computed from the tractions."""
+        return self.mass > 0.0 or self.damping > 0.0
+
+    def along(self, path: Path, start: np.ndarray | None) -> tuple[np.ndarray, np.ndarray]:
+        """Return the arguments `drive` and `lengths` of march.march for a path.
+
+        start: x and x' at the start of the path, shape (2,); None for zeros.
+        """
+        share = 1.0 / (1.0 + path.carry[-1].sum())  # gamma: the last row of a_ij sums to 1
+        place, rate = (0.0, 0.0) if start is None else start
+        numbers = self.stiffness, self.damping, self.mass, self.load, place, rate
+        return np.array(numbers, dtype=float), share * np.diff(path.phase)
+
+
 class Guess(Protocol):
     """Source of initial guesses for a march: a March, or another object with `fields`."""
 
@@ -69,7 +104,7 @@ class Contact(Protocol):
     """A discretised contact under a pressure.
 
     A contact whose normal load can change also has `at_indentation`, `bounds` and `bounds_along`
-    (see RadialContact).
+    (see RingContact).
 
     Attributes
     ----------
@@ -112,6 +147,10 @@ class Contact(Protocol):
 
     def displacement(self, state: np.ndarray) -> np.ndarray:
         """Elastic displacement A q of each point under tractions q, with the shape of the state."""
+
+    def energy(self, change: np.ndarray) -> float:
+        """Twice the elastic energy of tractions, <q, A q>."""
+        return float(np.vdot(self.weight * change, self.displacement(change)))
 
     def prolonged(self, state: np.ndarray) -> np.ndarray | None:
         """Interpolate tractions from a coarser mesh to the points of this contact.  Returns None if
@@ -168,8 +207,7 @@ class GrowingContact(Contact, Protocol):
 def energy_norm(contact: Contact, change: np.ndarray) -> float:
     """Upper bound on the change of force due to a change of tractions, divided by mu F_z.  It
     follows from the elastic energy: |dF| <= sqrt(stiffness <dq, A dq>)."""
-    energy = np.vdot(contact.weight * change, contact.displacement(change))
-    return float(np.sqrt(contact.stiffness * max(energy, 0.0)))
+    return math.sqrt(contact.stiffness * max(contact.energy(change), 0.0))
 
 
 def full_slip(contact: Contact, forward: np.ndarray, lateral: np.ndarray) -> np.ndarray:

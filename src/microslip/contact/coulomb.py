@@ -62,5 +62,4 @@ def coulomb_residual(
 
 def project(q: np.ndarray, bound: np.ndarray) -> np.ndarray:
     """Project tractions q (2, ...) onto |q| <= bound; bound broadcasts to the shape of q[0]."""
-    size = np.hypot(q[0], q[1])
-    return q * np.where(size > bound, bound / np.maximum(size, 1e-300), 1.0)
+    return q * np.minimum(1.0, bound / np.maximum(np.hypot(q[0], q[1]), 1e-300))

@@ -1,0 +1,271 @@
+"""Contact of rings with angular modes, for rotations at any nu and for translations at nu > 0.
+
+Points are on rings at the angles theta_j = (j + 1/2) pi / M from the lateral axis.  Only one half
+of the disc is resolved; the other half follows from symmetry:
+
+- for rotations, a reflection across the lateral axis (forward traction even, lateral traction odd);
+- for translations, the point symmetry traction(-z) = traction(z), so that all modes are even.
+
+A motion that combines a rotation and a translation has neither symmetry, so the whole disc is
+resolved.
+
+Coulomb's law holds at the points.  The influence operator is block-diagonal in the angular modes.
+At nu = 0, the forward tractions of a mode cause only forward displacements, and the lateral
+tractions cause only lateral displacements.  Both have the same ring matrix.  At nu > 0, the complex
+waves e^{i m theta} of forward - i lateral are coupled in pairs m and 2 - m (see influence.py).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from functools import lru_cache
+
+import numpy as np
+
+from microslip.contact.contact import LATERAL, MIRROR, TORQUE
+from microslip.contact.influence import ring_influence
+from microslip.contact.ring_contact import Growth, RingContact, load_on_rings
+from microslip.contact.rings import Focus, Rings, make_rings
+from microslip.pressures.hertz import HERTZ
+from microslip.pressures.pressure import Pressure
+
+FEWEST_PROLONGED = 16
+"""Smallest number of rings at which tractions from a coarser mesh are a better initial guess than
+the static limit."""
+SHARED_MODES = (9, 17, 33)
+"""Possible numbers of modes with averaged kernels.  Runs at 4, 6 and 8 angles share the same
+averages."""
+Wave = tuple[int, int]
+"""Number m of a wave and its part (0 or 1), see `_pairs`."""
+
+WHOLE, ROTATION, TRANSLATION = "whole disc", "mirror image", "half turn"
+"""Symmetry by which the tractions on half of the disc determine those on the other half.  WHOLE
+means that there is no such symmetry."""
+
+
+def _single_waves(
+    theta: np.ndarray, angles: int, symmetry: str
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Waves at nu = 0: their numbers m, and their forward and lateral values, (waves, points).
+
+    For a rotation, forward tractions are cosines and lateral tractions are sines.  For a
+    translation, both are cosines and sines with even numbers m.
+    """
+    numbers = np.arange(angles + 1)
+    cosines, sines = np.cos(np.outer(numbers, theta)), np.sin(np.outer(numbers, theta))
+    cosines[angles] = 0.0  # its exact value at the points
+    if symmetry == ROTATION:
+        return numbers, cosines, sines
+    step = 2 if symmetry == TRANSLATION else 1
+    numbers = np.concatenate([numbers[:angles:step], numbers[step::step]])
+    waves = np.concatenate([cosines[:angles:step], sines[step::step]])
+    return numbers, waves, waves
+
+
+def _pairs(angles: int, symmetry: str) -> tuple[list[tuple[Wave, Wave]], list[tuple[Wave, Wave]]]:
+    """Pairs of waves at nu > 0: first the coupled pairs, then the pairs without coupling.
+
+    A wave is (m, part): part 0 is e^{i m theta}, and part 1 is i e^{i m theta}.  The shortest waves
+    of a whole disc or of a rotation are not coupled, because their cosine is 0 at all points.
+    """
+    step = 2 if symmetry == TRANSLATION else 1
+    parts = (0,) if symmetry == ROTATION else (0, 1)
+    highest = angles if symmetry == TRANSLATION else angles - 1
+    numbers = range(2 - angles if symmetry == TRANSLATION else 1 - angles, angles + 1, step)
+    coupled, single = [], []
+    for part in parts:
+        for m in numbers:
+            if m > highest or 2 - m not in numbers or 2 - m > highest or m == 1:
+                single.append((m, part))
+            elif m > 1:
+                coupled.append(((m, part), (2 - m, part)))
+    return coupled, list(zip(single[::2], single[1::2], strict=True))
+
+
+def _coupled_matrices(
+    pairs: Sequence[tuple[Wave, Wave]],
+    single: Sequence[tuple[Wave, Wave]],
+    influence: tuple[np.ndarray, np.ndarray],
+    ratio: np.ndarray,
+    kappa: float,
+) -> np.ndarray:
+    """Matrices (pairs, 2, n, 2, n) of coupled pairs and of pairs without coupling."""
+    near, far = influence
+    n = near.shape[1]
+    out = np.zeros((len(pairs) + len(single), 2, n, 2, n))
+    for block, ((m, part), (other, _)) in zip(out, pairs, strict=False):
+        cross = (kappa if part else -kappa) * far[m - 1]
+        block[0, :, 0], block[1, :, 1] = near[m], near[abs(other)]
+        block[0, :, 1], block[1, :, 0] = cross, cross.T * ratio.T
+    for block, waves in zip(out[len(pairs) :], single, strict=True):
+        for k, (m, part) in enumerate(waves):
+            block[k, :, k] = near[abs(m)]
+            if m == 1:
+                sign = kappa if part else -kappa
+                block[k, :, k] += 0.5 * sign * (far[0] + far[0].T * ratio.T)
+    return out
+
+
+def _modes_to_average(angles: int) -> int:
+    """Number of modes with averaged kernels, at least angles + 1; see SHARED_MODES."""
+    return next((most for most in SHARED_MODES if angles < most), angles + 1)
+
+
+@lru_cache(maxsize=4)
+def _shared_influence(
+    psi: tuple[float, ...], n_modes: int, coupled: bool, modulus: float
+) -> tuple[np.ndarray, np.ndarray]:
+    """Influence matrices of modes on rings with the edges `psi`, see ring_influence."""
+    return ring_influence(np.array(psi), n_modes, coupled, modulus=modulus)
+
+
+def influence_modes(
+    rings: Rings, angles: int, symmetry: str, poisson: float, modulus: float
+) -> tuple[tuple[np.ndarray, np.ndarray, np.ndarray], np.ndarray]:
+    """Compute the influence operator for points on rings.
+
+    Parameters
+    ----------
+    rings : rings.Rings
+        Mesh of n rings.
+    angles : int
+        Number of points on half of each ring.
+    symmetry : str
+        WHOLE, ROTATION or TRANSLATION.
+    poisson, modulus : float
+        Poisson's ratio, and G* in working units.
+
+    Returns
+    -------
+    waves : tuple of np.ndarray
+        The argument `waves` of ring_contact.RingContact.
+    influence : np.ndarray, shape (n, n)
+        Ring matrix of the mode 0.
+    """
+    kappa = poisson / (2.0 - poisson)
+    influence = near, _ = _shared_influence(
+        tuple(rings.psi), _modes_to_average(angles), poisson > 0.0, modulus
+    )
+    points = 2 * angles if symmetry == WHOLE else angles
+    theta = (np.arange(points) + 0.5) * np.pi / angles
+    if kappa == 0.0:
+        numbers, forward, lateral = _single_waves(theta, angles, symmetry)
+        to_points, matrices = np.stack([forward.T, lateral.T]), near[numbers]
+    else:
+        pairs, single = _pairs(angles, symmetry)
+        ratio = rings.area[:, None] / rings.area[None, :]  # weights of the transpose
+        matrices = _coupled_matrices(pairs, single, influence, ratio, kappa)
+        matrices = matrices.reshape(len(matrices), 2 * len(ratio), -1)
+        waves = [wave for pair in (*pairs, *single) for wave in pair]
+        values = np.array([1j**part * np.exp(1j * m * theta) for m, part in waves])
+        values.real[
+            np.array([m == angles and symmetry != TRANSLATION and part == 0 for m, part in waves])
+        ] = 0.0
+        to_points = np.concatenate([values.real, -values.imag], axis=1).T[None]
+    to_waves = np.ascontiguousarray(np.linalg.pinv(to_points))
+    return (to_waves, np.ascontiguousarray(to_points), matrices), near[0]
+
+
+class PolarContact(RingContact):
+    """Contact of points on rings and at angles (see contact.Contact); states have the shape
+    (2, angles, cells).
+
+    Parameters
+    ----------
+    cells, angles : int
+        Number of rings, and number of points of each ring on half the disc.  The latter must be
+        even.
+    rotates : bool
+        True for a rotation, which has mirror symmetry; False for a translation.
+    poisson : float
+        Poisson's ratio.
+    focus : rings.Focus, float or None
+        Radii towards which the rings are graded.
+    pressure : pressure.Pressure
+        Pressure that depends on the radius alone.
+    whole : bool
+        Whether the whole disc is resolved; states then have shape (2, 2 angles, cells).
+
+    Raises
+    ------
+    ValueError
+        If `angles` is odd or below 2.
+    """
+
+    def __init__(
+        self,
+        cells: int,
+        angles: int,
+        rotates: bool,
+        poisson: float = 0.0,
+        focus: Focus | float | None = None,
+        pressure: Pressure = HERTZ,
+        *,
+        whole: bool = False,
+    ):
+        if angles < 2 or angles % 2:
+            raise ValueError(f"angles = {angles}: allowed is an even number of at least 2")
+        self.rings = rings = make_rings(cells, focus, pressure)
+        self.rotates, self.whole, rows = rotates, whole, 2 * angles if whole else angles
+        self._theta = theta = (np.arange(rows) + 0.5) * np.pi / angles
+        symmetry = WHOLE if whole else ROTATION if rotates else TRANSLATION
+        waves, influence = influence_modes(rings, angles, symmetry, poisson, pressure.G_star)
+        positions = np.stack([np.sin(theta), np.cos(theta)])[..., None] * rings.radius
+        growth = Growth(pressure, np.sin(rings.psi), load_on_rings, 1, 2)
+        super().__init__(
+            influence,
+            rings.bound,
+            rings.area,
+            positions,
+            stiffness=pressure.stiffness,
+            waves=waves,
+            growth=growth,
+        )
+        self.mirror_rows = np.roll(np.arange(rows)[::-1], angles if whole else 0)
+        self.resultants = np.ones(3)
+        if not whole:  # the other half of the disc cancels this force
+            self.resultants[LATERAL if rotates else TORQUE] = 0.0
+        self._made_of = focus, pressure
+
+    @staticmethod
+    @lru_cache(maxsize=32)
+    def resolved(
+        cells: int,
+        angles: int,
+        rotates: bool,
+        poisson: float,
+        focus: Focus | float | None,
+        pressure: Pressure,
+        *,
+        whole: bool,
+    ) -> PolarContact:
+        """Return the contact with these arguments.  Calls with equal arguments return the same
+        object, which must not be modified."""
+        return PolarContact(cells, angles, rotates, poisson, focus, pressure, whole=whole)
+
+    def prolonged(self, state: np.ndarray) -> np.ndarray | None:
+        """Interpolate tractions (2, angles, cells) from a coarser mesh to the points of this
+        contact.
+
+        Tractions are interpolated as fractions of the friction bound.  Returns None for
+        translations, whole discs, changing loads and fewer than FEWEST_PROLONGED rings.
+        """
+        few = len(self.rings.radius) < FEWEST_PROLONGED
+        grows = hasattr(self, "_joins")
+        if few or grows or not self.rotates or self.whole:
+            return None
+        focus, pressure = self._made_of
+        rings, count = make_rings(state.shape[2], focus, pressure), state.shape[1]
+        share = state / rings.bound
+        # extend the angles beyond the lateral axis, across which forward tractions are even
+        beyond = share[:, [0, -1]] * MIRROR
+        share = np.concatenate([beyond[:, :1], share, beyond[:, 1:]], axis=1)
+        angles = (np.arange(-1, count + 1) + 0.5) / count
+        share = _interpolated(self._theta / np.pi, angles, share, axis=1)
+        return _interpolated(self.rings.radius, rings.radius, share, axis=2) * self.bound
+
+
+def _interpolated(x: np.ndarray, nodes: np.ndarray, values: np.ndarray, axis: int) -> np.ndarray:
+    """Interpolate linearly along an axis, from values at the nodes to the points x.  Values are
+    constant beyond the nodes."""
+    return np.apply_along_axis(lambda line: np.interp(x, nodes, line), axis, values)

@@ -1,0 +1,186 @@
+"""Models that neglect elasticity, partial slip or the interaction of points.
+
+rigid: every point slips in the direction of its rigid velocity at every instant.  For a
+translation, it is the rigid slider of Eq 6.  For a rotation, it is the quasi-steady contact of Eqs
+21, 22 and 29.  The model has no memory, so a march only evaluates the forces at each phase.
+
+slider: one friction element behind an isotropic spring (Benad et al. 2019).  Like the whole
+contact, the element slides once the displacement exceeds u_lim, so the dimensionless groups are the
+same.  The model has no partial slip.  It is accurate and cheap well above the static limit; near
+this limit, its friction is that of Eq 7.
+
+dahl: the Dahl model in two directions (Tsai and Tseng 2005),
+
+    dF/dt = k (dw/dt - |dw/dt| F),        |F| <= 1,
+
+where k is the stiffness of the contact without slip.  The model has the stiffness and the friction
+bound of the contact, but it never sticks.  So any vibration reduces the friction to 0 as the
+velocity tends to 0.  Along a straight segment of the path, the equation has a closed-form solution,
+which is linear in the initial force.
+
+mdr: the method of dimensionality reduction, a row of independent springs with friction.  It is
+exact for tangential loading of an axisymmetric indenter in one direction (Cattaneo and Mindlin).
+For slip in two directions, it is an approximation, because the springs do not interact.  Springs at
+-a < x < a have the stiffness G* and the friction bound G* (1 - h(x)) per unit length.  Here h(x) is
+the depth for the contact radius x divided by the reference depth.  So the spring at x begins to
+slide at the displacement (1 - h) u_lim, which is (1 - x^2) u_lim for a sphere.  At d times the
+reference depth, it begins to slide at (d - h) u_lim if d > h.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from microslip.contact import contact
+from microslip.contact.path import Path
+from microslip.contact.ring_contact import Growth, RadialContact
+from microslip.contact.rings import Focus, make_rings
+from microslip.pressures.hertz import HERTZ
+from microslip.pressures.pressure import Pressure
+
+GRADING = 0.98
+"""Grading of the steps towards the turning points.  At a turning point, the direction of slip
+reverses within a phase of about v/y."""
+
+
+class RigidContact(contact.Contact):
+    """Rigid contact with points on rings and at angles on half the disc, or with a single point for
+    a translation (see contact.contact)."""
+
+    direct = True
+    sticks = False
+    grading = GRADING
+
+    def __init__(self, cells: int, angles: int, rotates: bool, pressure: Pressure = HERTZ):
+        self.stiffness = pressure.stiffness
+        self.angles = angles if rotates else 1
+        if rotates:
+            rings = make_rings(cells, pressure=pressure)
+            theta = (np.arange(angles) + 0.5) * np.pi / angles
+            self.lateral_position = np.cos(theta)[:, None] * rings.radius
+            self.forward_position = np.sin(theta)[:, None] * rings.radius
+            self.bound, self.weight = rings.bound, rings.area / angles
+        else:
+            self.lateral_position = self.forward_position = np.zeros((1, 1))
+            self.bound = self.weight = np.ones(1)
+        self.compliance = np.ones_like(self.bound)
+
+    def displacement(self, state: np.ndarray) -> np.ndarray:
+        """Elastic displacement of each point, which is 0."""
+        return np.zeros_like(state)
+
+    def mirrored(self, state: np.ndarray) -> np.ndarray:
+        """Return the mirror image of a state under lateral -> -lateral.  This negates lateral
+        tractions."""
+        return state[:, ::-1, :] * contact.MIRROR
+
+    def periodic_state(self, path: Path, mirror: bool) -> np.ndarray:
+        """Return the state after one march.  It does not depend on the initial state."""
+        end = self.march(path, np.zeros((2, *self.forward_position.shape)), 0.0).state
+        return self.mirrored(end) if mirror else end
+
+    def march(
+        self,
+        path: Path,
+        state: np.ndarray,
+        tolerance: float,
+        previous: contact.Guess | None = None,
+    ) -> contact.March:
+        """Compute the forces under full slip in the direction of the velocity at each phase of the
+        path."""
+        velocity = np.gradient(path.positions, path.phase, axis=0, edge_order=2)
+        forces = np.empty((path.steps + 1, 3))
+        for k, rate in enumerate(velocity):
+            q = contact.full_slip(self, *contact.rigid_displacement(self, rate))
+            forces[k] = contact.forces(self, q)
+        if self.angles > 1:
+            forces[:, contact.LATERAL] = 0.0  # the other half of the disc cancels it
+        return contact.March(q, forces, 0.0, 0, path.steps + 1)
+
+
+class DahlContact(contact.Contact):
+    """A single bristle (see contact.contact.Contact); states have shape (2, 1, 1)."""
+
+    direct = True
+    sticks = False  # the static limit of friction is 0
+    angles = 1
+
+    def __init__(self, stiffness: float):
+        self.stiffness = stiffness
+        self.bound = self.weight = np.ones(1)
+        self.compliance = np.full(1, 1.0 / stiffness)
+        self.forward_position = self.lateral_position = np.zeros((1, 1))
+
+    def displacement(self, state: np.ndarray) -> np.ndarray:
+        """Deflection of the bristle, shape (2, 1, 1)."""
+        return state / self.stiffness
+
+    def mirrored(self, state: np.ndarray) -> np.ndarray:
+        """Return the state with its lateral traction negated."""
+        return state * contact.MIRROR
+
+    def periodic_state(self, path: Path, mirror: bool) -> np.ndarray:
+        """Solve the linear equation q = image(march(q)) for the two components."""
+        image = np.diag([1.0, -1.0]) if mirror else np.eye(2)
+        starts = np.vstack([np.zeros(2), np.eye(2)]).reshape(3, 2, 1, 1)
+        ends = np.array([image @ self.march(path, q, 0.0).state.ravel() for q in starts])
+        matrix = np.eye(2) - (ends[1:] - ends[0]).T
+        return np.linalg.solve(matrix, ends[0]).reshape(2, 1, 1)
+
+    def march(
+        self,
+        path: Path,
+        state: np.ndarray,
+        tolerance: float,
+        previous: contact.Guess | None = None,
+    ) -> contact.March:
+        """Integrate along straight lines between the phases of the path (translations only)."""
+        moves = np.diff(path.positions[:, :2], axis=0)
+        lengths = np.hypot(*moves.T)
+        forces = np.zeros((path.steps + 1, 3))
+        forces[0, :2] = traction = state.ravel()
+        for k, (move, length) in enumerate(zip(moves, lengths, strict=True)):
+            if length > 0.0:
+                end = move / length
+                traction = end + (traction - end) * np.exp(-self.stiffness * length)
+            forces[k + 1, :2] = traction
+        return contact.March(
+            state=traction.reshape(2, 1, 1),
+            forces=forces,
+            residual=0.0,
+            iterations=0,
+            solves=path.steps,
+        )
+
+
+def load_on_springs(pressure: Pressure, edges: np.ndarray, depth: np.ndarray) -> np.ndarray:
+    """Load of the springs within |x| < edges in the method of dimensionality reduction, (k, n + 1).
+
+    The spring at x carries G* (d - h(x)) per length at the depth d, where h(x) is the depth for the
+    contact radius x.  The integral of x h' is the load of a contact of this radius.
+    """
+    inside = np.minimum(edges, pressure.radius(depth)[:, None])
+    compression = depth[:, None] - pressure.depth(inside)
+    return pressure.stiffness * inside * compression + pressure.load(inside, inside)
+
+
+def mdr_contact(
+    cells: int, focus: Focus | float | None = None, pressure: Pressure = HERTZ
+) -> RadialContact:
+    """Create a contact of `cells` springs on 0 < x < 1 and their mirror images, graded towards
+    `focus`.
+
+    `bound` is a force per unit length.  The weight of a spring is its length plus the length of its
+    mirror image.
+    """
+    edges = np.sin(make_rings(cells, focus).psi)
+    length = np.diff(edges)
+    bound = 0.5 * np.diff(load_on_springs(pressure, edges, np.ones(1))[0]) / length
+    influence = np.eye(cells) / pressure.G_star
+    growth = Growth(pressure, edges, load_on_springs, influence_power=0, weight_power=1)
+    return RadialContact(influence, bound, 2.0 * length, pressure.stiffness, growth)
+
+
+def slider_contact() -> RadialContact:
+    """Create a contact of one point with unit friction bound and unit compliance."""
+    return RadialContact(np.ones((1, 1)), np.ones(1), np.ones(1))

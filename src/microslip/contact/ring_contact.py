@@ -1,0 +1,342 @@
+"""Contacts of points on rings, whose march is compiled (march.py)."""
+
+from __future__ import annotations
+
+import signal
+from collections.abc import Callable
+from copy import copy
+from functools import cached_property, lru_cache
+from typing import NamedTuple
+
+import numpy as np
+
+from microslip.contact.contact import MIRROR, Body, Contact, Guess, March
+from microslip.contact.influence import ring_influence
+from microslip.contact.march import march, strain_energy
+from microslip.contact.operators import LANES, multiply
+from microslip.contact.path import Path
+from microslip.contact.rings import Focus, make_rings
+from microslip.contact.splitting import PENALTIES, best_penalty
+from microslip.pressures.hertz import HERTZ
+from microslip.pressures.pressure import Pressure
+
+
+def load_on_rings(pressure: Pressure, edges: np.ndarray, depth: np.ndarray) -> np.ndarray:
+    """Load within each radius of `edges` (n + 1,) at each depth (k,), shape (k, n + 1).
+
+    The depth is the indentation divided by its value in the reference state, in which the contact
+    radius is a and the load is F_z.
+    """
+    return pressure.load(edges, pressure.radius(depth)[:, None])
+
+
+class Growth(NamedTuple):
+    """Scaling of rings or springs from the reference contact to a contact of another size.
+
+    Attributes
+    ----------
+    pressure : pressure.Pressure
+        Pressure of an axisymmetric indenter.
+    edges : np.ndarray, shape (n + 1,)
+        Edges of the rings or springs in the reference contact, 0 to 1.
+    load_within : callable
+        load_within(pressure, edges, depth) -> load within each edge, (k, n + 1).
+    influence_power, weight_power : int
+        Powers of the contact radius to which influence and weights are proportional.
+    """
+
+    pressure: Pressure
+    edges: np.ndarray
+    load_within: Callable
+    influence_power: int
+    weight_power: int
+
+
+class RingContact(Contact):
+    """Points on rings and at angles (see contact.Contact); states have shape (2, rows, cells).
+
+    Parameters
+    ----------
+    influence : np.ndarray, shape (cells, cells)
+        Matrix that maps mean ring tractions to mean ring displacements, for tractions that do not
+        depend on the angle.  It becomes symmetric if its rows are multiplied by `area`.
+    bound, area : np.ndarray, shape (cells,)
+        Friction bound and area of each ring.
+    positions : np.ndarray, shape (2, rows, cells)
+        Forward and lateral coordinates of the points, divided by a.
+    stiffness : float
+        See contact.Contact.
+    waves : tuple of np.ndarray
+        to_waves, to_points and matrices (matrices, columns, columns) of the operator A, see
+        operators.multiply.  The matrices are not transposed, and their columns are not padded.
+    growth : Growth or None
+        Scaling of the contact with the depth; None if the normal load is constant.
+    """
+
+    sticks = True
+    radius = 1.0
+    edges: np.ndarray | None = None
+    resultants = np.ones(3)
+    mirror_rows: np.ndarray | None = None
+    _joins: np.ndarray
+
+    def __init__(
+        self,
+        influence: np.ndarray,
+        bound: np.ndarray,
+        area: np.ndarray,
+        positions: np.ndarray,
+        *,
+        stiffness: float,
+        waves: tuple[np.ndarray, np.ndarray, np.ndarray],
+        growth: Growth | None = None,
+    ):
+        self.influence, self.bound, self.growth = influence, bound, growth
+        self.area, self._waves, self.stiffness = area, waves, float(stiffness)
+        self.forward_position, self.lateral_position = positions
+        self.angles = len(self.forward_position)
+        self.weight, self.compliance = area / self.angles, np.diag(influence)
+        if growth is not None:
+            self.edges = growth.edges
+
+    @property
+    def shape(self) -> tuple[int, int, int]:
+        """Shape of a state."""
+        return (2, *self.forward_position.shape)
+
+    @cached_property
+    def operators(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """The operator A and its resolvents, see march.march."""
+        to_waves, to_points, matrices = self._waves
+        cells, columns = len(self.bound), matrices.shape[-1]
+        penalty = np.tile(best_penalty(self.compliance, cells), columns // cells)
+        shifts = PENALTIES[:, None, None, None] * np.diag(penalty)
+        each = np.concatenate([matrices[None], np.linalg.inv(matrices + shifts)])
+        each = each.reshape(*each.shape[:2], -1, cells, columns // cells, cells)
+        width = padded(cells)
+        out = np.zeros((*each.shape[:2], columns // cells, width, columns // cells, width))
+        out[..., :cells, :, :cells] = np.moveaxis(each, (2, 3, 4, 5), (4, 5, 2, 3))
+        size = width * columns // cells
+        return to_waves, to_points, out.reshape(*each.shape[:2], size, size)
+
+    @cached_property
+    def points(self) -> tuple[np.ndarray, np.ndarray, float, float, np.ndarray]:
+        """Properties of the points, see march.march."""
+        weight = self.pack(np.broadcast_to(self.weight, self.shape[1:]))
+        penalty = best_penalty(self.compliance, len(self.bound))
+        penalty = self.pack(np.broadcast_to(penalty, self.shape[1:]), 1.0)
+        positions = self.pack(np.stack([self.forward_position, self.lateral_position]))
+        return weight, penalty, float(weight.sum()), float(np.count_nonzero(weight)), positions
+
+    def pack(self, values: np.ndarray, fill: float = 0.0) -> np.ndarray:
+        """Convert values (..., rows, cells) to fields (..., points) of compiled code.
+
+        Each row of a field has a multiple of LANES points; the additional points get `fill`.
+        """
+        *shape, rows, cells = values.shape
+        out = np.full((*shape, rows, padded(cells)), fill)
+        out[..., :cells] = values
+        return out.reshape(*shape, rows * out.shape[-1])
+
+    def unpack(self, fields: np.ndarray) -> np.ndarray:
+        """Undo `pack`."""
+        _, rows, cells = self.shape
+        return fields.reshape(*fields.shape[:-1], rows, -1)[..., :cells]
+
+    def displacement(self, state: np.ndarray) -> np.ndarray:
+        """Elastic displacement A q of each point under tractions q, with the shape of the state."""
+        field, to_waves = self.pack(state), self.operators[0]
+        image = np.empty_like(field)
+        sectors, waves, rows = to_waves.shape
+        scratch = np.empty((2, sectors * waves, 2 * field.shape[1] // (sectors * rows)))
+        multiply(self.operators, 0, field, image, scratch)
+        return self.unpack(image)
+
+    def mirrored(self, state: np.ndarray) -> np.ndarray:
+        """Return the mirror image of a state under lateral -> -lateral, which negates lateral
+        tractions."""
+        return (state if self.mirror_rows is None else state[:, self.mirror_rows]) * MIRROR
+
+    def march(
+        self,
+        path: Path,
+        state: np.ndarray,
+        tolerance: float,
+        previous: Guess | None = None,
+        *,
+        body: Body | None = None,
+        start: np.ndarray | None = None,
+    ) -> March:
+        """March along a path; see contact.Contact.
+
+        body: driven body on the contact; None if the contact follows the path. start: x and x' of
+        the body at the start of the path, shape (2,); None for zeros.
+        """
+        state = np.ascontiguousarray(state, dtype=float)
+        drive = NO_DRIVE if body is None else body.along(path, start)
+        motion, bounds = self._loading(path)
+        guess = None if previous is None else previous.fields
+        if guess is None or guess.shape != (len(motion), *self.shape):
+            guess = np.empty((0, *self.shape))
+        loading, begin = (motion, bounds, path.carry, float(path.end)), (state, guess)
+        while True:
+            end, history, forces, moves, residual, iterations = march(
+                self.operators, self.points, loading, drive, begin, float(tolerance)
+            )
+            if iterations >= 0:
+                break
+            signal.raise_signal(signal.SIGINT)
+        forces *= self.resultants
+        return March(end, forces, residual, iterations, len(history) - 1, history, moves)
+
+    def energy(self, change: np.ndarray) -> float:
+        """Twice the elastic energy of tractions, <q, A q>."""
+        return strain_energy(self.operators, self.points[0], np.ascontiguousarray(change))
+
+    def _loading(self, path: Path) -> tuple[np.ndarray, np.ndarray]:
+        """Motion and friction bounds of a path, for compiled code.  Those of the last path are
+        stored."""
+        last = vars(self).get("_last")
+        if last is None or last[0] is not path:
+            bounds = self.bound[None] if path.depth is None else self.bounds_along(path)
+            bounds = np.broadcast_to(bounds[:, None], (len(bounds), *self.shape[1:]))
+            last = path, np.ascontiguousarray(path.motion), self.pack(bounds)
+            self._last = last
+        return last[1:]
+
+    @property
+    def _checked_growth(self) -> Growth:
+        assert self.growth is not None  # otherwise the normal load is constant
+        return self.growth
+
+    def at_indentation(self, deepest: float, start: float) -> RingContact:
+        """Return a contact whose rings fill the largest contact area in a period.
+
+        Parameters
+        ----------
+        deepest : float
+            Largest depth (see load_on_rings), above 0.
+        start : float
+            Depth at the start of the period, for which `bound` is computed.
+        """
+        growth, out = self._checked_growth, copy(self)
+        for name in ("operators", "points", "_last"):
+            vars(out).pop(name, None)
+        out.radius = radius = float(growth.pressure.radius(deepest))
+        softer = radius**growth.influence_power
+        out.growth = growth._replace(edges=growth.edges * radius)
+        out.influence, out.area = self.influence * softer, self.area * radius**growth.weight_power
+        out._waves = (*self._waves[:2], self._waves[2] * softer)
+        out.forward_position = self.forward_position * radius
+        out.lateral_position = self.lateral_position * radius
+        out.weight, out.compliance = out.area / self.angles, np.diag(out.influence)
+        out.stiffness = self.stiffness * radius
+        radii = out._effective_radii()
+        out._joins = 0.5 * (radii[1:-1] + radii[2:])
+        out.bound = out.bounds(np.array([start]))[0]
+        return out
+
+    def _effective_radii(self) -> np.ndarray:
+        """Effective radii, (cells + 1,).  Without slip, a contact whose radius is entry k has the
+        same stiffness as the first k rings.
+
+        An effective radius is a little smaller than the outer edge of the rings.  A ring joins the
+        contact when the contact radius reaches the mean of the effective radii without and with
+        this ring.  A growing contact then has the correct stiffness on average.  If the ring joined
+        as soon as the contact reached the ring's inner edge, it would stick too early.  This would
+        be an error of first order.
+        """
+        weighted = self.area[:, None] * self.influence
+        part = np.linalg.solve(np.linalg.cholesky(0.5 * (weighted + weighted.T)), self.area)
+        # w^T B^-1 w of the first k rings, B: weighted influence
+        return np.concatenate([[0.0], np.cumsum(part**2) * self.radius / self.stiffness])
+
+    def bounds(self, depths: np.ndarray, edge: np.ndarray | None = None) -> np.ndarray:
+        """Mean friction bound of each ring at each depth, shape (len(depths), cells).
+
+        edge: radii (len(depths),) inside which rings are in contact; None for the contact radii.
+        Load outside these rings is added to the outermost of them.
+        """
+        growth = self._checked_growth
+        load_within = growth.load_within(growth.pressure, growth.edges, depths)
+        edge = growth.pressure.radius(depths) if edge is None else edge
+        outside, most = edge[:, None] <= self._joins, load_within[:, -1:]
+        load_within[:, 1:-1] = np.where(outside, most, load_within[:, 1:-1])
+        return np.maximum(np.diff(load_within, axis=1), 0.0) / self.area
+
+    def bounds_along(self, path: Path) -> np.ndarray:
+        """Friction bounds at the start and at every stage of a path, (1 + steps stages, cells).
+
+        Rings join or leave the contact only at the last stage of a step, because the integrator
+        would carry over a jump from an earlier stage to the later stages.  A ring that joins at the
+        last stage is strained for the fraction 1 / (1 + carried) of the step, but on average it
+        should be strained for half of the step.  The contact radius is therefore evaluated at an
+        earlier time, to make up for the difference.
+        """
+        assert path.depth is not None  # otherwise the bounds are constant
+        stages = path.stages.shape[1]
+        ends = self._checked_growth.pressure.radius(path.depth[::stages])
+        shift = 0.5 - 1.0 / (1.0 + path.carry[-1].sum())
+        radii = ends.copy()
+        radii[:-1] += shift * np.diff(ends)  # not the last one, where the next march begins
+        edge = np.repeat(radii[:-1, None], stages, axis=1)
+        edge[:, -1] = radii[1:]
+        return self.bounds(path.depth, np.append(radii[:1], edge))
+
+
+class RadialContact(RingContact):
+    """Contact of rings; states have shape (2, 1, cells).
+
+    It is exact for translations at nu = 0, because the tractions then depend on the radius alone.
+    Use `resolved` to create the contact of an elastic half-space.
+
+    Parameters
+    ----------
+    influence, bound, weight, growth
+        See RingContact; `weight` is the area of the rings.
+    stiffness : float or None
+        Stiffness of the whole contact; None to compute it from the matrix.
+    """
+
+    resultants = np.array([1.0, 1.0, 0.0])
+
+    def __init__(
+        self,
+        influence: np.ndarray,
+        bound: np.ndarray,
+        weight: np.ndarray,
+        stiffness: float | None = None,
+        growth: Growth | None = None,
+    ):
+        weighted = weight[:, None] * influence
+        weighted = 0.5 * (weighted + weighted.T)
+        if stiffness is None:  # force for a unit displacement of all rings
+            stiffness = float(weight @ np.linalg.solve(weighted, weight))
+        one, positions = np.ones((2, 1, 1)), np.zeros((2, 1, len(bound)))
+        waves = one, one, (weighted / weight[:, None])[None]
+        super().__init__(
+            influence, bound, weight, positions, stiffness=stiffness, waves=waves, growth=growth
+        )
+
+    @staticmethod
+    @lru_cache(maxsize=32)
+    def resolved(
+        cells: int, focus: Focus | float | None = None, pressure: Pressure = HERTZ
+    ) -> RadialContact:
+        """Return the contact of an elastic half-space with `cells` rings graded towards `focus`.
+
+        Calls with equal arguments return the same object, which must not be modified.
+        """
+        rings = make_rings(cells, focus, pressure)
+        near, _ = ring_influence(rings.psi, 1, False, modulus=pressure.G_star)
+        growth = Growth(pressure, np.sin(rings.psi), load_on_rings, 1, 2)
+        return RadialContact(near[0], rings.bound, rings.area, pressure.stiffness, growth)
+
+
+NO_DRIVE = np.zeros(6), np.zeros(0)
+"""Arguments `drive` and `lengths` of march.march without a driven body."""
+
+
+def padded(cells: int) -> int:
+    """Smallest multiple of LANES that is at least `cells`."""
+    return -(-cells // LANES) * LANES

@@ -1,0 +1,287 @@
+"""Douglas-Rachford splitting of a Coulomb step of a contact on rings, in compiled code.
+
+The unknowns of a step are tractions q with |q| <= g.  The slip b - A q occurs only where |q| = g,
+in the direction of q.  A driven body adds one unknown, its displacement d, which is added to b, and
+one equation, stiffness d + forward force = load.
+
+The state is one field y.  With the projection P on the discs |q| <= g and the penalty s,
+
+    q = P(y),    t = 2 q - y,    v = (A + s)^-1 (b + s t),    y <- y + RELAXATION (v - q),
+
+until the force Sum weight |v - q| is within the tolerance.  The slip is b - A v = s (v - t), so A
+itself is never applied.  The iteration converges for any relaxation below 2 (Lions and Mercier
+1979; Eckstein and Bertsekas 1992).  The response of v to the displacement d of a driven body is d
+times a constant field, so the equation of the body is solved by a division.  After every
+BETWEEN_BALANCES iterations, `rebalance` solves the equation of the body for the tractions P(y).
+
+A small penalty is best for points that stick, and a large penalty is best for points that slip.
+Let D be the derivative of the projection, averaged over the points and both directions.  It is 1
+for a point that sticks, and |q| / (2 |y|) for a point that slips.  The best penalty is about
+(1 - D) / D times the best penalty for D = 1/2.  Each step uses the nearest of PENALTIES.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numba import types
+
+from microslip.contact.coulomb import shrink
+from microslip.contact.operators import ZERO, four, multiply, multiply_two
+from microslip.foundation.compiled import kernel
+
+MOST_ITERATIONS = 4000
+"""Largest number of iterations of a step."""
+RELAXATION = 1.7
+"""Relaxation factor; 1.5 to 1.8 is usual (Eckstein and Bertsekas 1992)."""
+BETWEEN_BALANCES = 32
+"""Number of iterations in a driven step between calls of `rebalance`.  It is above the mean numbers
+of iterations printed by benchmarks/splitting.py, so `rebalance` is rarely called."""
+FIRST_ADVANCE, LONGEST_ADVANCE, HALVINGS = 1e-3, 1e6, 40
+"""Parameters of the search for the displacement at which the forces balance: first and largest
+trial in u_lim (each trial is four times the previous one), and number of bisections."""
+BALANCED_RINGS = 12
+"""Number of rings at which the best penalty equals a ring's self-influence, if half of the points
+stick.  Calibrated by benchmarks/splitting.py."""
+LEVELS = 4
+"""Number of penalties for which a resolvent is available."""
+PENALTIES = 2.0 ** (np.arange(LEVELS) - 0.5 * (LEVELS - 1))
+"""Possible penalties of a step divided by `best_penalty`, from 1/sqrt(8) to sqrt(8)."""
+BETWEEN_LOOKS = 2e5
+"""Approximate number of point updates between two calls of `interrupted`.  It corresponds to a few
+hundredths of a second.  A call waits for the other threads of the interpreter, so calls should be
+rare."""
+
+_acquire = types.ExternalFunction("PyGILState_Ensure", types.intc())
+_release = types.ExternalFunction("PyGILState_Release", types.void(types.intc))
+_occurred = types.ExternalFunction("PyOS_InterruptOccurred", types.intc())
+
+
+@kernel
+def interrupted() -> bool:
+    """Whether Ctrl-C was pressed since the last call; always false except in the main thread.
+
+    Python handles signals only between its own instructions, and a march can take minutes.  After
+    an interrupt, the march ends early, and the calling Python code raises the signal again.
+    """
+    state = _acquire()
+    occurred = _occurred()
+    _release(state)
+    return occurred != 0
+
+
+def best_penalty(scale: np.ndarray, rings: int) -> np.ndarray:
+    """Best penalty of each ring if half of the points stick.
+
+    The splitting converges fastest if the penalty is the geometric mean of the smallest and the
+    largest eigenvalue of A.  The smallest eigenvalue belongs to a narrow ring, and the largest
+    belongs to the whole contact.  Their ratio is proportional to the number of rings.
+
+    Parameters
+    ----------
+    scale : np.ndarray
+        Self-influence of each ring.
+    rings : int
+        Number of rings.
+    """
+    return scale * np.sqrt(rings / BALANCED_RINGS)
+
+
+@kernel
+def forward_force(weight: np.ndarray, q: np.ndarray) -> float:
+    """Return the forward force due to tractions."""
+    force = 0.0
+    for i in range(len(weight)):
+        force += weight[i] * q[0, i]
+    return force
+
+
+@kernel
+def respond(
+    operators: tuple,
+    weight: np.ndarray,
+    unit: np.ndarray,
+    waves: np.ndarray,
+    response: np.ndarray,
+    slope: np.ndarray,
+) -> None:
+    """For each penalty, compute the tractions v for d = 1, and their forward force.  `unit` is a
+    scratch field."""
+    for i in range(unit.shape[1]):
+        unit[0, i], unit[1, i] = 1.0, 0.0
+    for level in range(len(slope)):
+        multiply(operators, 1 + level, unit, response[level], waves)
+        slope[level] = forward_force(weight, response[level])
+
+
+@kernel
+def squared_distance(weight: np.ndarray, a: np.ndarray, b: np.ndarray) -> float:
+    """Return Sum weight |a - b|^2 for two fields a and b, whose number of points is a multiple of
+    four."""
+    total = ZERO
+    for at in range(0, len(weight), 4):
+        w, p, q, r, s = (
+            four(weight, at),
+            four(a[0], at),
+            four(b[0], at),
+            four(a[1], at),
+            four(b[1], at),
+        )
+        total = (
+            total[0] + w[0] * ((p[0] - q[0]) ** 2 + (r[0] - s[0]) ** 2),
+            total[1] + w[1] * ((p[1] - q[1]) ** 2 + (r[1] - s[1]) ** 2),
+            total[2] + w[2] * ((p[2] - q[2]) ** 2 + (r[2] - s[2]) ** 2),
+            total[3] + w[3] * ((p[3] - q[3]) ** 2 + (r[3] - s[3]) ** 2),
+        )
+    return (total[0] + total[1]) + (total[2] + total[3])
+
+
+@kernel
+def stuck_share(y: np.ndarray, bound: np.ndarray, q: np.ndarray, factors: np.ndarray) -> float:
+    """Fill q = P(y), and return D (see the module) times the number of points that have a bound.
+    `factors` is a scratch array."""
+    for i in range(len(bound)):
+        f = shrink(y[0, i], y[1, i], bound[i])
+        q[0, i], q[1, i], factors[i] = f * y[0, i], f * y[1, i], f
+    share = 0.0
+    for i in range(len(bound)):
+        share += factors[i] if factors[i] == 1.0 else 0.5 * factors[i]
+    return share
+
+
+@kernel
+def imbalance(
+    points: tuple,
+    bound: np.ndarray,
+    y: np.ndarray,
+    excess: float,
+    stiffness: float,
+    advance: float,
+) -> float:
+    """Residual of the equation of the body after an advance, which is added to the slip of points
+    that slip.
+
+    excess: residual without the forward force, for no advance.
+    """
+    weight, penalty, _, _, _ = points
+    force = excess + stiffness * advance
+    for i in range(len(bound)):
+        forward = y[0, i] + advance / penalty[i]
+        force += weight[i] * shrink(forward, y[1, i], bound[i]) * forward
+    return force
+
+
+@kernel
+def rebalance(
+    points: tuple,
+    bound: np.ndarray,
+    y: np.ndarray,
+    excess: float,
+    stiffness: float,
+    tolerance: float,
+) -> None:
+    """Shift y, in place, to the displacement at which the forces on the body balance.
+
+    The splitting alone converges slowly if nearly all points slip and the drive is soft. If the
+    shift would exceed LONGEST_ADVANCE, y does not change.
+    """
+    residual = imbalance(points, bound, y, excess, stiffness, 0.0)
+    if not abs(residual) > tolerance:
+        return
+    near, far = 0.0, np.copysign(FIRST_ADVANCE, -residual)
+    while residual * imbalance(points, bound, y, excess, stiffness, far) > 0.0:
+        near, far = far, 4.0 * far
+        if abs(far) > LONGEST_ADVANCE:
+            return
+    for _ in range(HALVINGS):
+        middle = 0.5 * (near + far)
+        if residual * imbalance(points, bound, y, excess, stiffness, middle) > 0.0:
+            near = middle
+        else:
+            far = middle
+    for i in range(len(bound)):
+        y[0, i] += near / points[1][i]
+
+
+@kernel
+def solve_step(operators: tuple, points: tuple, step: tuple, body: tuple, scratch: tuple) -> tuple:
+    """Solve a Coulomb step.
+
+    Parameters
+    ----------
+    operators : tuple
+        See operators.multiply; the operators are A and the resolvents of PENALTIES.
+    points : tuple
+        Area of each point, and penalty for a contact in which half of the points stick, (points,);
+        sum of the areas; number of points that have an area; positions, not used here.
+    step : tuple
+        Imposed displacement b for d = 0, (2, points); friction bound, (points,); largest allowed
+        residual, as a force divided by mu F_z.
+    body : tuple
+        Whether there is a driven body; stiffness and load in its equation; results of `respond`.
+    scratch : tuple
+        fields (5 or more, 2, points): the unknown y, which is the initial guess on entry and
+        belongs to the penalty in `points` on entry and return; the tractions; three scratch fields.
+        The slip, (2, points), which is filled.  The scratch array of operators.multiply.  The
+        number of point updates since the last look for an interrupt, (1,).
+
+    Returns
+    -------
+    iterations : int
+        Number of iterations; -1 after an interrupt.
+    residual, displacement : float
+        Residual force, and displacement d of the body.
+    """
+    weight, penalty, area, count, _ = points
+    b, bound, tolerance = step
+    driven, stiffness, load, response, slope = body
+    work, slip, waves, clock = scratch
+    rings, matrices = operators[0].shape[1] == 1, operators[2]
+    guess, q, y, right, v = work[0], work[1], work[2], work[3], work[4]
+    size, accepted = len(bound), tolerance * tolerance / area
+    iterations, residual, displacement = 0, np.inf, 0.0
+    while True:
+        stuck = stuck_share(guess, bound, q, right[0])
+        level, ratio = 0, 0.5  # the penalty nearest to (1 - D) / D
+        while level < LEVELS - 1 and count - stuck > ratio * stuck:
+            level, ratio = level + 1, 2.0 * ratio
+        factor = PENALTIES[level]
+        for c in range(2):
+            for i in range(size):
+                y[c, i] = q[c, i] + (guess[c, i] - q[c, i]) / factor
+                right[c, i] = b[c, i] + factor * penalty[i] * (2.0 * q[c, i] - y[c, i])
+        while True:
+            if rings:  # without the call of multiply, which takes a tenth of the time
+                multiply_two(matrices[1 + level, 0], right, v)
+            else:
+                multiply(operators, 1 + level, right, v, waves)
+            if driven:
+                displacement = (load - forward_force(weight, v)) / (stiffness + slope[level])
+                for c in range(2):
+                    for i in range(size):
+                        v[c, i] += displacement * response[level, c, i]
+            iterations += 1
+            residual = squared_distance(weight, v, q)  # bounds the force by Schwarz's inequality
+            solved = not residual > accepted or iterations >= MOST_ITERATIONS
+            if solved or (driven and iterations % BETWEEN_BALANCES == 0):
+                break
+            for i in range(size):
+                forward = y[0, i] + RELAXATION * (v[0, i] - q[0, i])
+                lateral = y[1, i] + RELAXATION * (v[1, i] - q[1, i])
+                f = shrink(forward, lateral, bound[i])
+                y[0, i], y[1, i] = forward, lateral
+                q[0, i], q[1, i] = f * forward, f * lateral
+                f = (2.0 * f - 1.0) * factor * penalty[i]
+                right[0, i], right[1, i] = b[0, i] + f * forward, b[1, i] + f * lateral
+            clock[0] += size
+            if clock[0] > BETWEEN_LOOKS:
+                clock[0] = 0.0
+                if interrupted():
+                    return -1, residual, displacement
+        for c in range(2):
+            for i in range(size):
+                slip[c, i] = b[c, i] - right[c, i] + factor * penalty[i] * v[c, i]
+                guess[c, i] = q[c, i] + factor * (y[c, i] - q[c, i])
+        if solved:
+            return iterations, np.sqrt(area * residual), displacement
+        excess = stiffness * displacement - load
+        rebalance(points, bound, guess, excess, stiffness, tolerance)

@@ -1,0 +1,295 @@
+"""Contact of equal rectangular cells with FFT convolution, for any nu and any outline.
+
+The cells cover the rectangle around the contact, with the same number along both axes.  For a round
+contact they are squares, as in the paper, and this model is the reference for the other models.
+
+Tractions have the symmetries that the rigid displacement, the pressure and the influence operator
+have in common.  Of all cells related by these symmetries, only one is resolved (see `_images`).
+"""
+
+from __future__ import annotations
+
+import signal
+
+import numpy as np
+
+from microslip.contact import half
+from microslip.contact.contact import (
+    LATERAL,
+    MIRROR,
+    TORQUE,
+    Body,
+    Contact,
+    Guess,
+    March,
+    forces,
+    rigid_displacement,
+)
+from microslip.contact.convolution import convolve, square_convolution, workspace
+from microslip.contact.descent import PATIENCE, descend
+from microslip.contact.path import Path
+from microslip.pressures.hertz import HERTZ
+from microslip.pressures.pressure import Pressure
+
+MOST_DISPLACEMENTS = 60
+"""Largest number of trial displacements of a driven body in each step."""
+FLATTEST = 1e-3
+"""Smallest slope of a secant, divided by the largest possible slope."""
+INNER = 0.3
+"""Allowed residual at a trial displacement, divided by the tolerance of the driven step."""
+ROUNDED = 1e-10
+"""Two loads count as equal if their difference divided by the largest load is below this value.
+For a sphere on 192 x 192 cells, loads differ from their images by less than 1/20 of this
+value."""
+
+
+class CartesianContact(Contact):
+    """Contact of equal cells over the rectangle around the contact (see contact.Contact).
+
+    States have the shape (2, cells, cells), with the forward coordinate along axis 1 and the
+    lateral one along axis 2.  With symmetry, axis 1 or both axes have half the length.  A cell cut
+    by the edge of the contact carries only the load inside the contact.
+
+    Parameters
+    ----------
+    cells : int
+        Number of cells along a side.
+    poisson : float
+        Poisson's ratio.
+    pressure : pressure.Pressure
+        Any pressure.
+    symmetry : str
+        Symmetry of the motion: half.TURN for translations, half.MIRROR for rotations without a
+        lateral displacement, "" for other motions.  The symmetry is used only if the pressure is
+        symmetric as well.
+
+    Attributes
+    ----------
+    widths : np.ndarray, shape (2,)
+        Forward and lateral width of a cell.
+    images : int
+        Number of cells of the whole contact for each resolved cell: 4 if only cells with positive
+        coordinates are resolved, 2 if only cells with a positive forward coordinate are resolved,
+        otherwise 1.
+
+    Raises
+    ------
+    ValueError
+        If `cells` is below 2.
+    """
+
+    angles = 1
+    sticks = True
+    radius = 1.0
+
+    def __init__(
+        self,
+        cells: int,
+        poisson: float = 0.0,
+        pressure: Pressure = HERTZ,
+        symmetry: str = "",
+    ):
+        if cells < 2:
+            raise ValueError(f"cells = {cells}: allowed is a whole number of at least 2")
+        half_widths = np.array(pressure.half_widths)
+        self.widths = 2.0 * half_widths / cells
+        centres = (np.arange(cells) + 0.5) * (2.0 / cells) - 1.0
+        area = float(self.widths.prod())
+        self.bound = pressure.cell_loads(cells) / area
+        self.images = _images(self.bound, symmetry, poisson)
+        rows = centres[cells // 2 :] if self.images > 1 else centres
+        columns = centres[cells // 2 :] if self.images == 4 else centres
+        self.bound = _mean_of_images(self.bound, self.images, symmetry)
+        self.forward_position, self.lateral_position = np.meshgrid(
+            half_widths[0] * rows, half_widths[1] * columns, indexing="ij"
+        )
+        self.area = self.images * area
+        self.weight = np.full(self.bound.shape, self.area)
+        self.stiffness = pressure.stiffness
+        self.convolution, self.scale, self.largest = square_convolution(
+            cells, poisson, pressure.G_star, self.images, symmetry, pressure.half_widths
+        )
+        self.compliance = np.full(self.bound.shape, self.scale)
+        self.resultants = np.ones(3)
+        if self.images > 1:  # the images of the cells cancel this force
+            self.resultants[LATERAL if symmetry == half.MIRROR else TORQUE] = 0.0
+
+    def displacement(self, state: np.ndarray) -> np.ndarray:
+        """Elastic displacement A q of each cell under tractions q, with the shape of the state."""
+        out = np.empty_like(state)
+        convolve(self.convolution, workspace(self.convolution), np.ascontiguousarray(state), out)
+        return out
+
+    def mirrored(self, state: np.ndarray) -> np.ndarray:
+        """Return the mirror image of a state under lateral -> -lateral, which negates lateral
+        tractions."""
+        return (state if self.images == 4 else state[:, :, ::-1]) * MIRROR
+
+    def march(
+        self,
+        path: Path,
+        state: np.ndarray,
+        tolerance: float,
+        previous: Guess | None = None,
+        *,
+        body: Body | None = None,
+        start: np.ndarray | None = None,
+    ) -> March:
+        """March along a path; see contact.Contact.
+
+        This is march.march for squares.  A stage takes milliseconds, so only the step solver is
+        compiled.
+        """
+        stages, total, end = len(path.carry), len(path.motion) - 1, path.end
+        guess = None if previous is None else previous.fields
+        if guess is None or guess.shape != (1 + total, *state.shape):
+            guess = None
+        solver, residual, iterations = StepSolver(self, tolerance), 0.0, 0
+        history, out = np.empty((1 + total, *state.shape)), np.empty((1 + path.steps, 3))
+        moves = np.zeros((1 + path.steps, 2))
+        forward = np.zeros_like(state)
+        forward[0] = 1.0
+        slips, advances, gains = [state] * stages, np.zeros(stages), np.zeros(stages)
+        at_end = history[0] = y = np.array(state, dtype=float)
+        out[0] = forces(self, state)
+        if body is not None:
+            drive, lengths = body.along(path, start)
+            moves[0] = drive[4:]
+            if not body.remembers:
+                moves[0, 0] = (body.load - out[0, 0]) / body.stiffness if body.stiffness else 0.0
+        z = self.displacement(y) - self._moved(path.motion[0]) - moves[0, 0] * forward
+        for at in range(1, 1 + total):
+            k, s = divmod(at - 1, stages)
+            b = z + self._moved(path.motion[at])
+            for j in range(s):
+                b -= path.carry[s, j] * slips[j]
+            if guess is not None:
+                y = guess[1] if at == 1 else y + guess[at] - guess[at - 1]
+            elif k > 1:
+                y = 2.0 * history[at - stages] - history[at - 2 * stages]
+            place = 0.0
+            if body is not None:
+                place, rate = moves[k] + path.carry[s, :s] @ np.stack([advances, gains], 1)[:s]
+                b += place * forward
+                length = lengths[k]
+                stiffness = body.stiffness + (body.damping + body.mass / length) / length
+                load = body.load - body.stiffness * place + body.mass * rate / length
+            if body is None:
+                step = solver.solve(b, y)
+            else:
+                step = solver.balance(b, y, stiffness, load)
+            y, slips[s], count, error, advances[s] = step
+            history[at] = y
+            iterations, residual = iterations + count, residual + error
+            if body is not None:
+                gains[s] = advances[s] / length - rate
+            if s == stages - 1:
+                b = b - slips[s] - self._moved(path.motion[at]) - place * forward
+                if body is not None:
+                    moves[k + 1] = place + advances[s], advances[s] / length
+                z = b if end == 1.0 else z + (b - z) / end
+                at_end = y if end == 1.0 else at_end + (y - at_end) / end
+                out[k + 1] = forces(self, at_end)
+        return March(at_end, out * self.resultants, residual, iterations, total, history, moves)
+
+    def _moved(self, place: np.ndarray) -> np.ndarray:
+        return rigid_displacement(self, place)
+
+
+class StepSolver:
+    """Solver of the Coulomb steps of a march on squares.
+
+    Parameters
+    ----------
+    contact : CartesianContact
+        The contact.
+    tolerance : float
+        Largest allowed residual of a step, as a force divided by mu F_z.
+    """
+
+    def __init__(self, contact: CartesianContact, tolerance: float, patience: int = PATIENCE):
+        self.contact, self.tolerance, self.patience = contact, float(tolerance), patience
+        self._length = 1.0 / contact.scale
+        rows, columns = contact.bound.shape
+        self._scratch = (*workspace(contact.convolution), np.empty((4, rows, columns)))
+
+    def solve(
+        self, b: np.ndarray, guess: np.ndarray, share: float = 1.0
+    ) -> tuple[np.ndarray, np.ndarray, int, float, float]:
+        """Solve a step for the imposed displacement b.
+
+        share: factor of the tolerance.  Returns tractions, slip, number of iterations, residual,
+        and the displacement of a driven body, which is 0.
+        """
+        contact, q, slip = self.contact, np.array(guess), np.empty_like(b)
+        while True:
+            count, residual, self._length = descend(
+                contact.convolution,
+                (contact.area, contact.scale, contact.largest),
+                (contact.bound, b, q, slip),
+                self._scratch,
+                (self._length, share * self.tolerance, self.patience),
+            )
+            if count >= 0:
+                return q, slip, count, residual, 0.0
+            signal.raise_signal(signal.SIGINT)
+
+    def balance(
+        self, b: np.ndarray, guess: np.ndarray, stiffness: float, load: float
+    ) -> tuple[np.ndarray, np.ndarray, int, float, float]:
+        """Solve a step of a driven body, see march.py.  Returns the same values as `solve`.
+
+        The secant method finds the displacement d at which the forces balance.  The forward force
+        never decreases as d increases, and its slope is at most the stiffness of the contact.
+        """
+        steepest = stiffness + self.contact.stiffness
+        place, slope, low, high, before, last_gap = 0.0, steepest, -np.inf, np.inf, np.nan, np.nan
+        q, iterations = guess, 0
+        for _ in range(MOST_DISPLACEMENTS):
+            moved = b.copy()
+            moved[0] += place
+            q, slip, count, residual, _ = self.solve(moved, q, INNER)
+            iterations += count
+            gap = load - stiffness * place - self.contact.area * float(q[0].sum())
+            if residual + abs(gap) <= self.tolerance:
+                break
+            low, high = (max(low, place), high) if gap > 0.0 else (low, min(high, place))
+            if place != before and not np.isnan(before):
+                slope = np.clip((last_gap - gap) / (place - before), FLATTEST * steepest, steepest)
+            before, last_gap = place, gap
+            place += gap / slope
+            if not low < place < high:
+                place = 0.5 * (low + high)
+        return q, slip, iterations, residual + abs(gap), place
+
+
+def _images(loads: np.ndarray, symmetry: str, poisson: float) -> int:
+    """Number of cells of the whole contact for each resolved cell: 1, 2 or 4.
+
+    Displacements of a translation are symmetric under a half turn, and those of a rotation under a
+    reflection across the lateral axis.  For translations at nu = 0, forward and lateral
+    displacements are independent, and each is even along both axes.
+    """
+    if len(loads) % 2 or not symmetry:
+        return 1
+    if symmetry == half.MIRROR:
+        return 2 if _is_like(loads, loads[::-1]) else 1
+    even = _is_like(loads, loads[::-1]) and _is_like(loads, loads[:, ::-1])
+    if even and poisson == 0.0:
+        return 4
+    return 2 if _is_like(loads, loads[::-1, ::-1]) else 1
+
+
+def _is_like(loads: np.ndarray, image: np.ndarray) -> bool:
+    """Whether two fields are equal up to rounding errors."""
+    return bool(np.abs(image - loads).max() <= ROUNDED * loads.max())
+
+
+def _mean_of_images(loads: np.ndarray, images: int, symmetry: str) -> np.ndarray:
+    """Loads of the resolved cells, averaged over their images to remove rounding errors."""
+    if images == 1:
+        return loads
+    ahead = len(loads) // 2
+    image = loads[::-1, ::-1] if images == 2 and symmetry == half.TURN else loads[::-1]
+    mean = 0.5 * (loads + image)[ahead:]
+    return 0.5 * (mean + mean[:, ::-1])[:, ahead:] if images == 4 else mean

@@ -1,1 +1,0 @@
-"""Compiled Coulomb step and march in time, used by all discretised contacts."""

@@ -1,1 +1,0 @@
-"""Discretised contacts under Coulomb's law. All of them have the interface of contact.py."""

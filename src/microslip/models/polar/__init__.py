@@ -1,1 +1,0 @@
-"""The contact on rings and angular modes, for rotations and for nu > 0."""

@@ -1,1 +1,0 @@
-"""Models that neglect elasticity, partial slip or the interaction of points."""

@@ -1,1 +1,0 @@
-"""The contact on rings, for translations at nu = 0."""

@@ -1,1 +1,0 @@
-"""The contact on square cells, for any outline and any motion."""
