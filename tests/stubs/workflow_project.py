@@ -37,7 +37,7 @@ TINY = {
     },
     "points_per_job": 4,  # every job takes a second or two to start
 }
-ALL_JOBS = {"warm_up": 2, "solve": 6, "collect": 3, "draw": 6, "all": 1}
+ALL_JOBS = {"warm_up": 2, "solve": 5, "collect": 3, "draw": 6, "all": 1}
 
 
 def jobs_in(message):

@@ -32,7 +32,7 @@ def test_a_new_amplitude_computes_its_points_only(project):
     before = project.points()
     axes = {**AXES, "amplitude": [0, 0.5, 1]}
     project.configure({**TINY, "sweeps": {**TINY["sweeps"], "transverse": axes}})
-    assert project.planned() == {"solve": 1, "collect": 1, "draw": 2, "all": 1}
+    assert project.planned() == {"solve": 2, "collect": 1, "draw": 2, "all": 1}
     project.run("results/transverse.nc")
     after = project.points()
     assert len(after) == len(before) + 2
