@@ -30,7 +30,6 @@ def test_every_requirement_has_a_lower_bound(name):
 @pytest.mark.parametrize(
     ("name", "version"),
     [
-        ("pint", "0.24.3"),  # cannot be imported with current versions of flexparser
         ("matplotlib", "3.9.4"),
         ("xarray", "2024.11.0"),  # interp of a dataset along two axes fails
         ("netCDF4", "1.7.0"),  # withdrawn

@@ -39,7 +39,7 @@ _WHERE = {
     "warm_up": "microslip.adaptive.point",
     "predict": "microslip.si.predict",
     "predict_table": "microslip.si.table",
-    "predict_grid": "microslip.si.grid",
+    "predict_grid": "microslip.si.table",
     "Material": "microslip.si.materials",
     "fit": "microslip.si.fit",
     "Fit": "microslip.si.fit",

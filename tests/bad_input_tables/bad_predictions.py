@@ -18,7 +18,7 @@ MOTIONS = [
     ({"motion": "normal:lateral=0.5"}, "allowed is normal with --load-amplitude"),
     ({"motion": "transverse-bore:angle=0.5"}, "for both use transverse-bore"),
     ({"amplitude": None}, "--amplitude: transverse needs it"),
-    ({"amplitude": "1 deg"}, "--amplitude = '1 deg': the unit is degree"),
+    ({"amplitude": "1 deg"}, "--amplitude = '1 deg': the unit is deg"),
     ({"amplitude": "-1 um"}, "--amplitude = '-1 um': allowed is a finite value at least 0 m"),
     ({"amplitude": "1 m"}, "times the 2.17e-07 m at which the whole contact slides; allowed is"),
     ({"motion": "bore", "amplitude": "1e9 turn"}, "at which the stick radius is half"),
@@ -33,7 +33,7 @@ MOTIONS = [
 CONTACTS = [
     ({"load": None}, "--load: needed"),
     ({"load": "nan N"}, "it is not finite"),
-    ({"load": "10 kg"}, "--load = '10 kg': the unit is kilogram"),
+    ({"load": "10 kg"}, "--load = '10 kg': the unit is kg"),
     ({"load": "1\n2 N"}, r"--load = '1\n2 N': "),
     ({"mu": None}, "--mu: needed"),
     ({"mu": "0,3"}, "--mu = '0,3': read 0 and stopped at ',3', since decimals follow a point"),
@@ -78,7 +78,7 @@ BODIES = [
 ]
 DRIVES = [
     ({"speed": None}, "--speed: needed, or a force"),
-    ({"speed": "1 mm"}, "--speed = '1 mm': the unit is millimeter"),
+    ({"speed": "1 mm"}, "--speed = '1 mm': the unit is mm"),
     ({"speed": "1e300 m/s", "frequency": "1e-300 Hz"}, "--speed = '1e300 m/s': divided by"),
     ({"force": "1 N"}, "--force = '1 N': allowed is a force or a speed, not both"),
     (FORCED | {"force": "0 N"}, "--force = '0 N': allowed is a finite value above 0 N"),
@@ -109,8 +109,11 @@ REDUCTIONS = [
     ),
 ]
 UNCERTAIN = [
-    ({"mu": "0.3 +- 0.3"}, "--mu = '0.3 +- 0.3': allowed is an uncertainty below the value"),
-    ({"load": "10 N +- 1 mm"}, "in it '1 mm': the unit is millimeter"),
+    (
+        {"mu": "0.3 +- 0.4"},
+        "--mu = '0.3 +- 0.4': the uncertainty must be above 0 and at most the value",
+    ),
+    ({"load": "10 N +- 1 mm"}, "in it '1 mm': the unit is mm"),
     ({"load": "10 +- 1 N"}, "in it '10': 10 is a number without a unit"),
     ({"tolerance": "0.01 +- 1 %"}, "--tolerance = '0.01 +- 1 %'"),
 ]

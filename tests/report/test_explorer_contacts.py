@@ -14,9 +14,9 @@ import microslip
 from microslip.datasets.accessor import Map
 from microslip.estimate.estimate import Estimate
 from microslip.foundation.errors import InputError
+from microslip.foundation.units import read
 from microslip.report.explorer import certified, si_form
 from microslip.si.materials import MATERIALS
-from microslip.si.quantities import read
 
 pytestmark = [pytest.mark.slow, needs_node]
 SCRIPTS = ("certified.js", "elliptic.js", "limits.js", "beyond.js", "contact.js")
@@ -140,7 +140,7 @@ PLACES = {
     "indentation": "indentation_m",
     "largest_pressure": "largest_pressure_Pa",
     "u_lim": "u_lim_m",
-    "still": "friction_force_still_N",
+    "still": "sliding_friction_N",
 }
 
 
@@ -262,7 +262,7 @@ def test_units_of_the_form_are_those_of_predict():
     call = "(si, name, text, unit) => siValue(si.fields[name], text, unit)"
     values = answers(SCRIPTS, call, si_form.packed(), calls)
     for (name, text, unit), value in zip(calls, values, strict=True):
-        truth = read(name, f"{text} {unit}", si_form.FIELDS[name].unit).si
+        truth = read(f"{text} {unit}", si_form.FIELDS[name].unit).si
         assert value == pytest.approx(truth, rel=4e-16, abs=0), (name, text, unit)
 
 

@@ -88,7 +88,7 @@ def test_wear_by_archard():
     assert result.wear_volume_per_cycle_m3 == pytest.approx(volume, rel=1e-6)
     depth = volume / (math.pi * result.contact_radius_m**2)
     assert result.wear_depth_per_cycle_m == pytest.approx(depth, rel=1e-6)
-    assert "mean depth over the contact" in str(result)
+    assert "mean wear depth over the contact" in str(result)
 
 
 def test_a_wear_coefficient_in_another_unit_is_refused():

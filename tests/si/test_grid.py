@@ -5,7 +5,7 @@ import pytest
 
 import microslip
 from microslip.foundation.errors import InputError
-from microslip.si.grid import grid_of, interpolation_errors, values_of
+from microslip.si.table import grid_of, interpolation_errors, values_of
 
 CONTACT = {"young": "210 GPa", "nu": 0, "radius": "5 mm", "mu": 0.3, "frequency": "20 kHz"}
 
@@ -42,16 +42,16 @@ def test_each_point_is_its_prediction(tmp_path):
     grid = microslip.predict_grid(
         "transverse", speed="1..10 mm/s, 2", amplitude="0..0.5 um, 3", load="10 N", **CONTACT
     )
-    assert dict(grid.sizes) == {"speed_m_s": 2, "amplitude_si": 3}
-    assert grid.amplitude_si.values == pytest.approx([0.0, 2.5e-7, 5e-7], rel=1e-12)
+    assert dict(grid.sizes) == {"speed_m_s": 2, "amplitude_m": 3}
+    assert grid.amplitude_m.values == pytest.approx([0.0, 2.5e-7, 5e-7], rel=1e-12)
     assert grid.speed_m_s.attrs["units"] == "m/s"
     alone = microslip.predict(
         "transverse", speed="10 mm/s", amplitude="0.25 um", load="10 N", **CONTACT
     )
-    point = grid.isel(speed_m_s=1, amplitude_si=1)
+    point = grid.isel(speed_m_s=1, amplitude_m=1)
     for name in ("mu_apparent", "mu_apparent_error", "friction_force_N", "u_lim_m"):
         assert float(point[name]) == getattr(alone, name)
-    assert np.all(grid.mu_macro.isel(amplitude_si=0) == 1.0)
+    assert np.all(grid.mu_macro.isel(amplitude_m=0) == 1.0)
     grid.to_netcdf(tmp_path / "grid.nc", engine="netcdf4")
 
 
@@ -60,8 +60,8 @@ def test_sequences_are_axes_and_other_points_survive_a_bad_one():
         "transverse", load=["10 N", 20.0], amplitude=["0.1 um", "1 m"], speed=0.01, **CONTACT
     )
     assert grid.load_N.values.tolist() == [10.0, 20.0]
-    assert np.isnan(grid.mu_macro.isel(amplitude_si=1)).all()
-    assert np.isfinite(grid.mu_macro.isel(amplitude_si=0)).all()
+    assert np.isnan(grid.mu_macro.isel(amplitude_m=1)).all()
+    assert np.isfinite(grid.mu_macro.isel(amplitude_m=0)).all()
     assert all("allowed" in text for text in grid.error.values[:, 1])
 
 
@@ -107,5 +107,4 @@ def test_the_factor_of_a_motion_from_a_file_is_a_range(tmp_path):
     file = tmp_path / "stroke.csv"
     file.write_text("lateral [um]\n0\n0.1\n0\n-0.1\n")
     grid = grid_of(f"file:{file}", {"amplitude": "50..150 %, 3", "load": "1 N"})
-    assert grid.axes["amplitude_si"].values == [0.5, 1.0, 1.5]
-    assert grid.axes["amplitude_si"].unit == ""
+    assert grid.axes["amplitude_factor"] == ("amplitude", "", [0.5, 1.0, 1.5])

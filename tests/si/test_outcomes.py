@@ -6,7 +6,6 @@ import numpy as np
 import pytest
 
 import microslip
-from microslip.si.printed_lines import probability_text
 from microslip.theory import paper
 
 STEEL = {"young": "210 GPa", "nu": 0.0}
@@ -65,7 +64,9 @@ def test_outcomes_and_intervals_are_those_of_a_monte_carlo(settings, drawn):
     exact = {"mu": (0.15, 0.0), "load": (1e3, 0.0), "amplitude": (0.25e-6, 0.0), "force": (90.0, 0)}
     *shares, threshold = monte_carlo(**exact | drawn)
     several = (result.probability_stays, result.probability_moves, result.probability_runs_away)
-    assert several == pytest.approx(shares, abs=0.012 + result.probability_error)
+    assert several == pytest.approx(
+        shares, abs=0.012 + max(result.probability_stays_error, result.probability_moves_error)
+    )
     assert sum(several) == pytest.approx(1.0)
     low, high = np.quantile(threshold, (0.025, 0.975))
     assert result.force_threshold_low_N == pytest.approx(low, abs=2.0)
@@ -81,8 +82,7 @@ def test_an_uncertain_load_moves_the_static_friction_of_a_spin():
         for sign in (-1.0, 1.0)
     ]
     assert [result.mu_static_low, result.mu_static_high] == pytest.approx(sorted(ends), rel=2e-3)
-    assert result.probability_stays is None and result.interval_method == "quantiles"
-    assert "to first order" not in str(result)
+    assert result.probability_stays is None
 
 
 def test_without_uncertain_inputs_there_is_no_probability():
@@ -107,42 +107,6 @@ def test_a_steady_spin_gives_way_to_any_force_that_is_drawn():
     assert (result.probability_stays, result.safety_factor_high) == (0.0, 0.0)
     assert result.probability_runs_away == pytest.approx(0.0131, abs=1e-3)  # 2 / 0.9 deviations
     assert result.to_dict() == again.to_dict()  # equal inputs have equal draws
-
-
-@pytest.mark.slow
-def test_the_threshold_beside_a_reduction_has_an_interval():
-    settings = BALL | {"speed": "0.3 mm/s +- 5 %", "reduction": "30 %", "tolerance": 0.02}
-    result = microslip.predict("transverse", **settings)
-    ends = result.force_threshold_low_N, result.force_threshold_high_N
-    deviation = result.force_threshold_spread_N
-    assert deviation > 0.0 and result.interval_method == "first order"
-    assert ends == pytest.approx(
-        [result.force_threshold_N + sign * 1.959964 * deviation for sign in (-1, 1)]
-    )
-    (line, again) = [line for line in str(result).splitlines() if "95 % interval" in line]
-    for text in (line, again):
-        assert "from the uncertain inputs to first order" in text
-
-
-@pytest.mark.long
-def test_an_uncertain_ratio_of_amplitudes_has_an_interval_to_first_order():
-    """The standard deviation is half the difference of static friction at both ends.
-
-    The interval is that of a normal distribution, 1.96 standard deviations on either side.
-    """
-    settings = BALL | {"speed": "10 mm/s", "tolerance": 0.05}
-    settings |= {"rotation_amplitude": "0.05 deg", "phase": "90 deg"}
-    result = microslip.predict("transverse-bore", **settings | {"amplitude": "0.1 um +- 5 %"})
-    low, high = (
-        microslip.predict("transverse-bore", **settings | {"amplitude": size}).mu_static
-        for size in (0.095e-6, 0.105e-6)
-    )
-    assert result.interval_method == "first order"
-    assert result.mu_static_spread == pytest.approx(0.5 * abs(high - low), rel=0.02)
-    ends = [result.mu_static + 1.96 * (high - result.mu_static)]
-    ends.append(result.mu_static + 1.96 * (low - result.mu_static))
-    assert [result.mu_static_low, result.mu_static_high] == pytest.approx(sorted(ends), rel=1e-3)
-    assert "to first order: static friction is assumed" in str(result)
 
 
 @pytest.mark.slow
@@ -176,40 +140,11 @@ def test_a_force_that_may_vanish_has_an_unbounded_safety_factor():
     assert high == math.inf and "to inf" in str(result)
 
 
-@pytest.mark.slow
-def test_an_unlikely_outcome_has_a_bound_of_its_probability():
-    """The contact stays only at an amplitude 4 standard deviations below its centre."""
-    settings = PAIR | {"force": "38 N", "amplitude": "0.3 um +- 0.05 um"}
-    result = microslip.predict("transverse", **settings)
-    draws = 0.3 + 0.05 * np.random.default_rng(5).standard_normal(1_000_000)
-    threshold = 40.0 * static_limit(draws * 1e-6 / U_LIM_OF_PAIR)
-    share = np.mean(threshold > 38.0)
-    assert 0.0 < share < 1e-4
-    assert abs(result.probability_stays - share) <= result.probability_error
-    message = "below 0.1 % that it stays, above 99.9 % that it moves, below 0.1 % that it runs away"
-    assert message in str(result)
-
-
 def test_draws_above_the_largest_physical_value_count_as_that_value():
     """Poisson's ratio is at most 0.5: its upper quantile, 0.59, counts as 0.5."""
     result = microslip.predict("bore", **SPIN | {"nu": "0.3 +- 0.15"})
     ends = [microslip.predict("bore", **SPIN | {"nu": nu}).mu_static for nu in (0.006, 0.5)]
     assert [result.mu_static_low, result.mu_static_high] == pytest.approx(ends, rel=5e-3)
-
-
-@pytest.mark.parametrize(
-    ("chance", "error", "text"),
-    [
-        (0.5, 0.001, "50.00 +- 0.10 %"),
-        (0.0, 0.0, "below 0.1 %"),
-        (1.0, 2e-4, "above 99.9 %"),
-        (0.004, 0.0123, "below 1.7 %"),
-        (0.995, 0.0123, "above 98.2 %"),
-    ],
-)
-def test_a_probability_is_printed_with_its_error_or_a_bound(chance, error, text):
-    """The bound includes the error: 0.4 % + 1.23 % is rounded up to 1.7 %."""
-    assert probability_text(chance, error) == text
 
 
 @pytest.mark.slow
@@ -218,6 +153,48 @@ def test_a_contact_that_stays_one_deviation_around_its_inputs_may_move():
     settings = JOINT | {"amplitude": "0.25 um"}
     threshold = microslip.predict("transverse", **settings, speed=0.0).force_threshold_N
     result = microslip.predict("transverse", **settings, force=f"{threshold - 3.0!r} N +- 2 N")
-    assert result.outcome == "stays" and result.speed_spread_m_s == 0.0
+    assert result.outcome == "stays" and result.speed_spread_m_s > 0.0
     assert result.probability_moves == pytest.approx(0.0668, abs=2e-3)
-    assert "none of the speed: the contact can move" in str(result)
+
+
+def test_all_outputs_of_a_spin_have_the_spread_of_a_monte_carlo():
+    """10^5 draws of the closed forms (Eqs 21 and 22, v~ <= 1) have a statistical error of 1 %."""
+    request = BALL | {"mu": "0.3 +- 0.03", "frequency": None, "speed": "0.2 mm/s +- 10 %"}
+    request |= {"rotation": "10 rad/s +- 5 %", "load": "10 N +- 5 %", "radius": "5 mm +- 10 %"}
+    request |= {"wear_coefficient": "1e-14 m^2/N +- 20 %"}
+    result = microslip.predict("continuous-bore", **request)
+    draw = np.random.default_rng(0).standard_normal((6, 100_000))
+    mu, load, radius = 0.3 + 0.03 * draw[0], 10.0 + 0.5 * draw[1], 5e-3 * (1.0 + 0.1 * draw[2])
+    speed, turn = 0.2e-3 * (1.0 + 0.1 * draw[3]), 10.0 * (1.0 + 0.05 * draw[4])
+    a = (0.75 * load * radius / 210e9) ** (1.0 / 3.0)
+    v = speed / (turn * a)
+    assert v.max() < 1.0
+    force = mu * load * 3.0 * math.pi / 8.0 * (v - v**3 / 4.0)
+    torque = 3.0 * math.pi / 16.0 * mu * load * a * (1.0 - v**2 + 0.375 * v**4)
+    energy = (force * speed + torque * turn) * 2.0 * math.pi / turn
+    drawn = {"friction_force_N": force, "torque_N_m": torque, "energy_per_cycle_J": energy}
+    drawn |= {"drag_power_W": force * speed, "vibration_power_W": torque * turn}
+    drawn |= {"wear_volume_per_cycle_m3": 1e-14 * (1.0 + 0.2 * draw[5]) / mu * energy}
+    columns = result.to_dict()
+    for name, values in drawn.items():
+        stem, _, unit = name.rpartition("_")
+        stem, unit = ("torque", "N_m") if stem.startswith("torque") else (stem, unit)
+        assert columns[f"{stem}_spread_{unit}"] == pytest.approx(values.std(), rel=0.03), name
+        ends = np.quantile(values, (0.025, 0.975))
+        found = [columns[f"{stem}_{side}_{unit}"] for side in ("low", "high")]
+        assert found == pytest.approx(ends, rel=0.02, abs=0.02 * values.std()), name
+
+
+@pytest.mark.parametrize(
+    ("name", "text"), [("nu", "0.49 +- 0.02"), ("mu", "0.1 +- 0.1"), ("mu", "9 +- 5")]
+)
+def test_draws_outside_a_range_count_as_its_end(name, text):
+    """The draws of nu end at 0.5, those of mu at 0 and at 10."""
+    spin = BALL | {"frequency": None, "rotation": 10.0, "speed": "1 mm/s", name: text}
+    result = microslip.predict("continuous-bore", **spin)
+    low, high = getattr(result, f"{name}_low"), getattr(result, f"{name}_high")
+    centre, deviation = (float(one) for one in text.split("+-"))
+    ends = [centre - 1.959964 * deviation, centre + 1.959964 * deviation]
+    limits = {"nu": (0.0, 0.5), "mu": (0.0, 10.0)}[name]
+    assert [low, high] == pytest.approx(np.clip(ends, *limits), abs=1e-3 * centre)
+    assert math.isfinite(result.friction_force_spread_N)

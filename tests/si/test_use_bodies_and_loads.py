@@ -192,10 +192,10 @@ def test_a_fit_prints_what_the_command_prints(tmp_path, capsys):
 def test_values_that_follow_from_a_root_have_its_error(missing, titles):
     inputs = {n: v for n, v in (BALL | SIDEWAYS).items() if n != missing}
     result = microslip.predict("transverse", reduction="40 %", tolerance=0.02, **inputs)
-    value = {"amplitude": result.amplitude_si, "load": result.load_N}[missing]
+    root = result.input_values[missing]
     lines = str(result).split("\n\n")[1].splitlines()
     for title, power in titles.items():
         line = next(one for one in lines if one.startswith(f"{title} "))
         number, error = re.search(r"([\d.]+) \+- ([\d.e-]+)", line).groups()
-        share = power * result.sought_error / value
+        share = power * root.error / root.value
         assert float(error) / float(number) == pytest.approx(share, rel=0.15)

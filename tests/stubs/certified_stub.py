@@ -6,7 +6,7 @@ import microslip
 from microslip.app import question
 from microslip.config import load
 from microslip.datasets import certified_map, netcdf
-from microslip.si.friction_map import FrictionMap
+from microslip.si.map import FrictionMap
 from microslip.sweeps import evaluate, map_refinement
 from microslip.sweeps.batches import key_of
 

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import argparse
 from collections.abc import Mapping, Sequence
+from itertools import product
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from microslip.app.option_parser import StoreSpelling
-from microslip.app.predict_command import GROUPS
-from microslip.app.predicted_table import problem_text
+from microslip.app.predict_command import GROUPS, problem_text
 from microslip.app.progress import elapsed_time
 from microslip.app.question import (
     Answer,
@@ -25,7 +25,6 @@ from microslip.app.response_command import LOAD
 from microslip.app.terminal import complain
 from microslip.foundation import spec
 from microslip.foundation.errors import InputError
-from microslip.si.prediction import NoPrediction
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -125,8 +124,8 @@ def _iwan(options: argparse.Namespace) -> Answer:
 def _table(options: argparse.Namespace) -> Answer:
     from tqdm import tqdm
 
-    from microslip.si.grid import grid_of, interpolation_errors
-    from microslip.si.table import predictions
+    from microslip.si.output import Prediction
+    from microslip.si.table import dataset_of, grid_of, interpolation_errors, predictions
 
     refuse_output(options.output, endings=(".csv",))
     if options.speed is None:
@@ -134,20 +133,18 @@ def _table(options: argparse.Namespace) -> Answer:
     if options.mass is not None and options.drive_stiffness is None:
         raise InputError("mass", options.mass, "allowed only with a drive_stiffness")
     grid = grid_of(options.motion, typed_options(options))
-    lazy = predictions(options.motion, grid.table, grid.shared, need_all=True)
-    points = grid.combinations
+    lazy = predictions(grid, need_all=True)
+    points = list(product(*(values for _, _, values in grid.axes.values())))
     answers = list(tqdm(lazy, "points", len(points), leave=False, disable=None))
     for point, one in zip(points, answers, strict=True):
-        if not one.converged:
+        if not (isinstance(one, Prediction) and one.converged):
             where = ", ".join(f"{name} = {x:.4g}" for name, x in zip(grid.axes, point, strict=True))
             reason = (
-                problem_text(one.error, map_=options.map)
-                if isinstance(one, NoPrediction)
-                else one.reason
+                one.reason if isinstance(one, Prediction) else problem_text(one, map_=options.map)
             )
             complain(f"microslip export table: not converged at {where}: {reason}; no table")
             return Answer({"converged": False}, "", False)
-    dataset = _friction_table(grid.dataset(answers))
+    dataset = _friction_table(dataset_of(grid, answers))
     errors = [float(dataset[f"{name}_error"].max()) for name in ("mu_apparent", "friction_force")]
     comments = [
         f"friction of a contact, motion {options.motion}, from microslip predict",

@@ -56,14 +56,14 @@ def fill(parser: argparse.ArgumentParser) -> None:
 
 def _answer(options: argparse.Namespace) -> Answer:
     from microslip.si.fold import ROWS, fold
-    from microslip.si.quantities import read
+    from microslip.si.inputs import INPUTS, read_quantity
     from microslip.si.strokes import read_record
 
     arguments = typed_options(options, wholes=("rows",))
     refuse_output(options.output, options.record, (".csv",))
     rows, frequency = arguments.get("rows", ROWS), None
     if "frequency" in arguments:
-        frequency = read("frequency", arguments["frequency"], "Hz").si
+        frequency = read_quantity("frequency", arguments["frequency"], INPUTS["frequency"]).si
     form = {name: arguments[name] for name in FILE_FORMAT if name in arguments}
     time, columns, units = read_record(options.record, **form)
     try:

@@ -14,7 +14,7 @@ from microslip.adaptive.period import Period
 from microslip.adaptive.response import Response
 from microslip.adaptive.result import Result
 from microslip.foundation.errors import InputError
-from microslip.si.prediction import Prediction
+from microslip.si.output import Prediction
 from microslip.si.response import RealResponse
 
 AXES: dict[type, tuple[str, ...]] = {
@@ -65,6 +65,8 @@ def to_xarray(record: Any) -> xr.Dataset:
             for name, (unit, values) in record.columns.items()
         }
         return xr.Dataset(columns, attrs=record.attributes)
+    if isinstance(record, Prediction):
+        return record.to_xarray()
     kind = next((kind for kind in AXES if isinstance(record, kind)), None)
     if kind is None:
         names = ", ".join(kind.__name__ for kind in (*AXES, Response, RealResponse))

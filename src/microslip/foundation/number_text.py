@@ -167,3 +167,30 @@ def aligned(columns: Mapping[str, tuple[Sequence[float], Sequence[float] | None]
         width = max(map(len, (heading, *cells)))
         texts.append([f"{cell:>{width}}" for cell in (heading, *cells)])
     return ["  ".join(row) for row in zip(*texts, strict=True)]
+
+
+PREFIXES = (
+    ("G", 1e9),
+    ("M", 1e6),
+    ("k", 1e3),
+    ("", 1.0),
+    ("m", 1e-3),
+    ("u", 1e-6),
+    ("n", 1e-9),
+    ("p", 1e-12),
+)
+"""Metric prefixes of printed units, and their sizes."""
+
+
+def prefixed(value: float, unit: str) -> tuple[str, float]:
+    """The unit with the largest metric prefix that leaves the value at least 1, and its size.  For
+    0, the unit has no prefix."""
+    size = abs(value) or 1.0
+    prefix, factor = next((one for one in PREFIXES if size >= one[1]), PREFIXES[-1])
+    return f"{prefix}{unit}", factor
+
+
+def prefixed_text(value: float, unit: str, digits: int = EXACT_DIGITS) -> str:
+    """Format an exact quantity with a metric prefix.  value: in the SI unit."""
+    name, size = prefixed(value, unit)
+    return number_text(value / size, unit=name, digits=digits)

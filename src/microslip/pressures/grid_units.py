@@ -7,13 +7,13 @@ import re
 from collections.abc import Sequence
 
 from microslip.foundation.csv_table import PURE
+from microslip.foundation.units import read
 
 COLUMNS = ("forward", "lateral", "pressure")
-KINDS = {"forward": "[length]", "lateral": "[length]", "pressure": "[pressure]"}
+KINDS = {"forward": ("length", "m"), "lateral": ("length", "m"), "pressure": ("pressure", "Pa")}
+"""Kind and SI unit of each column."""
 EXAMPLES = {"forward": "mm", "lateral": "mm", "pressure": "MPa"}
 MOST_POINTS = 1_000_000
-LONGEST = 24
-"""Largest number of characters of a unit."""
 PITCH = re.compile(r"(\d+\.?\d*(?:[eE][+-]?\d+)?|\.\d+)\s*(.*)", re.A)
 """Pattern of a number with or without a unit."""
 ALLOWED_PITCH = "allowed: a length such as 0.5 mm, or forward x lateral as in 0.5 mm x 0.6 mm"
@@ -74,18 +74,11 @@ def _factor(name: str, text: str) -> float | None:
     dimensionless."""
     if text in PURE:
         return None
-    import pint  # only here, because it takes a while to load
-
-    unit, registry = None, pint.get_application_registry()
-    if len(text) <= LONGEST:
-        try:
-            unit = registry.Quantity(1.0, registry.parse_units(text))
-        except Exception:  # pint raises errors of many types
-            unit = None
-    if unit is None or not unit.check(KINDS[name]):
-        kind = KINDS[name].strip("[]")
+    kind, si = KINDS[name]
+    try:
+        return float(read(f"1 {text}", si).si)
+    except ValueError:
         raise ValueError(
             f"{name} [{text[:40]}] is no known unit of {kind}; allowed: one such as "
             f"[{EXAMPLES[name]}], or none"
-        )
-    return float(unit.to_base_units().magnitude)
+        ) from None

@@ -29,14 +29,12 @@ from microslip.adaptive.point import solve
 from microslip.foundation.arguments import LARGEST, SMALLEST_TOLERANCE
 from microslip.foundation.csv_table import LABELS, Table, table_of
 from microslip.foundation.errors import InputError
-from microslip.si.bodies import TwoBodies
-from microslip.si.dimensionless import MovingContact, RealMotion
-from microslip.si.friction_map import FrictionMap
-from microslip.si.inputs import LARGEST_MU, QUANTITIES, read_argument
-from microslip.si.materials import RIGID, Material
-from microslip.si.printed_lines import force_unit, in_unit, line, prefixed
-from microslip.si.quantities import read
-from microslip.si.validity import broken_assumptions, warnings_of
+from microslip.foundation.number_text import prefixed, prefixed_text
+from microslip.si.contact import Contact, contact_of
+from microslip.si.inputs import INPUTS, Input, read_input, read_inputs, read_quantity
+from microslip.si.map import FrictionMap
+from microslip.si.output import line
+from microslip.si.warnings import broken_rules, warnings_of
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -174,7 +172,7 @@ class Fit:
             "the friction force" if self.quantity == "friction" else "the coefficient of friction"
         )
         unit = "N" if self.quantity == "friction" else ""
-        load = in_unit(self.load_N, 0.0, force_unit(self.load_N))
+        load = prefixed_text(self.load_N, "N")
         lines = [line(name.replace("_", " "), text) for name, text in self.understood.items()]
         lines += [line("rows", f"{len(self.measured)}, of {kind}; mean load {load}"), ""]
         for name, suffix, base in (
@@ -321,16 +319,20 @@ def fit(
     shared = {"speed": speed, "amplitude": amplitude, "frequency": frequency, "load": load}
     rows = _read_rows(measured, shared, decimal=decimal, encoding=encoding)
     texts, poisson, bodies = _read_bodies(motion, nu, radius, counterbody)
-    level = CONFIDENCE if confidence is None else read("confidence", confidence, "").si
+    level = (
+        CONFIDENCE
+        if confidence is None
+        else read_quantity("confidence", confidence, Input("", "", "", exact=True)).si
+    )
     if level >= 1.0:
         allowed = "allowed is a number above 0 and below 1, such as 0.95 or '95 %'"
         raise InputError("confidence", confidence, allowed)
     if map is not None:
         model: Model = _map_model(map, motion, poisson)
     else:
-        limits: dict[str, Any] = {"low": SMALLEST_TOLERANCE, "high": LARGEST_TOLERANCE}
+        limits = Input("", "", "", SMALLEST_TOLERANCE, LARGEST_TOLERANCE, True, True)
         accepted = TOLERANCE if tolerance is None else tolerance
-        accuracy = read("tolerance", accepted, "", low_open=False, **limits).si
+        accuracy = read_quantity("tolerance", accepted, limits).si
         model = _solver_model(rows, motion, poisson or 0.0, accuracy)
     profile, at, errors, others = _best(rows, model)
     return _concluded(
@@ -417,7 +419,7 @@ def _read_rows(source: Any, shared: Mapping[str, Any], **form: str) -> Rows:
             allowed = f"it is {where}; allowed is a column, or one value for all rows"
             raise InputError(one, shared[one], allowed)
         if one not in names:
-            quantity = read_argument(one, shared[one])
+            quantity = read_input(one, shared[one])
             numbers[one], texts[one] = np.full(len(kept), quantity.si), quantity.text
     if not (numbers["amplitude"] > 0.0).any():
         raise refuse("no row with an amplitude above 0, so that nothing vibrates")
@@ -486,9 +488,9 @@ def _number(name: str, cell: object) -> float:
         allowed = "empty; allowed: a number in every row; leave out the row, or fill the cell"
         raise InputError(name, None, allowed)
     if name in CONDITIONS:
-        return read(name, cell, **QUANTITIES[name]._asdict()).si
+        return read_input(name, cell).si
     low = 0.0 if name.endswith("_error") else -math.inf
-    return read(name, cell, UNITS[name], low=low).si
+    return read_quantity(name, cell, Input("", UNITS[name], "", low, exact=True)).si
 
 
 class Bodies(NamedTuple):
@@ -498,10 +500,16 @@ class Bodies(NamedTuple):
     radius: float
     alike: bool
 
-    def contact(self, mu: float, modulus: float, load: float) -> TwoBodies:
+    def inputs(self, mu: float, modulus: float, load: float) -> dict[str, object]:
+        """Inputs of predict for bodies with this shear modulus, Pa."""
+        young = 2.0 * modulus * (1.0 + self.poisson)
+        other = (young, self.poisson) if self.alike else None
+        sphere = {"radius": self.radius, "load": load, "mu": mu}
+        return {"young": young, "nu": self.poisson, "counterbody": other, **sphere}
+
+    def contact(self, mu: float, modulus: float, load: float) -> Contact:
         """The contact of bodies with this shear modulus, Pa."""
-        body = Material(2.0 * modulus * (1.0 + self.poisson), self.poisson)
-        return TwoBodies(body, body if self.alike else RIGID, self.radius, load, mu)
+        return Contact(read_inputs(None, **self.inputs(mu, modulus, load)))
 
 
 def _read_bodies(
@@ -509,7 +517,7 @@ def _read_bodies(
 ) -> tuple[dict[str, str], float | None, Bodies | None]:
     """Inputs as text, Poisson's ratio, and the bodies of a fit of the shear modulus."""
     texts = {"motion": motion}
-    ratio = None if nu is None else read_argument("nu", nu)
+    ratio = None if nu is None else read_input("nu", nu)
     if ratio is not None:
         texts["nu"] = ratio.text
     if radius is None:
@@ -520,7 +528,7 @@ def _read_bodies(
         raise InputError("nu", None, "needed with a radius")
     if counterbody not in (None, "rigid", "same"):
         raise InputError("counterbody", counterbody, "allowed is rigid or same")
-    size = read_argument("radius", radius)
+    size = read_input("radius", radius)
     texts["counterbody"] = "rigid (default)" if counterbody is None else str(counterbody)
     texts["radius"] = size.text
     return texts, ratio.si, Bodies(ratio.si, size.si, counterbody == "same")
@@ -640,7 +648,7 @@ class Profile:
         slope = self.weight * macro
         tiny = np.finfo(float).tiny
         mu = slope @ self.y / np.maximum((slope * slope).sum(axis=-1), tiny)
-        return np.clip(mu, SMALLEST_MU, LARGEST_MU)
+        return np.clip(mu, SMALLEST_MU, INPUTS["mu"].high)
 
     def squares(self, macro: np.ndarray, mu: Any) -> Any:
         return ((self.y - np.asarray(mu)[..., None] * self.weight * macro) ** 2).sum(axis=-1)
@@ -741,14 +749,14 @@ def _concluded(
         "mu": lambda t: profile.minima(lambda x: np.full_like(x, math.exp(t)))[0][0] - allowed,
         "u_lim": lambda t: profile.at(t) - allowed,
         "shear_modulus": lambda t: (
-            profile.minima(lambda x: np.clip(np.exp(x + t / 1.5) / unit, SMALLEST_MU, LARGEST_MU))[
-                0
-            ][0]
+            profile.minima(
+                lambda x: np.clip(np.exp(x + t / 1.5) / unit, SMALLEST_MU, INPUTS["mu"].high)
+            )[0][0]
             - allowed
         ),
     }
     reach = {
-        "mu": (math.log(mu), math.log(SMALLEST_MU), math.log(LARGEST_MU)),
+        "mu": (math.log(mu), math.log(SMALLEST_MU), math.log(INPUTS["mu"].high)),
         "u_lim": (at, x[0], x[-1]),
         "shear_modulus": (
             modulus,
@@ -850,14 +858,14 @@ def _warnings(
 ) -> list[str]:
     """Assumptions of the theory that do not hold at the best fit."""
     if bodies is None:
-        return list(warnings_of({"mu": mu}))
+        return broken_rules({"mu": mu})
     k = int(np.argmax(rows.amplitude))
     speed, amplitude, frequency = (
         float(one[k]) for one in (rows.speed, rows.amplitude, rows.frequency)
     )
-    real = RealMotion(motion, "m", speed, amplitude, frequency)
-    contact = bodies.contact(mu, math.exp(modulus), rows.mean_load)
-    return list(broken_assumptions(MovingContact(contact, real)))
+    moving = {"speed": speed, "amplitude": amplitude, "frequency": frequency}
+    given = bodies.inputs(mu, math.exp(modulus), rows.mean_load)
+    return warnings_of(contact_of(read_inputs(motion, **given, **moving)), speed)
 
 
 def abscissa(conditions: Mapping[str, np.ndarray]) -> str:

@@ -1,479 +1,578 @@
-"""Read and check the inputs of a prediction: the bodies, the contact, the motion and the drive."""
+"""The inputs of a prediction: one table for the Python arguments, the options, the columns of CSV
+files, their checks, help texts and reference page."""
 
 from __future__ import annotations
 
 import math
-import re
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
-from functools import partial
-from typing import Any, NamedTuple
+from dataclasses import dataclass, field, replace
+from functools import cached_property, partial
+from typing import TYPE_CHECKING, Any, NamedTuple
 
+import numpy as np
+
+from microslip.foundation.arguments import SMALLEST_TOLERANCE
 from microslip.foundation.errors import InputError
-from microslip.si.bodies import TwoBodies
-from microslip.si.dimensionless import RealDrive, RealMotion
-from microslip.si.hardness import read_hardness
-from microslip.si.materials import RIGID, Material, material_named
-from microslip.si.motions import PARTS, kind_of
-from microslip.si.quantities import Quantity, read
-from microslip.si.shapes import elliptic, of_size
-from microslip.si.validity import SENSELESS
+from microslip.foundation.named_files import speaks_of_file
+from microslip.foundation.spec import near_miss
+from microslip.foundation.units import Quantity, read
+from microslip.si.materials import RIGID, Material, material_named, read_hardness
 
-LARGEST_MU = 10.0
-"""Largest accepted coefficient of friction.  Real elastic contacts have smaller coefficients."""
-LARGEST_PHASE = 1e3
-"""Largest accepted phase, rad."""
-OUT_OF_RANGE = "outside the range of floating-point numbers; allowed are sizes of real bodies"
-EXAMPLE = "E and nu as in '70 GPa, 0.22', with a point before decimals"
+if TYPE_CHECKING:
+    from microslip.si.strokes import Stroke
 
-
-class Range(NamedTuple):
-    """SI unit of a quantity, and the range of its allowed values."""
-
-    unit: str
-    low: float = 0.0
-    low_open: bool = True
-    high: float = math.inf
-
-
-QUANTITIES = {
-    "mu": Range("", high=LARGEST_MU),
-    "load": Range("N"),
-    "radius": Range("m"),
-    "counter_radius": Range("m", low=-math.inf),
-    "radius_across": Range("m"),
-    "contact_radius": Range("m"),
-    "speed": Range("m/s", low_open=False),
-    "young": Range("Pa"),
-    "nu": Range("", low_open=False, high=0.5),
-    "force": Range("N"),
-    "amplitude": Range("m", low_open=False),
-    "forward_amplitude": Range("m", low_open=False),
-    "rotation_amplitude": Range("rad", low_open=False),
-    "load_amplitude": Range("N"),
-    "frequency": Range("Hz"),
-    "rotation": Range("rad/s"),
-    "drive_stiffness": Range("N/m"),
-    "mass": Range("kg", low_open=False),
-    "damping": Range("N*s/m", low_open=False),
-    "phase": Range("rad", low=-LARGEST_PHASE),
-    "density": Range("kg/m^3"),
-    "counter_density": Range("kg/m^3"),
-    "reduction": Range("", high=1.0),
-    "wear_coefficient": Range("m^2/N", low_open=False),
-}
-"""Units and ranges of the quantities among `predict`'s arguments; see also `unit_of`."""
-
-
-def unit_of(name: str, motion: object) -> str:
-    """SI unit of an argument listed in QUANTITIES.  The unit of the amplitude depends on the
-    motion."""
-    unit = kind_of(motion).unit if name == "amplitude" else None
-    return QUANTITIES[name].unit if unit is None else unit
-
-
-def read_argument(
-    name: str, value: object, motion: str | None = None, title: str | None = None
-) -> Quantity:
-    """Read an argument listed in QUANTITIES and check its range.  Raises InputError.
-
-    motion: motion of the request, for its amplitude; title: name of the argument in messages.
-    """
-    allowed = QUANTITIES[name]
-    if motion is not None:
-        allowed = allowed._replace(unit=unit_of(name, motion))
-    return read(title or name, value, **allowed._asdict())
-
-
-MOTION_ARGUMENTS = ("rotation", *PARTS, "phase", "frequency")
-"""Arguments of `predict` that describe the motion, except the speed."""
-DRIVE_FIELDS = {
-    "force": "force",
-    "drive_stiffness": "stiffness",
-    "mass": "mass",
-    "damping": "damping",
-}
-"""Fields of RealDrive, keyed by the corresponding argument of `predict`.  The speed is not
-included."""
-OF_CONTACT = (
-    *("mu", "load", "radius", "counter_radius", "radius_across", "contact_radius", "pressure"),
-    *("young", "nu", "material", "counterbody", "hardness", "density"),
-    *("counter_hardness", "counter_density"),
+INF = math.inf
+REDUCTION = (
+    "in place of amplitude, speed or load: requested reduction of friction, such as '50 %'; the "
+    "answer is the smallest amplitude, the largest speed or the largest load"
 )
-"""Arguments of `predict` that describe a contact."""
-SPREAD = re.compile(r"(.*?)\s*(?:\+-|\+/-|±)\s*(.*)", re.S)
-"""Pattern of a quantity with its standard uncertainty."""
-EXACT = ("phase", "density", "counter_density", "reduction")
-"""Quantities that are always exact."""
-HARDNESSES = ("hardness", "counter_hardness")
-OF_BODIES = ("young", "nu", "density", "counter_density", *HARDNESSES, "wear_coefficient")
-"""Quantities that are not listed in Inputs.texts, because the texts of the bodies contain them."""
+TOLERANCE = (
+    "largest accepted error of mu_macro (1e-3), or relative error of the speed under a force (1e-2)"
+)
 
 
-def read_uncertain(name: str, value: object, motion: str) -> Quantity:
-    """Read an argument such as "10 N", or one with a standard uncertainty such as "10 N +- 5 %".
-    Raises InputError."""
-    match = SPREAD.fullmatch(value) if isinstance(value, str) and name not in EXACT else None
-    if match is None:
-        return read_argument(name, value, motion)
-    text, spread = match.groups()
-    try:
-        centre = read_argument(name, text, motion).si
-        if spread.endswith("%") and not text.endswith("%"):
-            deviation = abs(centre) * read(name, spread, "", low_open=False).si
-        else:
-            deviation = read(name, spread, unit_of(name, motion), low_open=False).si
-    except InputError as error:
-        allowed = f"in it {error.value!r}: {error.allowed}, as in '10 N +- 5 %'"
-        raise InputError(name, value, allowed) from None
-    if not deviation < abs(centre):
-        raise InputError(name, value, "allowed is an uncertainty below the value")
-    return Quantity(centre, " ".join(match[0].split()), deviation)
-
-
-class Body(NamedTuple):
-    """A material, and its properties as the user wrote them."""
-
-    material: Material
-    text: str
-
-
-@dataclass(frozen=True)
-class Inputs:
-    """Arguments of `predict`, and the quantities and bodies read from them.
+class Input(NamedTuple):
+    """An input of `predict`.
 
     Attributes
     ----------
-    arguments : mapping
-        The arguments as the user wrote them.  A missing argument is None.
-    quantities : dict of Quantity
-        The quantities that are not missing.
-    bodies : tuple of Body
-        The body and the counterbody.
+    group : str
+        Heading in the help text: bodies, load, motion, drive or output.
+    unit : str or None
+        SI unit, empty for a pure number.  None for a text.
+    help : str
+        What it is, with an example.
+    low, high : float
+        Finite values with low < value <= high are allowed.
+    zero : bool
+        Whether `low` itself is allowed.
+    exact : bool
+        Whether the input cannot have an uncertainty.
     """
 
-    arguments: Mapping[str, Any]
-    quantities: dict[str, Quantity]
-    bodies: tuple[Body, Body]
-
-    def si(self, name: str) -> float | None:
-        """A quantity in its SI unit; None if it is missing."""
-        return self.quantities[name].si if name in self.quantities else None
-
-    def needed(self, name: str) -> float:
-        """A required quantity in its SI unit.  Raises InputError if it is missing."""
-        if name not in self.quantities:
-            raise InputError(name, None, "needed")
-        return self.quantities[name].si
-
-    def error(self, name: str, allowed: str) -> InputError:
-        """The InputError for an argument."""
-        return InputError(name, self.arguments[name], allowed)
+    group: str
+    unit: str | None
+    help: str
+    low: float = 0.0
+    high: float = INF
+    zero: bool = False
+    exact: bool = False
 
     @property
-    def texts(self) -> dict[str, str]:
-        """The bodies, the pressure and the quantities as text, by the name of the argument."""
-        texts = {"body": self.bodies[0].text, "counterbody": self.bodies[1].text}
-        texts |= {name: q.text for name, q in self.quantities.items() if name not in OF_BODIES}
-        if self.arguments["contact_radius"] is not None:
-            texts["pressure"] = self.arguments["pressure"] or "hertz"
-        elif "counter_radius" not in texts:
-            texts["counter_radius"] = "flat (default)"
-        elif self.quantities["counter_radius"].si < 0.0:
-            texts["counter_radius"] += ", hollow"
-        return texts
+    def range(self) -> str:
+        """The allowed values in words."""
+        parts = [f"{'at least' if self.zero else 'above'} {self.low:g}"] * (self.low > -INF)
+        parts += [f"at most {self.high:g}"] * (self.high < INF)
+        return f"{' and '.join(parts)} {self.unit or ''}".strip()
 
 
-def read_inputs(arguments: Mapping[str, Any], motion: str | None = None) -> Inputs:
-    """Read the quantities and the bodies.  Raises InputError.
+_bodies, _load, _drive, _motion, _output = (
+    partial(Input, group) for group in ("bodies", "load", "drive", "motion", "output")
+)
+INPUTS = {
+    "material": _bodies(None, "name of a material, in place of young and nu"),
+    "young": _bodies("Pa", "Young's modulus of the body, such as '210 GPa'"),
+    "nu": _bodies("", "Poisson's ratio of the body", 0.0, 0.5, zero=True),
+    "counterbody": _bodies(None, "rigid (default), a material, or '70 GPa, 0.22' (E, nu)"),
+    "radius": _bodies("m", "radius of the sphere, such as '5 mm'"),
+    "counter_radius": _bodies("m", "radius of the counterbody, below 0 if hollow (flat)", -INF),
+    "radius_across": _bodies("m", "second radius, across the forward direction: an ellipse"),
+    "contact_radius": _bodies("m", "in place of all radii: half the longer side of the contact"),
+    "pressure": _bodies(None, "with contact_radius: hertz (default), ring:inner=0.5, file:FILE"),
+    "load": _load("N", "normal load, such as '10 N'"),
+    "mu": _bodies("", "coefficient of friction without vibration", 0.0, 10.0),
+    "speed": _drive("m/s", "forward speed, such as '1 mm/s'", zero=True),
+    "force": _drive("N", "in place of the speed: a constant forward force, such as '1 N'"),
+    "drive_stiffness": _drive("N/m", "stiffness of a spring that pulls, such as '10 N/um'"),
+    "mass": _drive("kg", "mass of a body on a spring or under a force ('20 g')", zero=True),
+    "damping": _drive("N*s/m", "dashpot parallel to the spring, such as '5 N*s/m'", zero=True),
+    "amplitude": _motion("m", "half stroke ('1 um'), or angle of a bore ('0.5 deg')", zero=True),
+    "forward_amplitude": _motion("m", "forward half stroke, for elliptic and normal", zero=True),
+    "rotation_amplitude": _motion("rad", "half stroke in spin: transverse-bore, normal", zero=True),
+    "load_amplitude": _motion("N", "half stroke of the normal load, for normal"),
+    "phase": _motion("rad", "phase between the oscillations ('90 deg'; 0)", -1e3, 1e3, zero=True),
+    "frequency": _motion("Hz", "frequency, such as '20 kHz', '1200 rpm' or '125664 rad/s'"),
+    "rotation": _motion("rad/s", "angular speed of continuous-bore, such as '60 rpm'"),
+    "reduction": _motion("", REDUCTION, 0.0, 1.0, exact=True),
+    "hardness": _bodies("Pa", "hardness for a warning: '7 GPa', '700 HV', '60 HRC'", exact=True),
+    "density": _bodies("kg/m^3", "density for a warning, such as '7850 kg/m^3'", exact=True),
+    "counter_hardness": _bodies("Pa", "hardness of the counterbody", exact=True),
+    "counter_density": _bodies("kg/m^3", "density of the counterbody", exact=True),
+    "wear_coefficient": _bodies("m^2/N", "Archard's coefficient ('1e-5 mm^3/N/m')", zero=True),
+    "tolerance": _output("", TOLERANCE, SMALLEST_TOLERANCE, 0.1, zero=True, exact=True),
+    "map": _output(None, "certified map (a name, or a .nc file) that replaces the solver"),
+}
+"""Every input of `predict`, in the order of the help text and of the printed answer."""
+OF_BODIES = (
+    *("young", "nu", "hardness", "density", "counter_hardness", "counter_density", "material"),
+    "tolerance",
+)
+"""Inputs that are not printed by themselves: the line of the body contains them."""
+SEARCHED = "amplitude", "speed", "load"
+"""Inputs that a reduction can replace."""
+OSCILLATIONS = {
+    "amplitude": "lateral",
+    "forward_amplitude": "forward",
+    "rotation_amplitude": "angle",
+    "load_amplitude": "load",
+}
+"""Directions of the solver's motions, keyed by the amplitude."""
+SAME_ANGLE = 1e-3
+"""Largest relative difference between equal angles, one of which is sampled at 721 phases."""
 
-    motion: motion of a request, whose quantities can be uncertain; None for a contact without a
-    motion, whose quantities are exact.
+
+@dataclass(frozen=True)
+class Kind:
+    """Inputs of a motion, and its description.
+
+    Attributes
+    ----------
+    name, description : str
+        Name for microslip.solve, and what the sphere does.
+    unit : str or None
+        SI unit of the amplitude, if it is the only one; empty for the factor of a file.
+    needed, optional : tuple of str
+        Required and optional inputs of the motion.
+    along : bool
+        Whether the sphere may oscillate along the drive, or the load oscillates.
+    stroke : Stroke or None
+        One period of the motion, if it is read from a file.
     """
-    arguments = {**dict.fromkeys(OF_CONTACT), **arguments}
-    values = {name: value for name, value in arguments.items() if value is not None}
-    reader = read_argument if motion is None else partial(read_uncertain, motion=motion)
-    quantities = {n: reader(n, values[n]) for n in QUANTITIES if n in values}
-    quantities |= {n: read_hardness(n, values[n]) for n in HARDNESSES if n in values}
-    body, other = _body(arguments, quantities), _counterbody(arguments["counterbody"])
-    bodies = _with_properties(body, "", quantities), _with_properties(other, "counter_", quantities)
-    return Inputs(arguments, quantities, bodies)
+
+    name: str
+    description: str
+    unit: str | None = None
+    needed: tuple[str, ...] = ("amplitude", "frequency")
+    optional: tuple[str, ...] = ()
+    along: bool = False
+    stroke: Stroke | None = field(default=None, repr=False)
+
+    @property
+    def steady(self) -> bool:
+        """Whether nothing oscillates."""
+        return "frequency" not in (*self.needed, *self.optional)
+
+    @property
+    def several(self) -> bool:
+        """Whether the motion has several amplitudes, or is read from a file."""
+        return not (self.unit or self.steady)
+
+    @property
+    def amplitude_unit(self) -> str:
+        return "m" if self.unit is None else self.unit
 
 
-def _with_properties(body: Body, side: str, quantities: Mapping[str, Quantity]) -> Body:
-    """The body with its hardness and density.  side: "counter_" for the counterbody, else
-    empty."""
-    for name in ("hardness", "density"):
-        argument = f"{side}{name}"
-        if argument not in quantities:
-            continue
-        number, text = quantities[argument].si, quantities[argument].text
-        if body.material.rigid:
-            raise InputError(argument, text, "allowed for an elastic body, not a rigid one")
-        changes: dict[str, Any] = {name: number}
-        body = Body(replace(body.material, **changes), f"{body.text}, {name} {text}")
-    return body
+MOTIONS = {
+    kind.name: kind
+    for kind in (
+        Kind("transverse", "slides forward and oscillates sideways", "m"),
+        Kind(
+            "longitudinal",
+            "slides forward and oscillates along the same direction",
+            "m",
+            along=True,
+        ),
+        Kind(
+            "zigzag",
+            "slides forward and moves sideways at constant speed, with abrupt turns",
+            "m",
+        ),
+        Kind(
+            "bore",
+            "slides forward and oscillates in spin, which is rotation about the contact normal",
+            "rad",
+        ),
+        Kind(
+            "elliptic",
+            "slides forward and oscillates along the same direction and sideways",
+            needed=("amplitude", "forward_amplitude", "frequency"),
+            optional=("phase",),
+            along=True,
+        ),
+        Kind(
+            "transverse-bore",
+            "slides forward and oscillates sideways and in spin",
+            needed=("amplitude", "rotation_amplitude", "frequency"),
+            optional=("phase",),
+        ),
+        Kind(
+            "normal",
+            "slides forward while its normal load oscillates, alone or with a motion",
+            needed=("load_amplitude", "frequency"),
+            optional=(*OSCILLATIONS, "phase"),
+            along=True,
+        ),
+        Kind(
+            "continuous-bore",
+            "slides forward and spins steadily about the contact normal",
+            needed=("rotation",),
+        ),
+    )
+}
+"""Motions with inputs of their own.  All other motions have one amplitude or a rotation."""
+AT_REST = Kind("", "rests", needed=())
+"""A contact without a motion."""
 
 
-def _body(arguments: Mapping[str, Any], quantities: Mapping[str, Quantity]) -> Body:
-    material, names = arguments["material"], ("young", "nu")
-    if material is None:
-        for name in names:
-            if name not in quantities:
-                raise InputError(name, None, "needed, or a material")
-        return _elastic(quantities["young"], quantities["nu"])
-    if any(name in quantities for name in names):
-        raise InputError("material", material, "allowed only without young and nu")
+def kind_of(motion: Any) -> Kind:
+    """The kind of a motion: a name, a name with parameters, a user's motion, or a file with one
+    period in SI units.  Raises InputError unless its amplitude has a unit."""
+    if isinstance(motion, str) and motion in MOTIONS:
+        return MOTIONS[motion]
+    if speaks_of_file(motion):
+        from microslip.si.strokes import read_stroke
+
+        stroke = read_stroke(motion)
+        rows, names = len(next(iter(stroke.columns.values()))), list(stroke.columns)
+        text = f"slides forward and follows {rows} samples of its {' and '.join(names)}"
+        along = not {"forward", "load", "indentation"}.isdisjoint(names)
+        needed = () if stroke.frequency else ("frequency",)
+        optional = ("amplitude", "frequency")
+        return Kind(stroke.name, text, "", needed, optional, along, stroke)
+    from microslip.motions.by_name import motion_named
+    from microslip.motions.motion import LOOP
+    from microslip.theory import hertz
+
+    record = motion_named(motion)
+    if record.loads:
+        allowed = "allowed is normal with a load_amplitude for an oscillating load"
+        raise InputError("motion", motion, allowed)
+    if not record.periodic:
+        return Kind(motion, f"is {record.summary}", needed=("rotation",))
+    ahead, aside, angle = record.displacement(LOOP, 0.0, 1.0, 0.0)
+    turn = float(np.abs(angle).max()) / float(hertz.bore_angle(1.0))
+    if turn and (np.ptp(ahead) or np.ptp(aside) or abs(turn - 1.0) > SAME_ANGLE):
+        allowed = "allowed is a translation or a rotation; for both use transverse-bore"
+        raise InputError("motion", motion, allowed)
+    return Kind(
+        motion, f"is {record.summary}", "rad" if turn else "m", along=bool(np.ptp(ahead) > 0.0)
+    )
+
+
+@dataclass(frozen=True, eq=False)
+class Inputs:
+    """Checked inputs.  Each quantity is an attribute, in its SI unit; None if it is missing.
+
+    Attributes
+    ----------
+    kind : Kind
+        The motion.
+    quantities : dict of Quantity
+        Quantities by name.
+    bodies : tuple of Material
+        The body and the counterbody.
+    texts : dict of str
+        The inputs as the user wrote them, by name.
+    pressure : str
+        Name of the pressure for microslip.solve, if the contact radius is an input.
+    search : str or None
+        Name of the input that a reduction replaces.
+    map : xarray.Dataset or None
+        Map that replaces the solver.
+    given : mapping
+        The inputs unchanged, for messages.
+    """
+
+    kind: Kind
+    quantities: dict[str, Quantity]
+    bodies: tuple[Material, Material]
+    texts: dict[str, str]
+    pressure: str = "hertz"
+    search: str | None = None
+    map: Any = None
+    given: Mapping[str, Any] = field(default_factory=dict, repr=False)
+
+    def __getattr__(self, name: str) -> Any:
+        if name not in INPUTS:
+            raise AttributeError(name)
+        return self.quantities[name].si if name in self.quantities else None
+
+    def at(self, **si: Any) -> Inputs:
+        """A copy with other values in SI units, which can be arrays."""
+        nothing = Quantity(0.0, "")
+        changes = {n: replace(self.quantities.get(n, nothing), si=x) for n, x in si.items()}
+        body, other = self.bodies
+        if not si.keys().isdisjoint(("young", "nu")):
+            body = replace(
+                body, young=si.get("young", body.young), poisson=si.get("nu", body.poisson)
+            )
+        return replace(self, quantities=self.quantities | changes, bodies=(body, other))
+
+    def error(self, name: str, allowed: str) -> InputError:
+        """The InputError for an input, with its value as the user wrote it."""
+        return InputError(name, self.given.get(name), allowed)
+
+    def unit(self, name: str) -> str:
+        """SI unit of a quantity."""
+        return self.kind.amplitude_unit if name == "amplitude" else INPUTS[name].unit or ""
+
+    @cached_property
+    def uncertain(self) -> dict[str, Quantity]:
+        """The quantities with an uncertainty."""
+        return {name: one for name, one in self.quantities.items() if one.deviation}
+
+
+def read_inputs(motion: Any, **given: Any) -> Inputs:
+    """Read and check inputs.
+
+    Parameters
+    ----------
+    motion : str or None
+        Motion, as for `microslip.predict`; None for a contact without a motion, which has the
+        inputs of the groups "bodies" and "load".
+    **given
+        Inputs by the names in INPUTS.  None is a missing input.
+
+    Raises
+    ------
+    InputError
+        If inputs are missing (the message names all of them), contradict each other, or are out of
+        range.
+    """
+    kind = AT_REST if motion is None else kind_of(motion)
+    given = {name: value for name, value in given.items() if value is not None}
+    for name, value in given.items():
+        if name not in INPUTS:
+            raise InputError(
+                name, value, f"{near_miss(name, INPUTS)}allowed are {', '.join(INPUTS)}"
+            )
+        values = getattr(value, "magnitude", value)  # the array in a pint quantity
+        sequence = hasattr(values, "__len__") and not isinstance(values, str | bytes | Mapping)
+        sequence = sequence and not (hasattr(values, "dims") and values.size == 1)
+        if sequence and getattr(values, "ndim", 1) > 0 and name not in ("counterbody", "map"):
+            allowed = "allowed is one value; predict_table takes a sequence, with many contacts"
+            raise InputError(name, value, allowed)
+    if kind.stroke is not None:
+        given = _with_stroke(kind.stroke, given)
+    search = _searched(motion, kind, given)
+    _check_presence(motion, kind, given, search)
+    quantities = {
+        n: read_input(n, given[n], kind)
+        for n in INPUTS
+        if INPUTS[n].unit is not None and n in given
+    }
+    texts = {} if motion is None else {"motion": f"{motion}: the sphere {kind.description}"}
+    body, other = _body(given, quantities), _counterbody(given.get("counterbody"))
+    bodies = tuple(
+        _with_properties(*one, side, quantities) for one, side in ((body, ""), (other, "counter_"))
+    )
+    if all(material.rigid for material, _ in bodies):
+        allowed = "allowed is an elastic body if the counterbody is rigid"
+        raise InputError("material", given.get("material"), allowed)
+    texts |= {"body": bodies[0][1]}
+    for name in INPUTS:
+        if name in quantities and name not in OF_BODIES:
+            texts[name] = quantities[name].text
+        elif name == "counterbody":
+            texts[name] = bodies[1][1]
+        elif name == "pressure" and "contact_radius" in given:
+            texts[name] = str(given.get("pressure", "hertz"))
+        elif name in given and INPUTS[name].unit is None and name != "material":
+            texts[name] = str(given[name]) if name != "map" else "friction from a map"
+    if "radius" in quantities and "radius_across" not in quantities:
+        hollow = quantities.get("counter_radius")
+        texts["counter_radius"] = "flat (default)" if hollow is None else hollow.text
+        if hollow is not None and hollow.si < 0.0:
+            texts["counter_radius"] += ", hollow"
+    if kind.stroke is not None:
+        texts["amplitude"] += " times the samples"
+    order = ["motion", "body", *INPUTS]
+    texts = dict(sorted(texts.items(), key=lambda one: order.index(one[0])))
+    pressure = given.get("pressure", "hertz")
+    materials = bodies[0][0], bodies[1][0]
+    return Inputs(kind, quantities, materials, texts, pressure, search, given.get("map"), given)
+
+
+def read_input(name: str, value: Any, kind: Kind = AT_REST) -> Quantity:
+    """Read one quantity of INPUTS and check its range.  Raises InputError.
+
+    kind: motion, for the unit of its amplitude.  Without a motion, the quantity must be exact.
+    """
+    one = INPUTS[name]
+    unit = kind.amplitude_unit if name == "amplitude" else one.unit
+    return read_quantity(name, value, one._replace(unit=unit, exact=one.exact or kind is AT_REST))
+
+
+def read_quantity(name: str, value: Any, one: Input) -> Quantity:
+    """Read a quantity and check its range.  Raises InputError about the argument `name`."""
     try:
-        return _of_material(material.strip() if isinstance(material, str) else material)
+        hardness = name.endswith("hardness")
+        quantity = read_hardness(value) if hardness else read(value, one.unit or "")
+    except ValueError as error:
+        raise InputError(name, value, str(error)) from None
+    si = quantity.si
+    if not (one.low < si <= one.high or one.zero and si == one.low) or math.isinf(si):
+        raise InputError(name, value, f"allowed is a finite value {one.range}".strip())
+    if one.exact and quantity.deviation:
+        raise InputError(name, value, "allowed is an exact value, without an uncertainty")
+    return quantity
+
+
+def _with_stroke(stroke: Stroke, given: dict[str, Any]) -> dict[str, Any]:
+    """The inputs with the frequency and the mean load from a file.  Raises InputError."""
+    if stroke.frequency is not None and "frequency" in given:
+        allowed = "allowed only without a column time, which contains the frequency"
+        raise InputError("frequency", given["frequency"], allowed)
+    if "map" in given:
+        allowed = "not allowed for a motion from a file: no map has its unit of the amplitude"
+        raise InputError("map", stroke.name, allowed)
+    own = {"amplitude": 1.0, "frequency": stroke.frequency, "load": stroke.mean_load}
+    return {name: value for name, value in own.items() if value is not None} | given
+
+
+def _searched(motion: Any, kind: Kind, given: Mapping[str, Any]) -> str | None:
+    """Name of the missing input, which a search determines; None without a reduction."""
+    if "reduction" not in given:
+        return None
+    reduction = given["reduction"]
+    for name in ("force", "drive_stiffness"):
+        if name in given:
+            allowed = "allowed only without a force and a drive_stiffness"
+            raise InputError("reduction", reduction, allowed)
+    missing = [name for name in SEARCHED if name not in given]
+    if kind.steady or kind.several and "amplitude" not in kind.needed:
+        missing = [name for name in missing if name != "amplitude"]
+    if not kind.unit and missing != ["speed"]:
+        what = "several amplitudes" if kind.several else "no amplitude"
+        raise InputError("reduction", reduction, f"not allowed: {motion} has {what}")
+    if len(missing) != 1:
+        allowed = "allowed only without the amplitude, the speed or the load, which it determines"
+        if missing:
+            allowed = f"it determines one quantity, but {' and '.join(missing)} are missing"
+        raise InputError("reduction", reduction, allowed)
+    return missing[0]
+
+
+def _check_presence(motion: Any, kind: Kind, given: Mapping[str, Any], search: str | None) -> None:
+    """Raise InputError for inputs that contradict each other or are missing."""
+    own, groups = (*kind.needed, *kind.optional), ("bodies", "load")
+    allowed = {n for n, one in INPUTS.items() if one.group in groups or n in own}
+    if kind is not AT_REST:
+        allowed |= {n for n, one in INPUTS.items() if one.group in ("drive", "output")} | {
+            "reduction"
+        }
+    sized = "contact_radius" in given or "pressure" in given
+    size = (
+        "a contact_radius"
+        if "contact_radius" in given
+        else ("a pressure, which needs a contact_radius in place of radii")
+    )
+    refusals = [
+        (n, f"{motion or 'a contact without a motion'} has none")
+        for n in INPUTS
+        if n not in allowed
+    ]
+    refusals += [
+        (n, f"allowed only without {size}")
+        for n in ("radius", "counter_radius", "radius_across")
+        if sized
+    ]
+    if "counter_radius" in given:
+        curvature = "allowed only without a counter_radius: give the radii of relative curvature"
+        refusals.append(("radius_across", curvature))
+    if "speed" in given:
+        refusals.append(("force", "allowed is a force or a speed, not both"))
+    if kind.steady:
+        text = f"allowed only for a motion that oscillates; {motion} is steady"
+        refusals += [(name, text) for name in ("drive_stiffness", "mass", "damping")]
+    elif "force" in given:
+        refusals += [(n, "allowed only without a force") for n in ("drive_stiffness", "damping")]
+    elif "drive_stiffness" not in given:
+        refusals.append(("mass", "allowed only with a force or a drive_stiffness"))
+        refusals.append(("damping", "allowed only with a drive_stiffness"))
+    if "material" in given:
+        refusals += [("material", "allowed only without young and nu")] * bool(
+            {"young", "nu"} & given.keys()
+        )
+    if "map" in given:
+        refusals += [
+            (n, "allowed only without a map")
+            for n in ("force", "drive_stiffness", "wear_coefficient")
+        ]
+    for name, text in refusals:
+        if name in given:
+            raise InputError(name, given[name], text)
+    missing = dict.fromkeys(("mu", "load"), "needed")
+    missing |= dict.fromkeys(kind.needed, f"{motion} needs it")
+    if kind is not AT_REST and "force" not in given:
+        missing["speed"] = "needed, or a force"
+    missing["contact_radius" if sized else "radius"] = (
+        "needed with a pressure: half the longer side of the contact"
+        if sized
+        else "needed, or a contact_radius"
+    )
+    if "material" not in given:
+        missing |= {"young": "needed, or a material", "nu": "needed"}
+    missing = {n: text for n, text in missing.items() if n not in given and n != search}
+    if missing:
+        first, *others = missing
+        also = f"; also missing: {', '.join(others)}" if others else ""
+        raise InputError(first, None, f"{missing[first]}{also}")
+
+
+def _body(given: Mapping[str, Any], quantities: Mapping[str, Quantity]) -> tuple[Material, str]:
+    """The body and its text."""
+    if "material" not in given:
+        young, nu = quantities["young"], quantities["nu"]
+        return Material(young.si, nu.si), f"E = {young.text}, nu = {nu.text}"
+    material = given["material"]
+    try:
+        return _material(material.strip() if isinstance(material, str) else material)
     except InputError as error:
         other = "" if isinstance(material, str) else ", or a Material"
         raise InputError("material", material, f"{error.allowed}{other}") from None
 
 
-def _counterbody(body: Any) -> Body:
-    """The counterbody.  body: a Material, a name, "E, nu", a pair (E, nu), or None for a rigid
-    body."""
-    if body is None:
-        return Body(RIGID, "rigid (default)")
-    pair = isinstance(body, tuple | list)
-    if not (pair or isinstance(body, str | Material)):
-        allowed = f"allowed is a text, {EXAMPLE}, a pair of both, or a Material"
-        raise InputError("counterbody", body, allowed)
-    parts = list(body) if pair else [body]
-    if isinstance(body, str):
-        parts = [part.strip() for part in body.split(",")]
-    try:
-        if len(parts) == 1 and not pair:
-            return _of_material(parts[0])
-        if len(parts) == 2:
-            young = read_argument("young", parts[0], title="Young's modulus")
-            return _elastic(young, read_argument("nu", parts[1], title="Poisson's ratio"))
-    except InputError as error:
-        problem = f"{error.allowed}, or {EXAMPLE}"
-        if len(parts) == 2:
-            problem = f"its {error.argument} {error.value!r}: {error.allowed}, as in '70 GPa, 0.22'"
-        raise InputError("counterbody", body, problem) from None
-    count = f"{len(parts)} values" if pair else f"{len(parts) - 1} commas in it"
-    raise InputError("counterbody", body, f"{count}; allowed: {EXAMPLE}")
+def _material(material: Any) -> tuple[Material, str]:
+    if isinstance(material, Material):
+        return material, str(material)
+    body = material_named(material)
+    return body, material if body.rigid else f"{material} ({body})"
 
 
-def _elastic(young: Quantity, nu: Quantity) -> Body:
-    return Body(Material(young.si, nu.si), f"E = {young.text}, nu = {nu.text}")
+def _counterbody(value: Any) -> tuple[Material, str]:
+    """The counterbody, a Material, a name, "E, nu" or a pair (E, nu), and its text."""
+    if value is None:
+        return RIGID, "rigid (default)"
+    example = "E and nu as in '70 GPa, 0.22', with a point before decimals"
+    pair = isinstance(value, tuple | list)
+    if not (pair or isinstance(value, str | Material)):
+        raise InputError(
+            "counterbody", value, f"allowed is a text, {example}, a pair or a Material"
+        )
+    parts = list(value) if pair else [value]
+    if isinstance(value, str):
+        parts = [part.strip() for part in value.split(",")]
+    if len(parts) == 1 and not pair:
+        try:
+            return _material(parts[0])
+        except InputError as error:
+            raise InputError("counterbody", value, f"{error.allowed}, or {example}") from None
+    if len(parts) != 2:
+        count = f"{len(parts)} values" if pair else f"{len(parts) - 1} commas in it"
+        raise InputError("counterbody", value, f"{count}; allowed: {example}")
+    numbers = []
+    for name, title, part in zip(
+        ("young", "nu"), ("Young's modulus", "Poisson's ratio"), parts, strict=True
+    ):
+        try:
+            numbers.append(read_input(name, part))
+        except InputError as error:
+            problem = f"its {title} {part!r}: {error.allowed}, as in '70 GPa, 0.22'"
+            raise InputError("counterbody", value, problem) from None
+    young, nu = numbers
+    return Material(young.si, nu.si), f"E = {young.text}, nu = {nu.text}"
 
 
-def _of_material(name: Any) -> Body:
-    """The body made of a Material, or of the material with this name."""
-    if isinstance(name, Material):
-        return Body(name, _numbers(name))
-    body = material_named(name)
-    return Body(body, name if body.rigid else f"{name} ({_numbers(body)})")
-
-
-def _numbers(body: Material) -> str:
-    """The properties of a material in one line."""
-    if body.rigid:
-        return "rigid"
-    parts = [f"E = {body.young / 1e9:.6g} GPa", f"nu = {body.poisson:g}"]
-    if body.hardness is not None:
-        parts.append(f"hardness {body.hardness / 1e9:.6g} GPa")
-    if body.density is not None:
-        parts.append(f"density {body.density:.6g} kg/m^3")
-    return ", ".join(parts)
-
-
-def contact_of(inputs: Inputs, load: float | None = None) -> TwoBodies:
-    """The contact of the bodies.
-
-    Parameters
-    ----------
-    inputs : Inputs
-        The bodies, the shape of the contact, mu and the load.
-    load : float or None
-        Load, N, if it is not that of the inputs.
-
-    Raises
-    ------
-    InputError
-        If an argument is missing or not allowed, or if Hertz's theory does not apply to the
-        contact.
-    """
-    arguments, (body, counterbody) = inputs.arguments, (one.material for one in inputs.bodies)
-    mu, load = inputs.needed("mu"), inputs.needed("load") if load is None else load
-    sized = arguments["pressure"] is not None or arguments["contact_radius"] is not None
-    if sized:
-        _check_without_radii(arguments)
-    elif arguments["radius"] is None:
-        raise InputError("radius", None, "needed, or a contact_radius")
-    radii = () if sized else _radii(inputs)
-    radius = 1.0 / sum(1.0 / one for one in radii) if radii else 1.0
-    plain = TwoBodies(body, counterbody, radius, load, mu, radii)
-    if sized:
-        return _of_size(inputs, plain)
-    _check_hertzian(plain, "counter_radius", inputs)
-    across = inputs.si("radius_across")
-    if across is None:
-        return plain
-    if "counter_radius" in inputs.quantities:
-        allowed = "allowed only without a counter_radius: give the radii of relative curvature"
-        raise inputs.error("radius_across", allowed)
-    try:
-        contact = elliptic(plain, across)
-    except InputError as error:
-        raise error.renamed("radius_across", arguments["radius_across"]) from None
-    _check_hertzian(contact, "radius_across", inputs)
-    return contact
-
-
-def _check_without_radii(arguments: Mapping[str, Any]) -> None:
-    """Raise InputError unless the arguments contain a size and no radii."""
-    for name in ("radius", "counter_radius", "radius_across"):
-        if arguments[name] is not None:
-            cause = "a contact_radius"
-            if arguments["contact_radius"] is None:
-                cause = "a pressure, which needs a contact_radius in place of radii"
-            raise InputError(name, arguments[name], f"allowed only without {cause}")
-    if arguments["contact_radius"] is None:
-        allowed = "needed with a pressure: half the longer side of the contact"
-        raise InputError("contact_radius", None, allowed)
-
-
-def _of_size(inputs: Inputs, plain: TwoBodies) -> TwoBodies:
-    """A contact with a prescribed size and pressure; raises InputError.
-
-    plain: the bodies and the load, with an arbitrary radius.
-    """
-    size = inputs.quantities["contact_radius"].si
-    try:
-        contact = of_size(plain, size, inputs.texts["pressure"])
-        sizes = (contact.u_lim, contact.load / size**2)
-        good = all(0.0 < one < math.inf for one in sizes) and contact.largest_pressure > 0.0
-    except (ArithmeticError, ValueError) as error:
-        if isinstance(error, InputError) and error.argument == "pressure":
-            raise
-        good = False
-    if not good:
-        raise inputs.error("contact_radius", OUT_OF_RANGE)
-    return contact
-
-
-def _radii(inputs: Inputs) -> tuple[float, float]:
-    """Radii of the sphere and of the counterbody, m.  The radius of a flat counterbody is
-    infinite."""
-    radius, counter = inputs.quantities["radius"].si, inputs.si("counter_radius")
-    if counter == 0.0:
-        raise inputs.error("counter_radius", "allowed is a radius other than 0")
-    counter = math.inf if counter is None else counter
-    for name, one in (("radius", radius), ("counter_radius", counter)):
-        if math.isinf(1.0 / one):
-            raise inputs.error(name, OUT_OF_RANGE)
-    curvature = 1.0 / radius + 1.0 / counter
-    if math.isinf(curvature):
-        raise inputs.error("counter_radius", OUT_OF_RANGE)
-    if not curvature > 0.0:
-        allowed = "allowed is a hollow with a larger radius than the sphere"
-        raise inputs.error("counter_radius", allowed)
-    return radius, counter
-
-
-def _check_hertzian(contact: TwoBodies, second: str, inputs: Inputs) -> None:
-    """Raise InputError if Hertz's theory does not apply to a contact.
-
-    second: argument with the second radius.
-    """
-    try:
-        a, smallest = contact.contact_radius, contact.smallest_radius
-        if a >= SENSELESS * smallest:
-            raise inputs.error(
-                "radius" if smallest == abs(contact.radii[0]) else second,
-                f"by Hertz's theory, which is for contacts much smaller than either body, the "
-                f"contact radius would be {a:.3g} m, {a / smallest:.2g} of this radius; allowed is "
-                f"less than {SENSELESS:g}",
-            )
-        sizes = (a, contact.indentation, contact.u_lim, contact.largest_pressure)
-        good = all(0.0 < size < math.inf for size in sizes)
-    except ArithmeticError:
-        good = False
-    if not good:
-        load = inputs.arguments["load"] or contact.load  # of a search for the load
-        raise InputError("load", load, f"with these bodies and radii, {OUT_OF_RANGE}")
-
-
-def with_stroke(motion: str, arguments: Mapping[str, Any]) -> dict[str, Any]:
-    """Fill in a missing amplitude, frequency or load for a motion from a file.  Raises InputError
-    if a frequency is specified although the file has a column `time`."""
-    stroke = kind_of(motion).stroke
-    if stroke is None:
-        return dict(arguments)
-    if stroke.frequency is not None and arguments["frequency"] is not None:
-        allowed = "allowed only without a column time, which contains the frequency"
-        raise InputError("frequency", arguments["frequency"], allowed)
-    own = {"amplitude": 1.0, "frequency": stroke.frequency, "load": stroke.mean_load}
-    return {name: own.get(name) if value is None else value for name, value in arguments.items()}
-
-
-def check_motion_and_drive(motion: str, arguments: Mapping[str, Any], sought: str | None) -> None:
-    """Raise InputError if an argument of the motion or the drive is missing or not allowed.
-
-    sought: name of the quantity that a search determines, or None.  This quantity may be missing.
-    """
-    kind = kind_of(motion)
-    refused = {
-        name: f"{motion} has none"
-        for name in MOTION_ARGUMENTS
-        if name not in (*kind.needed, *kind.optional)
-    }
-    missing = dict.fromkeys(("mu", "load"), "needed")
-    missing |= dict.fromkeys(kind.needed, f"{motion} needs it")
-    if arguments["force"] is None:
-        missing["speed"] = "needed, or a force"
-    elif arguments["speed"] is not None:
-        raise InputError("force", arguments["force"], "allowed is a force or a speed, not both")
-    if kind.steady:
-        which = f"allowed only for a motion that oscillates; {motion} is steady"
-        refused |= dict.fromkeys(("drive_stiffness", "mass", "damping"), which)
-    elif arguments["force"] is not None:
-        which = "allowed only without a force"
-        refused |= dict.fromkeys(("drive_stiffness", "damping"), which)
-    elif arguments["drive_stiffness"] is None:
-        refused["mass"] = "allowed only with a force or a drive_stiffness"
-        refused["damping"] = "allowed only with a drive_stiffness"
-    for name, allowed in refused.items():
-        if arguments[name] is not None:
-            raise InputError(name, arguments[name], allowed)
-    _refuse_missing({n: text for n, text in missing.items() if n != sought}, arguments)
-
-
-def _refuse_missing(needed: Mapping[str, str], arguments: Mapping[str, Any]) -> None:
-    """Raise InputError for the first of the needed arguments that is missing.  The message names
-    all others that are missing, including those of the bodies and the size."""
-    missing = [name for name in needed if arguments[name] is None]
-    if not missing:
-        return
-    if all(arguments[name] is None for name in ("radius", "contact_radius", "pressure")):
-        missing.append("radius")
-    if arguments["material"] is None:
-        missing += [name for name in ("young", "nu") if arguments[name] is None]
-    first, *others = missing
-    also = f"; also missing: {', '.join(others)}" if others else ""
-    raise InputError(first, None, f"{needed[first]}{also}")
-
-
-def motion_of(motion: str, inputs: Inputs) -> RealMotion:
-    """The motion; raises InputError."""
-    kind = kind_of(motion)
-    if kind.several and kind.stroke is None and not any(map(inputs.si, PARTS)):
-        allowed = "allowed is a value above 0 if no other amplitude is above 0"
-        raise inputs.error(kind.needed[0], allowed)
-    values: dict[str, Any] = {name: inputs.si(name) for name in ("speed", *MOTION_ARGUMENTS)}
-    name = motion if kind.stroke is None else kind.stroke.name
-    return RealMotion(name, kind.unit, **values, stroke=kind.stroke)
-
-
-def drive_of(motion: str, inputs: Inputs) -> RealDrive:
-    """The drive; raises InputError."""
-    drive = RealDrive(**{field: inputs.si(name) for name, field in DRIVE_FIELDS.items()})
-    if drive.stiffness is not None and motion == "longitudinal" and inputs.si("speed") == 0.0:
-        allowed = "allowed is a speed above 0 for a longitudinal motion with a spring"
-        raise inputs.error("speed", allowed)
-    return drive
+def _with_properties(
+    body: Material, text: str, side: str, quantities: Mapping[str, Quantity]
+) -> tuple[Material, str]:
+    """The body with its hardness and density, and its text.  side: "counter_" or empty."""
+    for name in ("hardness", "density"):
+        if one := quantities.get(f"{side}{name}"):
+            if body.rigid:
+                allowed = "allowed for an elastic body, not a rigid one"
+                raise InputError(f"{side}{name}", one.text, allowed)
+            changes: dict[str, Any] = {name: one.si}
+            body, text = replace(body, **changes), f"{text}, {name} {one.text}"
+    return body, text

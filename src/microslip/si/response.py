@@ -23,9 +23,8 @@ from microslip.adaptive.response import Response, response
 from microslip.foundation import spec
 from microslip.foundation.csv_table import LABELS, table_of
 from microslip.foundation.errors import InputError, shown
-from microslip.si.bodies import TwoBodies
-from microslip.si.inputs import OF_CONTACT, contact_of, read_inputs
-from microslip.si.quantities import read
+from microslip.si.contact import Contact, contact_of
+from microslip.si.inputs import Input, read_inputs, read_quantity
 from microslip.si.strokes import UNITS, scales
 
 
@@ -174,13 +173,9 @@ def predict_response(
     )
 
 
-def only_contact(contact: Mapping[str, object]) -> TwoBodies:
-    """The contact described by a mapping with keys from OF_CONTACT.  Raises InputError."""
-    strange = sorted(contact.keys() - set(OF_CONTACT))
-    if strange:
-        allowed = f"allowed are {', '.join(OF_CONTACT)}"
-        raise InputError(strange[0], contact[strange[0]], allowed)
-    return contact_of(read_inputs(contact))
+def only_contact(contact: Mapping[str, object]) -> Contact:
+    """The contact of inputs of the groups "bodies" and "load".  Raises InputError."""
+    return contact_of(read_inputs(None, **contact))
 
 
 def response_to(
@@ -262,7 +257,7 @@ def _number(where: int, cell: object, name: str, unit: str) -> float:
                 raise ValueError(f"line {where}: {name} is in {written}; {allowed}")
             if space:
                 return spec.read(name, number) * _factor(name, written, unit)
-        return read(name, cell, unit, low=-math.inf).si
+        return read_quantity(name, cell, Input("", unit, "", -math.inf, exact=True)).si
     except InputError as error:
         problem = "empty" if cell is None else f"{cell!r}: {error.allowed}"
         raise ValueError(f"line {where}: {name} is {problem}") from None
@@ -271,4 +266,4 @@ def _number(where: int, cell: object, name: str, unit: str) -> float:
 @lru_cache
 def _factor(name: str, written: str, unit: str) -> float:
     """A unit divided by the SI unit."""
-    return read(name, f"1 {written}", unit).si
+    return read_quantity(name, f"1 {written}", Input("", unit, "")).si

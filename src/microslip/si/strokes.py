@@ -11,19 +11,16 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import Any
 
 import numpy as np
 
 from microslip.foundation.csv_table import check_format, parsed_file
 from microslip.foundation.errors import InputError
 from microslip.foundation.named_files import FileReader, NamedFile
+from microslip.foundation.units import read
 from microslip.motions.from_file import COLUMNS, UNITS, read_period, read_samples
 from microslip.motions.samples import NORMAL, PLANE, Sampled
-from microslip.si.quantities import read
-
-if TYPE_CHECKING:
-    from microslip.si.bodies import TwoBodies
 
 USUAL_ROWS, MOST_ROWS = 2_000, 10_000
 """Largest number of rows in a period without a hint to `microslip fold`, and at all.  With more
@@ -61,13 +58,13 @@ class Stroke:
         """Mean of the load, N; None without a load."""
         return float(self.columns["load"].mean()) if "load" in self.columns else None
 
-    def deviations(self, contact: TwoBodies) -> dict[str, np.ndarray]:
+    def deviations(self, contact: Any) -> dict[str, np.ndarray]:
         """The columns in the units of `microslip.Sampled`, without the mean load or indentation,
         which is 1."""
         units = scales(contact, self.columns)
         return {name: one / units[name] - (name in NORMAL) for name, one in self.columns.items()}
 
-    def sampled(self, contact: TwoBodies, size: float) -> Sampled:
+    def sampled(self, contact: Any, size: float) -> Sampled:
         """The motion for microslip.solve, with deviations divided by `size`."""
         deviations = self.deviations(contact).items()
         return Sampled.of_columns({n: one / size + (n in NORMAL) for n, one in deviations})
@@ -94,7 +91,7 @@ class Stroke:
         return np.stack([self.columns.get(name, zero) for name in PLANE])
 
 
-def scales(contact: TwoBodies, columns: dict[str, np.ndarray]) -> dict[str, float]:
+def scales(contact: Any, columns: dict[str, np.ndarray]) -> dict[str, float]:
     """The unit of each column in `microslip.response` and `microslip.Sampled`, in SI units."""
     if "indentation" in columns and not math.isfinite(contact.indentation):
         allowed = "allowed is a load: the indentation under this pressure is not known"
@@ -110,11 +107,13 @@ def scales(contact: TwoBodies, columns: dict[str, np.ndarray]) -> dict[str, floa
 
 def factors(units: dict[str, str | None]) -> dict[str, float]:
     """The unit of each column divided by the SI unit.  Raises ValueError for a wrong unit."""
-    try:
-        return {n: read(n, f"1 {one}", UNITS.get(n, "s")).si for n, one in units.items()}
-    except InputError as error:
-        name = error.argument
-        raise ValueError(f"{name} [{units[name]}]: {error.allowed}") from None
+    result = {}
+    for name, unit in units.items():
+        try:
+            result[name] = read(f"1 {unit}", UNITS.get(name, "s")).si
+        except ValueError as error:
+            raise ValueError(f"{name} [{unit}]: {error}") from None
+    return result
 
 
 def _of_content(file: NamedFile, content: bytes) -> Stroke:

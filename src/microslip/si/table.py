@@ -1,32 +1,86 @@
-"""Predictions for a table of contacts, returned as a dataset."""
+"""Tables, curves and grids of contacts: predictions of many inputs, as a dataset and as text."""
 
 from __future__ import annotations
 
+import math
 import os
-from collections.abc import Iterator, Mapping, Sequence
+import re
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
+from functools import partial
+from itertools import product
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from microslip.foundation.csv_table import LABELS, SOURCES, Table, table_of
+from microslip.foundation.csv_table import LABELS, SOURCES, table_of
 from microslip.foundation.errors import InputError
-from microslip.si.inputs import QUANTITIES, unit_of
-from microslip.si.predict import NOTHING, predict_arguments, without_solution
-from microslip.si.prediction import COLUMNS, NoPrediction, Prediction, column_unit
-from microslip.si.reduction import NotAttainedError
-from microslip.si.request import Request, request_of
+from microslip.foundation.number_text import SEPARATOR, number_text
+from microslip.si.inputs import INPUTS, Inputs, kind_of, read_quantity
+from microslip.si.output import REASONS, TEXTS, Prediction, Value, input_column
+from microslip.si.predict import checked_inputs, predict_inputs
+from microslip.si.search import NoSolutionError
+from microslip.si.solve import RUNS_AWAY
 
 if TYPE_CHECKING:
     import xarray as xr
 
 MOST_CASES = 100_000
-NAMES = {
-    name: QUANTITIES[name].unit if name in QUANTITIES else None for name in NOTHING if name != "map"
-}
-"""SI unit of each allowed column of a file, None for a text.  A column is an argument of
-`predict`."""
-TEXTS = ("outcome", "sought", "interval_method")
-"""Text columns.  Every other column without values is numeric."""
+VALUES = 11
+"""Default number of values of a range."""
+NUMBER = r"[+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?"
+RANGE = re.compile(rf"({NUMBER})\s*\.\.\s*({NUMBER})\s*(.*)", re.A)
+RANGES = (
+    "allowed is a range from a smaller to a larger number, such as '0..0.5 um' (11 values), "
+    f"'0..2 um, 21' (21 values; from 2 to {MOST_CASES} are allowed) or '0.1..10 mm/s, 21, log' (21 "
+    "values in equal ratios, from a number above 0); a number begins with a digit"
+)
+PRINTED = {"mu_apparent": "mu_apparent", "friction_force": "force N", "speed": "speed m/s"}
+PRINTED |= {"force_threshold": "threshold N"}
+PRINTED |= {f"probability_{one}": one for one in ("stays", "moves", "runs_away")}
+"""Headings of the outputs in a printed table."""
+WIDTH = 13
+
+
+@dataclass(frozen=True)
+class Cases:
+    """Many contacts.
+
+    Attributes
+    ----------
+    motion : str
+        Motion of all contacts.
+    columns : dict of list
+        Inputs and labels that differ between the contacts, by name.
+    shared : dict
+        Inputs that all contacts share.
+    names : list of str
+        Name of each contact in messages, such as "line 3".
+    starts : dict of list
+        First columns of the printed table, by heading.
+    errors : dict of str
+        Messages about unreadable contacts, by index.
+    axes : dict of tuple
+        Name of the input, SI unit, and values in SI units of each axis of a grid, by the name of
+        the coordinate.  Empty for a table.
+    """
+
+    motion: str
+    columns: dict[str, list[Any]]
+    shared: dict[str, Any]
+    names: list[str]
+    starts: dict[str, list[Any]]
+    errors: dict[int, str] = field(default_factory=dict)
+    axes: dict[str, tuple[str, str, list[float]]] = field(default_factory=dict)
+
+    def given(self, case: int) -> dict[str, Any]:
+        """Inputs of a contact."""
+        own = {n: values[case] for n, values in self.columns.items() if n not in LABELS}
+        return {**self.shared, **own}
+
+
+Answers = Sequence[Prediction | InputError | str]
+"""The prediction of each contact, or the reason why it has none."""
 
 
 def predict_table(
@@ -44,19 +98,19 @@ def predict_table(
     motion : str
         Motion of all contacts; see `microslip.predict`.
     cases : mapping, pandas DataFrame or path of a CSV file
-        Sequences of equal length, keyed by argument of `predict`, as in {"load": ["1 N", "10 N"]}
-        or {"load [N]": [1, 10]}.  None and NaN are missing values.  Columns named label, name, id,
+        Sequences of equal length, keyed by input of `predict`, as in {"load": ["1 N", "10 N"]} or
+        {"load [N]": [1, 10]}.  None and NaN are missing values.  Columns named label, name, id,
         sample or comment are copied to the dataset.
     decimal, encoding : str
         Decimal mark of the file, "." or ",", and its encoding, such as "cp1252".
     shared
-        Arguments of `microslip.predict` that all cases share.
+        Inputs of `microslip.predict` that all cases share.
 
     Returns
     -------
     xarray.Dataset
         Every column of a Prediction, over the dimension `case`, with units.  Missing values are
-        NaN.  Lists of strings are joined with semicolons.  `case_NAME` contains the input column
+        NaN.  Lists of texts are joined with semicolons.  `case_NAME` contains the input column
         NAME.  `error` is the error message of a case without a prediction, else empty.
 
     Raises
@@ -65,114 +119,323 @@ def predict_table(
         If the table is invalid or has no valid case.  If no case is valid, the error of the first
         case is raised.  An error due to the table contains the number of the case.
     """
-    argument = "table" if isinstance(cases, str | os.PathLike) else "cases"
-    table = table_of(argument, cases, NAMES, decimal=decimal, encoding=encoding)
+    table = read_cases(motion, cases, shared, decimal=decimal, encoding=encoding)
+    return dataset_of(table, list(predictions(table)))
+
+
+def predict_grid(motion: str, **given: Any) -> xr.Dataset:
+    """Predictions over ranges of quantities: a curve, a map, or a table of more dimensions.
+
+    Parameters
+    ----------
+    motion : str
+        Motion of all contacts, as for `microslip.predict`.
+    **given
+        Inputs of `microslip.predict`.  A quantity can be a range: "0..2 um" has 11 values in equal
+        steps, "0..2 um, 21" has 21, and "0.1..10 mm/s, 21, log" has 21 in equal ratios.  It can
+        also be a sequence of quantities.
+
+    Returns
+    -------
+    xarray.Dataset
+        Every column of a Prediction, with units.  Each range is a dimension, in the order of the
+        arguments.  The name of a dimension is the input with its SI unit, such as speed_m_s.
+        `error` is the error message of a point without a prediction, and empty for other points.
+
+    Raises
+    ------
+    InputError
+        If an argument is invalid for all points, or if there is no range.
+    """
+    grid = grid_of(motion, given)
+    return dataset_of(grid, list(predictions(grid)))
+
+
+def read_cases(
+    motion: str,
+    source: Any,
+    shared: Mapping[str, Any],
+    *,
+    decimal: str = ".",
+    encoding: str = "utf-8",
+) -> Cases:
+    """The contacts of a table.  Raises InputError."""
+    path = isinstance(source, str | os.PathLike)
+    units = {name: one.unit for name, one in INPUTS.items() if name != "map"}
+    argument = "table" if path else "cases"
+    table = table_of(argument, source, units, decimal=decimal, encoding=encoding)
     if not table.columns:
         raise InputError("cases", {}, f"{SOURCES}, with one column at least")
-    return as_dataset(motion, table, list(predictions(motion, table, shared)))
-
-
-def predictions(
-    motion: str, table: Table, shared: Mapping[str, object], *, need_all: bool = False
-) -> Iterator[Prediction | NoPrediction]:
-    """Yield the prediction of each case in turn.
-
-    All cases are checked before the first one is solved.  A search without a solution gives a
-    Prediction that is not converged.  The arguments and errors are the same as for predict_table.
-
-    need_all: True to raise InputError if any case is invalid.
-    """
-    count = _count(table.columns, shared)
-    wrong: dict[int, str | InputError] = dict(table.errors)
-    arguments = {name: values for name, values in table.columns.items() if name not in LABELS}
-    cases = [
-        {**shared, **{name: values[case] for name, values in arguments.items()}}
-        for case in range(count)
-    ]
-    for case, arguments in enumerate(cases):
-        if case not in wrong:
-            try:
-                _request(motion, arguments)
-            except InputError as error:
-                wrong[case] = error
-    if len(wrong) == count or need_all:
-        problems = {case: one for case, one in wrong.items() if isinstance(one, InputError)}
-        same = len(wrong) == count and len({str(one) for one in wrong.values()}) == 1
-        for case, one in problems.items():
-            if same and one.argument not in table.columns:
-                raise one
-            raise InputError(one.argument, one.value, f"{table.place(case)}: {one.allowed}")
-    return (
-        NoPrediction(wrong[case]) if case in wrong else _prediction(motion, arguments)
-        for case, arguments in enumerate(cases)
-    )
-
-
-def _prediction(motion: str, arguments: Mapping[str, object]) -> Prediction | NoPrediction:
-    try:
-        return predict_arguments(motion, arguments)
-    except NotAttainedError as error:
-        return without_solution(_request(motion, arguments), error.allowed)
-    except InputError as error:
-        return NoPrediction(error)
-
-
-def _request(motion: str, arguments: Mapping[str, object]) -> Request:
-    """The checked Request of a case.  Raises all errors that can be detected without a solve."""
-    for name, value in arguments.items():
-        if name not in NOTHING:
-            raise InputError(name, value, f"allowed are {', '.join(['motion', *NOTHING])}")
-    return request_of(motion, NOTHING | dict(arguments))
-
-
-def _count(columns: Mapping[str, Any], shared: Mapping[str, object]) -> int:
-    """Number of cases.  Raises InputError for an invalid table."""
-    for name in columns:
-        if name in shared:
+    for name in table.columns:
+        if name in shared and shared[name] is not None:
             raise InputError(name, shared[name], "not allowed: the table has it")
-    counts = sorted({len(values) for values in columns.values()})
+    counts = sorted({len(values) for values in table.columns.values()})
     if len(counts) > 1:
         lengths = " and ".join(map(str, counts))
         allowed = f"columns of {lengths} values; allowed are columns of one length"
-        raise InputError("cases", list(columns), allowed)
+        raise InputError("cases", list(table.columns), allowed)
     if not 0 < counts[0] <= MOST_CASES:
         raise InputError("cases", counts[0], f"allowed are 1 to {MOST_CASES} cases")
-    return counts[0]
+    names = [f"line {line}" for line in table.lines] or [f"case {k}" for k in range(counts[0])]
+    starts = {"line": table.lines} if table.lines else {"case": list(range(counts[0]))}
+    labels = {name: [x or "" for x in texts] for name, texts in table.labels.items()}
+    return Cases(motion, table.columns, dict(shared), names, starts | labels, table.errors)
 
 
-def as_dataset(motion: str, table: Table, cases: Sequence[Prediction | NoPrediction]) -> xr.Dataset:
-    """The Dataset of predict_table.  cases: the predictions."""
+def is_range(name: str, value: object) -> bool:
+    """Whether the value of a quantity is a text with a range."""
+    quantity = name in INPUTS and INPUTS[name].unit is not None
+    return quantity and isinstance(value, str) and ".." in value
+
+
+def values_of(name: str, text: str) -> list[str]:
+    """The values of a range as texts with the unit of the range.  Raises InputError."""
+    ends, *options = (part.strip() for part in text.split(","))
+    first, _, last = ends.partition("..")
+    match = None if last.startswith(".") or ".." in last else RANGE.fullmatch(ends)
+    log, counts = options.count("log"), [one for one in options if one != "log"]
+    good = (
+        match and log <= 1 and len(counts) <= 1 and all(re.fullmatch("[0-9]+", x) for x in counts)
+    )
+    if match is None or not good:
+        raise InputError(name, text, RANGES)
+    low, high, count = float(match[1]), float(match[2]), int(counts[0]) if counts else VALUES
+    if not (low < high < math.inf and 2 <= count <= MOST_CASES) or log and low <= 0.0:
+        raise InputError(name, text, RANGES)
+    values = (np.geomspace if log else np.linspace)(low, high, count)
+    return [f"{value:.12g} {match[3]}".strip() for value in values]
+
+
+def grid_of(motion: str, given: Mapping[str, Any]) -> Cases:
+    """All combinations of the values of ranges and sequences; the last axis changes fastest.
+
+    Raises InputError if a range is invalid, if there is no range, or if there are too many
+    combinations.
+    """
+    kind, axes, texts, shared = kind_of(motion), {}, {}, dict(given)
+    for name in [name for name in given if name in INPUTS and INPUTS[name].unit is not None]:
+        values = shared[name]
+        if is_range(name, values):
+            values = values_of(name, values)
+        if isinstance(values, str) or np.ndim(values) != 1:
+            continue
+        unit = kind.amplitude_unit if name == "amplitude" else INPUTS[name].unit or ""
+        si = [_si(name, value, kind) for value in values]
+        axes[input_column(name, unit)] = name, unit, si
+        texts[name] = list(values)
+        del shared[name]
+    count = math.prod(map(len, texts.values()))
+    if not axes or not 1 <= count <= MOST_CASES:
+        allowed = f"the ranges have {count} combinations; allowed are 1 to {MOST_CASES}"
+        name = max(texts, key=lambda one: len(texts[one])) if axes else "amplitude"
+        raise InputError(name, given.get(name), allowed if axes else RANGES)
+    cases = list(zip(*product(*texts.values()), strict=True))
+    columns = {name: list(values) for name, values in zip(texts, cases, strict=True)}
+    starts = {name: [_short(text) for text in values] for name, values in columns.items()}
+    names = [
+        ", ".join(f"{name} {text}" for name, text in zip(starts, one, strict=True))
+        for one in zip(*starts.values(), strict=True)
+    ]
+    return Cases(motion, columns, shared, names, starts, {}, axes)
+
+
+def _si(name: str, value: Any, kind: Any) -> float:
+    """Value of an axis in its SI unit.  A value out of range has a prediction with an error."""
+    unit = kind.amplitude_unit if name == "amplitude" else INPUTS[name].unit
+    return read_quantity(
+        name, value, INPUTS[name]._replace(unit=unit, low=-math.inf, high=math.inf)
+    ).si
+
+
+def _short(text: Any) -> str:
+    """A quantity with at most four digits."""
+    number, _, unit = str(text).partition(" ")
+    try:
+        return f"{float(number):.4g} {unit}".strip()
+    except ValueError:
+        return str(text)
+
+
+def predictions(cases: Cases, *, need_all: bool = False) -> Iterator[Prediction | InputError | str]:
+    """Yield the prediction of each contact in turn, or the reason why it has none.
+
+    All contacts are checked before the first one is solved.  A search without a solution gives a
+    Prediction that is not converged.
+
+    need_all: True to raise InputError if any contact is invalid.
+    """
+    checked: list[Inputs | InputError | str] = []
+    for case in range(len(cases.names)):
+        try:
+            checked.append(
+                cases.errors.get(case) or checked_inputs(cases.motion, **cases.given(case))
+            )
+        except InputError as error:
+            checked.append(error)
+    wrong = {case: one for case, one in enumerate(checked) if not isinstance(one, Inputs)}
+    if len(wrong) == len(checked) or need_all and wrong:
+        same = len(wrong) == len(checked) and len({str(one) for one in wrong.values()}) == 1
+        for case, one in wrong.items():
+            if isinstance(one, InputError):
+                if same and one.argument not in cases.columns:
+                    raise one
+                place = f"{'at' if cases.axes else 'in'} {cases.names[case]}"
+                raise InputError(one.argument, one.value, f"{place}: {one.allowed}")
+    return map(_prediction, checked)
+
+
+def _prediction(inputs: Inputs | InputError | str) -> Prediction | InputError | str:
+    if not isinstance(inputs, Inputs):
+        return inputs
+    try:
+        return predict_inputs(inputs)
+    except NoSolutionError as error:
+        values = {n: Value(one.si) for n, one in inputs.quantities.items()}
+        name = str(inputs.search)
+        return Prediction(
+            motion=inputs.texts["motion"].split(":")[0],
+            inputs=inputs.texts,
+            input_values=values | {name: Value(math.nan, math.nan)},
+            input_units={one: inputs.unit(one) for one in [*values, name]},
+            search=name,
+            reason=error.allowed,
+        )
+    except InputError as error:
+        return error
+
+
+def dataset_of(cases: Cases, answers: Answers) -> xr.Dataset:
+    """The predictions as a dataset over the dimension `case`, or over the axes of a grid."""
     import xarray as xr
 
-    rows = [one.to_dict() if isinstance(one, Prediction) else vars(one) for one in cases]
-    variables = {
-        name: _variable(name, [row.get(name) for row in rows])
-        for name in COLUMNS
-        if name not in ("motion", "understood")
+    sizes = {name: len(values) for name, (_, _, values) in cases.axes.items()}
+    sizes = sizes or {"case": len(answers)}
+    rows: list[dict[str, Any]] = [
+        one.to_dict() if isinstance(one, Prediction) else {"converged": False} for one in answers
+    ]
+    names = dict.fromkeys(name for row in rows for name in row if name not in ("motion", "inputs"))
+    attributes: dict[str, dict[str, str]] = {}
+    for row, one in zip(rows, answers, strict=True):
+        if isinstance(one, Prediction) and not attributes.keys() >= row.keys() & set(names):
+            attributes |= {
+                key: {"units": unit or "1", "long_name": text}
+                for key, unit, text, _ in one.numbers()
+            }
+            attributes |= {name: {} for name in row if name not in attributes}
+    variables: dict[str, Any] = {}
+
+    def add(name: str, values: list[Any], about: dict[str, str]) -> None:
+        array = np.array(values).reshape(tuple(sizes.values()))
+        variables[name] = tuple(sizes), array, about
+
+    for name in names:
+        values = [row.get(name) for row in rows]
+        if name in (*TEXTS, *REASONS):
+            add(name, ["" if one is None else one for one in values], {})
+        elif name in ("warnings", "not_checked", "remarks"):
+            add(name, ["; ".join(one or ()) for one in values], {})
+        elif name == "converged":
+            add(name, values, {})
+        elif name not in sizes:
+            numbers = [math.nan if one is None else float(one) for one in values]
+            add(name, numbers, attributes.get(name, {}))
+    for name, values in cases.columns.items():
+        if not cases.axes:
+            texts = ["" if one is None else str(one) for one in values]
+            add(name if name in LABELS else f"case_{name}", texts, {})
+    errors = ["" if isinstance(one, Prediction) else str(one) for one in answers]
+    add("error", errors, {"long_name": "error message of the case"})
+    coordinates: dict[str, Any] = {
+        key: (key, values, {"long_name": name.replace("_", " "), "units": unit or "1"})
+        for key, (name, unit, values) in cases.axes.items()
     }
-    for name, values in table.columns.items():
-        texts = ["" if one is None else str(one) for one in values]
-        variables[name if name in LABELS else f"case_{name}"] = "case", texts, {}
-    errors = [str(row.get("error", "")) for row in rows]
-    variables["error"] = "case", errors, {"long_name": "error message of the case"}
-    amplitude = variables["amplitude_si"][2]["units"] = unit_of("amplitude", motion) or "m"
-    units = {"amplitude": amplitude, "speed": "m s-1", "load": "N"}
-    sought = {row["sought"] for row in rows if row.get("sought")}
-    if sought:  # the quantity of the search, `sought`, can vary between cases
-        unit = units[sought.pop()] if len(sought) == 1 else "SI unit of the quantity in sought"
-        for name in ("sought_error", "sought_spread"):
-            variables[name][2]["units"] = unit
-    return xr.Dataset(variables, {"case": np.arange(len(cases))}, {"motion": motion})
+    if not cases.axes:
+        coordinates["case"] = np.arange(len(answers))
+    return xr.Dataset(variables, coordinates, {"motion": str(cases.motion)})
 
 
-def _variable(name: str, values: list[Any]) -> tuple[str, list, dict[str, str]]:
-    """Return a dataset variable along the dimension `case`.  Numbers have a unit."""
-    if name in ("warnings", "not_checked"):
-        return "case", ["; ".join(texts) for texts in values], {}
-    if any(isinstance(value, bool) for value in values):
-        return "case", values, {}
-    arguments = [value for value in values if value is not None]
-    if all(isinstance(value, str) for value in arguments) and (arguments or name in TEXTS):
-        return "case", ["" if value is None else value for value in values], {}
-    numbers = [np.nan if value is None else float(value) for value in values]
-    return "case", numbers, {"units": column_unit(name)}
+def table_text(cases: Cases, answers: Answers) -> str:
+    """The printed table, with a row for each contact and remarks below."""
+    predicted = [one for one in answers if isinstance(one, Prediction)]
+    cells: list[tuple[str, Callable[[Prediction], str]]] = []
+
+    def add(title: str, value: Callable[[Prediction], Value | None]) -> None:
+        """Add columns for a value, its error and its standard uncertainty, if there is one."""
+        numbers = [one for one in map(value, predicted) if one is not None]
+        titles = [title] if numbers else []
+        titles += ["+-"] * any(one.error for one in numbers)
+        if any(one.spread is not None for one in numbers):
+            titles = [title, "+-", "uncertainty"]
+        for place, heading in enumerate(titles):
+            cells.append((heading, partial(_cell, value, place)))
+
+    for name, title in PRINTED.items():
+        add(title, partial(_number, name))
+    for name in dict.fromkeys(one.search for one in predicted if one.search not in (None, "speed")):
+        unit = next(one.input_units[name] for one in predicted if one.search == name)
+        add(f"{name} {unit}", partial(_result, name))
+    if any(one.outcome for one in predicted):
+        cells.append(("outcome", lambda one: one.outcome or ""))
+    lines = [
+        "".join(f"{title:>{WIDTH}}" for title in (*cases.starts, *(title for title, _ in cells)))
+    ]
+    remarks: dict[str, list[str]] = {}
+    for name, starts, one in zip(
+        cases.names, zip(*cases.starts.values(), strict=True), answers, strict=True
+    ):
+        start = "".join(f" {text:>{WIDTH - 1}}" for text in starts)
+        if not isinstance(one, Prediction):
+            lines.append(f"{start}  no prediction")
+            continue
+        lines.append(start + "".join(f"{cell(one):>{WIDTH}}" for _, cell in cells))
+        away = [f"it {one.reason}"] if one.outcome == RUNS_AWAY else []
+        for text in (*away, *one.remarks, *one.problems):
+            remarks.setdefault(text, []).append(name)
+    for text, names in remarks.items():
+        more = f" and {len(names) - 1} more" if len(names) > 1 else ""
+        lines.append(f"{names[0]}{more}: {text}")
+    return "\n".join(lines)
+
+
+def _number(name: str, one: Prediction) -> Value | None:
+    """An output, or the speed as an input."""
+    return one.values.get(name) or (one.input_values.get(name) if name == "speed" else None)
+
+
+def _result(name: str, one: Prediction) -> Value | None:
+    """The result of a search for an input."""
+    return one.input_values[name] if one.search == name else None
+
+
+def _cell(value: Callable[[Prediction], Value | None], place: int, one: Prediction) -> str:
+    return _digits(value(one))[place]
+
+
+def _digits(one: Value | None) -> tuple[str, str, str]:
+    """Texts of a value, its error and its standard uncertainty."""
+    if one is None or math.isnan(one.value):
+        return "", "", ""
+    number, _, error = number_text(one.value, one.error or 0.0).partition(SEPARATOR)
+    if number.startswith("("):  # a common power of 10, as in "(2.820 +- 0.016)e-05"
+        error, _, power = error.partition(")")
+        number, error = f"{number[1:]}{power}", f"{float(error + power):g}"
+    spread = "" if one.spread is None else number_text(one.spread, digits=2)
+    return number, error or "0", spread
+
+
+def interpolation_errors(values: xr.DataArray) -> dict[str, float | None]:
+    """Largest difference between a value and the linear interpolation of its neighbours, by axis.
+
+    The difference is None for an axis with fewer than three values.  If the values are smooth,
+    linear interpolation between them has an error of a quarter of the sum over the axes.
+    """
+    errors: dict[str, float | None] = {}
+    for name in map(str, values.dims):
+        if values.sizes[name] < 3:
+            errors[name] = None
+            continue
+        f = np.moveaxis(values.values, values.get_axis_num(name), -1)
+        left, right = np.diff(values[name].values)[:-1], np.diff(values[name].values)[1:]
+        between = (right * f[..., :-2] + left * f[..., 2:]) / (left + right)
+        errors[name] = float(np.abs(f[..., 1:-1] - between).max())
+    return errors

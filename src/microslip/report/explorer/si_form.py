@@ -10,13 +10,13 @@ from dataclasses import asdict, dataclass
 from typing import Any
 
 from microslip.foundation.arguments import LARGEST
+from microslip.foundation.number_text import PREFIXES
+from microslip.foundation.units import read
 from microslip.report.explorer.certified import gauss_rule
-from microslip.si import validity
-from microslip.si.inputs import LARGEST_MU
+from microslip.si import warnings
+from microslip.si.contact import LARGEST_RATIO
+from microslip.si.inputs import INPUTS, MOTIONS
 from microslip.si.materials import MATERIALS, Material
-from microslip.si.motions import MOTIONS
-from microslip.si.printed_lines import PREFIXES
-from microslip.si.quantities import read
 from microslip.theory.hertz import D_half
 
 CHOICES = ("transverse", "bore")
@@ -34,7 +34,7 @@ class Field:
     label : str
         Name on the page and in messages.
     unit : str
-        SI unit, as for si.quantities.read.
+        SI unit, as for si.units.read.
     units : tuple of str
         Units offered by the field. The first one is the default.
     example : str
@@ -65,7 +65,7 @@ FIELDS = {
     "nu": Field("ν of the sphere", "", ("",), "0.3", **_RATIO),
     "counter_young": Field("E of the flat", "Pa", _PRESSURES, "210"),
     "counter_nu": Field("ν of the flat", "", ("",), "0.3", **_RATIO),
-    "mu": Field("μ without vibration", "", ("",), "0.3", high=LARGEST_MU),
+    "mu": Field("μ without vibration", "", ("",), "0.3", high=INPUTS["mu"].high),
     "speed": Field("forward speed", "m/s", ("mm/s", "um/s", "m/s", "m/min", "km/h"), "10", False),
     "frequency": Field("frequency", "Hz", ("kHz", "Hz", "MHz", "rpm", "rad/s"), "20"),
     "stroke": Field("amplitude (half stroke)", "m", ("um", "nm", "mm", "m"), "0.3", False),
@@ -92,16 +92,16 @@ def packed() -> dict:
         "chosen": CHOSEN,
         "of_numbers": OF_NUMBERS,
         "materials": {name: _material(body) for name, body in MATERIALS.items()},
-        "checks": [[rule._asdict() for rule in rules] for rules in validity.CHECKS],
+        "checks": [[rule._asdict() for rule in rules] for rules in warnings.CHECKS],
         "prefixes": PREFIXES,
-        "properties": validity.PROPERTIES,
-        "not_given": validity.MISSING,
-        "whose": validity.SIDES,
-        "adhesion": validity.ADHESION,
-        "range": validity.RANGE,
-        "short": validity.SHORT,
-        "rubbery": validity.RUBBERY,
-        "senseless": validity.SENSELESS,
+        "properties": warnings.PROPERTIES,
+        "not_given": warnings.MISSING,
+        "whose": warnings.SIDES,
+        "adhesion": warnings.ADHESION,
+        "range": warnings.RANGE,
+        "short": warnings.SHORT,
+        "rubbery": warnings.RUBBERY,
+        "senseless": LARGEST_RATIO,
         "half_stuck": D_half(),
         "rule": gauss_rule(),
         "largest_velocity": LARGEST["velocity"],
@@ -111,7 +111,7 @@ def packed() -> dict:
 
 def _unit(name: str, unit: str) -> dict:
     """Return a unit, its factor to the SI unit, and the exponent if the factor is a power of 10."""
-    factor = read(name, f"1 {name}", unit).si
+    factor = read(f"1 {name}", unit).si
     power = round(math.log10(factor))
     exact = float(f"1e{power}") == factor
     return {"name": name, "factor": factor, "power": power if exact else None}

@@ -29,7 +29,8 @@ def draw(name: str, dataset: xr.Dataset) -> Figure:
     lines = [dataset]
     if others:
         lines = [dataset.isel({others[0]: index}) for index in range(dataset.sizes[others[0]])]
-    shown = DRIFT if dataset["force_N"].notnull().any() else FRICTION
+    forced = "force_N" in dataset and bool(dataset["force_N"].notnull().any())
+    shown = DRIFT if forced else FRICTION
     figure = look.new_figure(look.SINGLE, 0.4 + 1.9 * len(shown))
     axes = figure.subplots(len(shown), 1, sharex=True, squeeze=False)[:, 0]
     for panel, (variable, error, label, si) in zip(axes, shown, strict=True):

@@ -1,4 +1,4 @@
-"""Read friction from a sweep's dataset, such as a certified map, instead of calling the solver."""
+"""Friction from the dataset of a sweep, such as a certified map, in place of the solver."""
 
 from __future__ import annotations
 
@@ -13,8 +13,6 @@ from microslip.foundation.errors import InputError
 
 MAP = "map"
 """Model name in a Result that comes from a map."""
-REFUSED = ("force", "drive_stiffness", "wear_coefficient")
-"""Arguments of `predict` that are not allowed with a map."""
 
 
 class FrictionMap:
@@ -49,23 +47,21 @@ class FrictionMap:
     def at(
         self, velocity: Any, amplitude: Any, poisson: float | None
     ) -> tuple[np.ndarray, np.ndarray]:
-        """Return friction and its error bound at points.  Raises InputError, about `nu`
-        for Poisson's ratio."""
+        """Friction and its error bound at points.  Raises InputError about `nu`, and ValueError for
+        points outside the map."""
         try:
             answer = self.dataset.microslip.at(velocity, amplitude, poisson=poisson)
         except InputError as error:
-            if error.argument == "poisson":
-                raise error.renamed("nu") from None
-            raise
+            raise (error.renamed("nu") if error.argument == "poisson" else error) from None
         return answer.mu_macro.values, answer.mu_macro_error.values
 
     def solve(
         self, velocity: float, amplitude: float | None, *, poisson: float, tolerance: float
     ) -> Result:
-        """Return a Result, like microslip.solve.
+        """The answer of the map as a Result of microslip.solve.
 
-        The result is not converged if the error bound is above the tolerance, or if the map does
-        not contain the point.
+        It is not converged if the error bound is above the tolerance, or if the map does not
+        contain the point.
         """
         try:
             value, error = (float(one) for one in self.at(velocity, amplitude, poisson))

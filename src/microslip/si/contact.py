@@ -1,0 +1,396 @@
+"""The contact of two elastic bodies in SI units, and the dimensionless groups of the solver.
+
+All formulas accept arrays of inputs.  For tangential loads, two half-spaces are equivalent to one
+half-space whose compliance is the sum of both compliances.  The normal and the tangential problem
+are assumed to be uncoupled.
+"""
+
+from __future__ import annotations
+
+import math
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+
+from microslip.foundation.arguments import LARGEST
+from microslip.foundation.errors import InputError
+from microslip.motions.by_name import motion_named
+from microslip.motions.motion import Motion
+from microslip.pressures.by_name import pressure_named
+from microslip.pressures.ellipse import SMALLEST_RATIO
+from microslip.pressures.pressure import Pressure
+from microslip.si.inputs import AT_REST, MOTIONS, OSCILLATIONS, Inputs
+from microslip.theory import hertz
+
+LARGEST_RATIO = 0.5
+"""Largest accepted contact radius, divided by the bodies' smaller radius.  At this ratio, the
+surface is tilted by 30 degrees at the edge, and a sphere is 7 % deeper than Hertz's parabola."""
+ROUND = 1e-6
+"""Largest relative difference between two radii that count as equal."""
+OUT_OF_RANGE = "outside the range of floating-point numbers; allowed are sizes of real bodies"
+DRIVES = {
+    "force": "force",
+    "drive_stiffness": "stiffness",
+    "mass": "mass",
+    "damping": "damping",
+}
+"""Arguments of microslip.solve, keyed by the inputs of the drive."""
+
+
+class Contact:
+    """Derived quantities of checked inputs, in SI units.
+
+    Attributes
+    ----------
+    inputs : Inputs
+        The inputs.
+    mu, load : float or array
+        Coefficient of friction, and normal load without oscillation, N.
+    E_star, G, G_star : float or array
+        Contact modulus from 1/E* = sum (1 - nu^2)/E, shear modulus for torsion from
+        1/G = sum 1/G_i, and tangential contact modulus from 1/G* = sum (2 - nu)/(4 G), Pa.
+    poisson : float or array
+        Poisson's ratio of the equivalent half-space, sum(nu/G) / sum(1/G).
+    radii : tuple
+        Radii of the bodies, m; empty if the contact radius is an input.
+    radius : float or array
+        Radius of relative curvature, 1/R = 1/R1 + 1/R2, m.
+    ratio : float or array
+        Shorter divided by longer axis of a Hertz contact; 1 for other contacts.
+    contact_radius : float or array
+        Contact radius, or half the longer side of the contact, m.
+    u_lim : float or array
+        Displacement at which the whole contact slides, mu F_z G_s/(G* a) with G_s = 3/4 for a
+        sphere, m (see below Eq 2).
+    indentation : float or array
+        Indentation u_lim G*/(mu E*) of an indenter, m; NaN for another pressure.
+    largest_pressure : float or array
+        Largest pressure, Pa; infinite at the tip of a cone.
+    area : float or array
+        Area of the contact, m^2.
+    """
+
+    def __init__(self, inputs: Inputs):
+        self.inputs, self.kind, self.bodies = inputs, inputs.kind, inputs.bodies
+        self.mu, self.load = inputs.mu, inputs.load
+        self.E_star = 1.0 / sum((1.0 - one.poisson**2) / one.young for one in self.bodies)
+        compliances = [1.0 / one.shear_modulus for one in self.bodies]
+        self.G = 1.0 / sum(compliances)
+        self.poisson = sum(
+            one.poisson * (c / sum(compliances))
+            for one, c in zip(self.bodies, compliances, strict=True)
+        )
+        self.G_star = 4.0 * self.G / (2.0 - self.poisson)
+        self.radii: tuple = ()
+        self.ratio: Any = 1.0
+        sphere = 0.75 * self.load / self.E_star
+        if inputs.contact_radius is not None:
+            a = inputs.contact_radius
+            self.radius, shape = a**3 / sphere, self.shape
+            stiffness, largest, area = shape.G_star, shape.largest, shape.area
+        else:
+            self.radii = tuple(r for r in (inputs.radius, inputs.counter_radius) if r is not None)
+            self.radius = longer = 1.0 / sum(1.0 / one for one in self.radii)
+            stretch: Any = 1.0
+            if inputs.radius_across is not None:
+                self.radii += (inputs.radius_across,)
+                self.ratio, stretch = ellipse_of_radii(self.radius, inputs.radius_across)
+                longer = np.maximum(self.radius, inputs.radius_across)
+            with np.errstate(invalid="ignore"):  # NaN for a hollow smaller than the sphere
+                a = stretch * np.power(sphere * longer, 1.0 / 3.0)
+            a = a if np.ndim(a) else float(a)
+            stiffness, largest, area = _hertz_ellipse(self.ratio)
+        self.contact_radius = a
+        self.u_lim = self.mu * self.load * stiffness / (self.G_star * a)
+        indents = bool(self.radii) or self.shape.is_indenter or self.shape.hertzian
+        self.indentation = (
+            self.u_lim * self.G_star / (self.mu * self.E_star) if indents else math.nan
+        )
+        self.largest_pressure = largest * (self.load / a**2)
+        self.area = area * a**2
+
+    @property
+    def pressure(self) -> str:
+        """Name of the pressure for microslip.solve."""
+        if not self.radii:
+            return pressure_named(self.inputs.pressure).name
+        if np.all(self.ratio == 1.0):
+            return "hertz"
+        across = int(self.inputs.radius_across > self.radius)
+        return f"ellipse:ratio={float(self.ratio)!r},across={across}"
+
+    @cached_property
+    def shape(self) -> Pressure:
+        """The distribution of the pressure."""
+        return pressure_named(self.pressure)
+
+    @property
+    def smallest_radius(self) -> Any:
+        """The smaller |radius| of the bodies, m."""
+        return min(map(abs, self.radii), default=self.radius)
+
+    @property
+    def mismatch(self) -> Any:
+        """Dundurs' constant beta, dimensionless; 0 for equal bodies.
+
+        With p = (1 - 2 nu)/G and q = (1 - nu)/G of each body, it is (p1 - p2) / (2 (q1 + q2)).  It
+        is a measure of the tangential displacement caused by pressure.
+        """
+        first, second = ((1.0 - 2.0 * one.poisson) / one.shear_modulus for one in self.bodies)
+        both = sum((1.0 - one.poisson) / one.shear_modulus for one in self.bodies)
+        return 0.5 * (first - second) / both
+
+    # Motion and drive
+
+    @property
+    def steady(self) -> bool:
+        """Whether nothing oscillates."""
+        return self.kind.steady
+
+    @property
+    def omega(self) -> Any:
+        """Angular frequency of the oscillation, or angular speed of a steady spin, rad/s."""
+        inputs = self.inputs
+        return inputs.rotation if self.steady else 2.0 * math.pi * inputs.frequency
+
+    @cached_property
+    def amplitudes(self) -> dict[str, Any]:
+        """Dimensionless amplitudes by direction, in the units of microslip.solve (Eqs 2, 4, 27)."""
+        inputs, sizes = self.inputs, {}
+        if self.kind.stroke is not None:
+            columns = self.kind.stroke.deviations(self)
+            return {n: inputs.amplitude * float(abs(one).max()) for n, one in columns.items()}
+        for name, direction in OSCILLATIONS.items():
+            size = getattr(inputs, name)
+            if size is None:
+                continue
+            if direction == "load":
+                sizes[direction] = size / self.load
+            elif direction == "angle" or self.kind.unit == "rad":
+                unit = hertz.bore_amplitude(1.0, self.poisson)
+                sizes[direction] = size * self.contact_radius / self.u_lim * unit
+            else:
+                sizes[direction] = size / self.u_lim
+        return sizes
+
+    @property
+    def amplitude(self) -> Any:
+        """Amplitude for microslip.solve, the largest of `amplitudes`; None for a steady motion."""
+        if self.steady:
+            return None
+        return np.max(np.stack(np.broadcast_arrays(*self.amplitudes.values())), axis=0)
+
+    @cached_property
+    def motion(self) -> str | Motion:
+        """The motion for microslip.solve.  Several amplitudes are divided by the largest."""
+        if not self.kind.several:
+            return self.kind.name
+        largest = float(self.amplitude)
+        if self.kind.stroke is not None:
+            return self.kind.stroke.sampled(self, largest / (self.inputs.amplitude or 1.0) or 1.0)
+        shares = {name: float(one) / (largest or 1.0) for name, one in self.amplitudes.items()}
+        shares["phase"] = math.degrees(self.inputs.phase or 0.0)
+        return f"{self.kind.name}:{','.join(f'{name}={one!r}' for name, one in shares.items())}"
+
+    @property
+    def speed_unit(self) -> Any:
+        """Forward speed at which the dimensionless velocity is 1, m/s."""
+        if self.steady:
+            return self.omega * self.contact_radius
+        if self.kind.name == "bore":
+            return self.omega * self.inputs.amplitude * self.contact_radius
+        unit = self.omega * self.u_lim
+        if self.kind.name in MOTIONS or self.kind.stroke is not None:
+            return unit
+        drift = np.vectorize(motion_named(self.kind.name).drift, otypes=[float])
+        return unit * drift(1.0, self.amplitude, self.poisson)
+
+    @property
+    def velocity(self) -> float:
+        """Velocity for microslip.solve (Eqs 2, 4, 13, 28)."""
+        speed, unit = self.inputs.speed, self.speed_unit
+        if speed == 0.0 or self.kind.unit == "rad" and unit == 0.0:
+            return 0.0
+        return float(speed / unit) if unit > 0.0 else math.inf
+
+    @property
+    def _record(self) -> Motion:
+        return self.motion if isinstance(self.motion, Motion) else motion_named(self.motion)
+
+    @cached_property
+    def mean_load(self) -> float:
+        """Mean normal load divided by the load without oscillation.  It is above 1 if the bodies
+        separate in each period."""
+        if self.steady or self.kind.stroke is None and self.amplitudes.get("load", 0.0) <= 1.0:
+            return 1.0
+        return float(self._record.mean_load(float(self.amplitude), self.shape))
+
+    @property
+    def separated(self) -> float:
+        """Fraction of a period without contact, 0 to 1."""
+        if self.kind.stroke is not None:
+            return self._record.share_without_load(float(self.amplitude))  # type: ignore[attr-defined]
+        swing = float(self.amplitudes.get("load", 0.0)) if not self.steady else 0.0
+        return math.acos(1.0 / swing) / math.pi if swing > 1.0 else 0.0
+
+    def drive(self, mean_load: Any = 1.0) -> dict[str, Any]:
+        """Force, stiffness, mass and damping for microslip.solve.
+
+        The force is divided by mu times the mean load, the stiffness by mu F_z / u_lim, the mass by
+        mu F_z / (u_lim omega^2), and the damping by mu F_z / (u_lim omega).  F_z is the load
+        without oscillation; mean_load: mean load divided by F_z.
+        """
+        stiffness = self.mu * self.load / self.u_lim
+        units = {
+            "force": self.mu * self.load * mean_load,
+            "drive_stiffness": stiffness,
+            "mass": stiffness / self.omega**2,
+            "damping": stiffness / self.omega,
+        }
+        values = {name: getattr(self.inputs, name) for name in DRIVES}
+        return {DRIVES[n]: one / units[n] for n, one in values.items() if one is not None}
+
+    @property
+    def coordinates(self) -> dict[str, Any]:
+        """Dimensionless groups on which the answer of the solver depends, as arrays.  The first
+        ones, up to the velocity, are those of the static limit."""
+        inputs = self.inputs
+        groups = {"poisson": self.poisson, "ratio": self.ratio, "phase": inputs.phase}
+        if self.kind.stroke is None:
+            groups |= {} if self.steady else self.amplitudes
+        else:
+            groups |= {"factor": inputs.amplitude / self.u_lim}
+            if not self.kind.stroke.columns.keys() <= {"forward", "lateral"}:
+                groups |= {"load": self.load, "contact_radius": self.contact_radius}
+        if inputs.speed is not None:
+            unit = self.contact_radius if self.steady or self.kind.unit == "rad" else self.u_lim
+            groups["velocity"] = inputs.speed / (self.omega * unit)
+        groups |= self.drive()
+        return {name: one for name, one in groups.items() if one is not None}
+
+    # Checks
+
+    def check(self) -> None:
+        """Raise InputError for a contact outside Hertz's theory or the range of the solver."""
+        inputs = self.inputs
+        sizes = (self.contact_radius, self.u_lim, self.load / self.contact_radius**2)
+        if not self.radii:
+            if not (all(0.0 < one < math.inf for one in sizes) and self.largest_pressure > 0.0):
+                raise inputs.error("contact_radius", OUT_OF_RANGE)
+        else:
+            self._check_radii(all(0.0 < one < math.inf for one in sizes))
+        if inputs.search is None and inputs.kind is not AT_REST:
+            self._check_groups()
+
+    def _check_radii(self, finite: bool) -> None:
+        inputs, a = self.inputs, self.contact_radius
+        second = "radius_across" if inputs.radius_across is not None else "counter_radius"
+        if not (1.0 / self.radius > 0.0 and 0.0 < self.radius < math.inf):
+            allowed = OUT_OF_RANGE
+            if 1.0 / self.radius <= 0.0:
+                allowed = "allowed is a hollow with a larger radius than the sphere"
+            raise inputs.error(
+                "counter_radius" if inputs.counter_radius is not None else "radius", allowed
+            )
+        if self.ratio < SMALLEST_RATIO:
+            problem = f"the contact would be an ellipse of ratio {self.ratio:.2g}"
+            raise inputs.error("radius_across", f"{problem}; allowed is {SMALLEST_RATIO:g} or more")
+        smallest = self.smallest_radius
+        if a >= LARGEST_RATIO * smallest:
+            raise inputs.error(
+                "radius" if smallest == abs(self.radii[0]) else second,
+                "by Hertz's theory, which is for contacts much smaller than either body, the "
+                f"contact radius would be {a:.3g} m, {a / smallest:.2g} of this radius; allowed is "
+                f"less than {LARGEST_RATIO:g}",
+            )
+        if not finite or not 0.0 < self.indentation < math.inf:
+            load = inputs.texts.get("load", f"{self.load:.6g} N")
+            raise InputError("load", load, f"with these bodies and radii, {OUT_OF_RANGE}")
+
+    def _check_groups(self) -> None:
+        inputs, most = self.inputs, LARGEST["amplitude"]
+        if inputs.speed is not None and not math.isfinite(self.velocity):
+            allowed = "divided by that of the vibration it is beyond the range of floating-point "
+            raise inputs.error("speed", f"{allowed}numbers; allowed are sizes of real machines")
+        if self.kind.several and self.kind.stroke is None and not any(self.amplitudes.values()):
+            allowed = "allowed is a value above 0 if no other amplitude is above 0"
+            raise inputs.error(self.kind.needed[0], allowed)
+        if self.amplitudes.get("load", 0.0) > most and self.kind.stroke is None:
+            raise inputs.error("load_amplitude", f"allowed is at most {most:g} times the load")
+        if not self.steady and not self.amplitude <= most:
+            unit = "the angle at which the stick radius is half the contact radius"
+            if self.kind.unit != "rad":
+                unit = f"the {self.u_lim:.3g} m at which the whole contact slides"
+            allowed = f"{self.amplitude:.3g} times {unit}; allowed is at most {most:g} times"
+            raise inputs.error("amplitude", allowed)
+        groups = self.drive()
+        for name, group in DRIVES.items():
+            if group in groups and not math.isfinite(groups[group]):
+                allowed = "divided by that of the contact it is beyond the range of floating-point "
+                raise inputs.error(name, f"{allowed}numbers; allowed are sizes of real machines")
+        spring = inputs.drive_stiffness is not None and inputs.speed == 0.0
+        if spring and self.kind.name == "longitudinal":
+            allowed = "allowed is a speed above 0 for a longitudinal motion with a spring"
+            raise inputs.error("speed", allowed)
+
+
+def contact_of(inputs: Inputs) -> Contact:
+    """The checked contact of scalar inputs.  Raises InputError."""
+    if inputs.counter_radius == 0.0:
+        raise inputs.error("counter_radius", "allowed is a radius other than 0")
+    try:
+        with np.errstate(all="ignore"):  # `check` refuses what is not finite
+            contact = Contact(inputs)
+            contact.check()
+    except (ArithmeticError, ValueError) as error:
+        if isinstance(error, InputError):
+            raise
+        if inputs.contact_radius is not None or math.isinf(1.0 / inputs.radius):
+            name = "radius" if inputs.contact_radius is None else "contact_radius"
+            raise inputs.error(name, OUT_OF_RANGE) from None
+        load = inputs.texts.get("load", f"{inputs.load:.6g} N")
+        raise InputError("load", load, f"with these bodies and radii, {OUT_OF_RANGE}") from None
+    return contact
+
+
+def ellipse_of_radii(forward: Any, lateral: Any) -> tuple[Any, Any]:
+    """Semi-axes of Hertz's ellipse.
+
+    Parameters
+    ----------
+    forward, lateral : float or array
+        Radii of relative curvature along both axes, m.
+
+    Returns
+    -------
+    tuple of float or array
+        The ratio b/a, at most 1; the semi-axis a, divided by (3 F R / (4 E*))^(1/3).  R is the
+        larger radius (K. L. Johnson, Contact Mechanics, 4.2).
+    """
+    from scipy.special import ellipe, ellipk
+
+    over = np.minimum(forward, lateral) / np.maximum(forward, lateral)
+    low, high = np.full_like(over, math.log(1e-8)), np.zeros_like(over)
+    with np.errstate(invalid="ignore"):
+        for _ in range(60):  # bisection of log(b/a); the curvatures' ratio increases with b/a
+            middle = 0.5 * (low + high)
+            k = np.exp(middle)
+            m = 1.0 - k**2
+            below = k**2 * (ellipk(m) - ellipe(m)) < over * (ellipe(m) - k**2 * ellipk(m))
+            low, high = np.where(below, middle, low), np.where(below, high, middle)
+        ratio = np.where(over >= 1.0 - ROUND, 1.0, np.exp(0.5 * (low + high)))
+        m = np.where(ratio == 1.0, 0.5, 1.0 - ratio**2)
+        # 1/(2 R) = p0/E* b/(a^2 m) (K - E) along the long axis, with p0 = 3 F/(2 pi a b)
+        stretch = (4.0 / math.pi * (ellipk(m) - ellipe(m)) / m) ** (1.0 / 3.0)
+        stretch = np.where(ratio == 1.0, 1.0, stretch)
+    return (ratio, stretch) if np.ndim(ratio) else (float(ratio), float(stretch))
+
+
+def _hertz_ellipse(ratio: Any) -> tuple[Any, Any, Any]:
+    """G* in working units, largest pressure divided by F/a^2, and area divided by a^2."""
+    if np.ndim(ratio) == 0 and ratio == 1.0:
+        return 0.75, 1.5 / math.pi, math.pi
+    from scipy.special import ellipk
+
+    return 1.5 * ellipk(1.0 - ratio**2) / math.pi, 1.5 / (math.pi * ratio), math.pi * ratio

@@ -1,0 +1,186 @@
+"""Search for the amplitude, speed or load that gives a requested reduction of friction."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import replace
+from typing import Any, NamedTuple
+
+from microslip.estimate.estimate import Estimate
+from microslip.foundation.errors import InputError
+from microslip.foundation.number_text import number_text
+from microslip.si.contact import Contact, contact_of
+from microslip.si.inputs import Inputs
+from microslip.si.solve import TOLERANCE, solve_at
+
+AMPLITUDES = 1e-6, 1e4
+"""Smallest and largest dimensionless amplitude of the search."""
+SPEEDS = 1e-9, 1e6
+"""Smallest and largest dimensionless velocity of the search.  For a translation with an amplitude
+above 1, the velocity is divided by the amplitude."""
+REFERENCE_LOAD = 1e-12
+"""Load, N, at which groups are computed in a search for the load.  It is so small that Hertz's
+theory applies to all bodies."""
+STEP = 0.05
+"""Step of the finite difference for the slope of friction.  The difference is taken in the
+logarithm of the unknown."""
+
+
+class NoSolutionError(InputError):
+    """The requested reduction is outside the range of the search."""
+
+
+class _SolverFailureError(Exception):
+    """The solver has no result at a point of the search."""
+
+
+class _Line(NamedTuple):
+    """The unknown as a function of a place, along which friction decreases.
+
+    Attributes
+    ----------
+    size : callable
+        size(place): the unknown in its SI unit.
+    low, start, high : float
+        First place, initial guess of the bracket's upper end, and last place.
+    every, none : str
+        Subjects of the messages if the reduction is too large at `low`, or too small everywhere.
+    end : float or None
+        Place with the least friction, if known.
+    rate : float
+        Derivative of log(size) with respect to the place.
+    """
+
+    size: Callable[[float], float]
+    low: float
+    start: float
+    high: float
+    every: str
+    none: str
+    end: float | None = None
+    rate: float = 1.0
+
+
+def find_reduction(inputs: Inputs) -> tuple[Contact, Estimate]:
+    """The contact with the smallest amplitude, the largest speed or the largest load that gives the
+    reduction, and this quantity in its SI unit.
+
+    If the solver fails, the contact is that at which it failed, and the error is NaN.  Raises
+    NoSolutionError if the reduction is outside the range of the search, and InputError.
+    """
+    from scipy.optimize import brentq
+
+    name, share, tolerance = str(inputs.search), inputs.reduction, inputs.tolerance or TOLERANCE
+    _check_share(inputs, share, tolerance)
+    line = _line(inputs, name, share)
+    last: Any = None
+    error, reductions, text = 0.0, [], inputs.given["reduction"]
+
+    def excess(place: float) -> float:
+        """mu_macro minus the requested mu_macro."""
+        nonlocal last, error
+        last = Contact(inputs.at(**{name: line.size(place)}))
+        answer = solve_at(last, last.velocity, tolerance)
+        friction, error = answer.mu_macro, answer.mu_macro_error
+        if not math.isfinite(friction):
+            raise _SolverFailureError
+        if last.inputs.speed == 0.0 and friction <= error:
+            friction = 0.0  # the whole contact slides; the remaining friction is an error
+        reductions.append((100.0 * (1.0 - friction), 100.0 * error))
+        return friction - (1.0 - share)
+
+    try:
+        if excess(line.low) < 0.0:
+            problem = f"{line.every} reduces friction by more: {number_text(*min(reductions))} %"
+            raise NoSolutionError("reduction", text, problem)
+        high = line.start
+        if line.end is not None and excess(line.end) > 0.0:
+            high = math.inf
+        while high > line.high or excess(high) > 0.0:
+            if high >= line.high:
+                most = number_text(*max(reductions))
+                problem = f"{line.none} reduces friction by more than {most} %"
+                raise NoSolutionError("reduction", text, problem)
+            high = min(high + math.log(2.0), line.high)
+        place = brentq(excess, line.low, high, xtol=0.1 * tolerance)
+        here = excess(place)
+        error_here = error
+        slopes = [excess(place - STEP) - here, here - excess(place + STEP)]
+    except _SolverFailureError:
+        return last, Estimate(getattr(last.inputs, name), {"model": math.nan})
+    steep = [slope / STEP for slope in slopes if slope > 0.0]
+    place_error = (abs(here) + error_here) / min(steep) if steep else math.inf
+    size = line.size(place)
+    try:
+        contact = contact_of(replace(inputs, search=None).at(**{name: size}))
+    except InputError as problem:
+        allowed = f"it takes a {name} of {size:.3g} {inputs.unit(name)}; {problem}"
+        raise inputs.error("reduction", allowed) from None
+    return contact, Estimate(size, {"model": abs(line.rate) * size * place_error})
+
+
+def _check_share(inputs: Inputs, share: float, tolerance: float) -> None:
+    """Raise InputError for a reduction that no search can determine."""
+    allowed, spins = "", inputs.kind.unit == "rad"
+    if share < tolerance:
+        allowed = f"allowed is at least the tolerance, {tolerance:g}"
+    elif spins and share == 1.0:
+        allowed = "allowed is less than 100 %: the centre of a contact that spins always sticks"
+    elif inputs.search != "speed" and inputs.speed and share > 1.0 - tolerance:
+        allowed = f"allowed is at most {100.0 * (1.0 - tolerance):g} %, 100 % minus the tolerance"
+        allowed += ": at a speed some friction remains"
+    elif inputs.search == "load" and inputs.amplitude == 0.0:
+        raise inputs.error("amplitude", "allowed is above 0 with a reduction")
+    if allowed:
+        raise inputs.error("reduction", allowed)
+
+
+def _line(inputs: Inputs, name: str, share: float) -> _Line:
+    """The line of a search."""
+    low, high = (math.log(one) for one in AMPLITUDES)
+    if name == "amplitude":
+        # A place is the logarithm of the dimensionless amplitude.
+        contact, spins = Contact(inputs.at(amplitude=0.0)), inputs.kind.unit == "rad"
+        unit = contact.u_lim / (contact.contact_radius if spins else 1.0)
+        text = "u_lim divided by the contact radius" if spins else "u_lim"
+        every = f"the smallest amplitude of the search, {AMPLITUDES[0]:g} times {text},"
+        none = f"no amplitude up to {AMPLITUDES[1]:g} times {text}"
+        return _Line(lambda place: unit * math.exp(place), low, 0.0, high, every, none)
+    if name == "speed":
+        # A place is minus the logarithm of the speed.
+        contact = Contact(inputs.at(speed=0.0))
+        unit = contact.speed_unit
+        if not (contact.steady or contact.kind.unit == "rad"):
+            unit *= max(1.0, float(contact.amplitude))  # the speed of the vibration
+        slow, fast = SPEEDS
+        every = f"the largest speed of the search, {fast * unit:.2g} m/s,"
+        return _Line(
+            lambda place: unit * math.exp(-place),
+            -math.log(fast),
+            0.0,
+            -math.log(slow),
+            every,
+            "no speed",
+            math.inf,
+            -1.0,
+        )
+    # A place is the logarithm of the dimensionless amplitude, which is a power of the load with a
+    # negative exponent.  Under a large load nothing slips, and under a small load the dimensionless
+    # velocity of a bore is large.  The reduction is largest in between.  Small steps from large
+    # loads downwards find the first load with the requested reduction.
+    sizes = [float(Contact(inputs.at(load=f * REFERENCE_LOAD)).amplitude) for f in (1.0, 8.0)]
+    power = math.log(sizes[0] / sizes[1]) / math.log(8.0)
+
+    def load_at(place: float) -> float:
+        return REFERENCE_LOAD * (sizes[0] / math.exp(place)) ** (1.0 / power)
+
+    return _Line(
+        load_at,
+        low,
+        math.log(0.01 * share),
+        high,
+        f"the largest load of the search, {load_at(low):.2g} N,",
+        f"no load of the search, down to {load_at(high):.2g} N,",
+        rate=1.0 / power,
+    )

@@ -1,0 +1,292 @@
+"""The dimensionless answer for a contact: friction or velocity, static limit and threshold."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, field, replace
+from typing import Any
+
+from microslip.adaptive.checks import LARGEST_FORCE, checked_driven_problem
+from microslip.adaptive.driven_contact import GAP_MARGIN
+from microslip.adaptive.point import Result, solve
+from microslip.adaptive.shakedown import shakedown
+from microslip.adaptive.under_force import (
+    is_even,
+    least_load,
+    oscillates,
+    oscillates_forward,
+    without_forward_motion,
+)
+from microslip.estimate.estimate import Estimate
+from microslip.foundation.arguments import (
+    LARGEST,
+    LARGEST_BODY,
+    SMALLEST_STIFFNESS,
+    SMALLEST_TOLERANCE,
+)
+from microslip.foundation.errors import InputError, shown
+from microslip.motions.problem import Problem
+from microslip.si.contact import DRIVES, Contact
+from microslip.si.map import MAP, FrictionMap
+
+TOLERANCE, TOLERANCE_OF_SPEED = 1e-3, 1e-2
+"""Default tolerance of mu_macro, and default relative tolerance of the speed under a force."""
+STATIC_TOLERANCE = 1e-3
+"""Largest accepted error of the static limit under a force, dimensionless."""
+TOLERANCE_OF_SEVERAL = 1e-2
+"""Smallest tolerance of the static limit of a motion with several oscillations, dimensionless.
+Smaller errors take more than a minute."""
+SLOWEST = 1e-3
+"""Dimensionless velocity below which the accepted error is absolute instead of relative."""
+MARGIN = 0.8
+"""Safety factor on the accepted error of a second run, because the second velocity can be
+smaller."""
+RUNS_AWAY = "runs away"
+"""First words of the solver's reason for a contact that accelerates without limit."""
+ARGUMENTS = {"velocity": "speed"} | {group: name for name, group in DRIVES.items()}
+"""Inputs of `predict`, keyed by the arguments of microslip.solve."""
+
+
+@dataclass(frozen=True)
+class Answer:
+    """The dimensionless answer for a contact.
+
+    Attributes
+    ----------
+    values : dict of Estimate
+        friction: mean forward force divided by mu times the mean load; velocity; static: friction
+        in the limit of vanishing velocity; threshold: smallest constant force that moves the
+        contact, divided as the friction; largest_force: smallest force at which it runs away;
+        mean_load divided by the load without oscillation; torque divided by mu F_z a; dissipation
+        per period divided by mu F_z u_lim; displacement until rest in u_lim; cycles until rest.
+        Unknown values are missing.
+    model : str
+        Contact model, "closed-form" or "map".
+    converged : bool
+        Whether the error of the friction, or of the velocity under a force, is within the
+        tolerance.
+    reason : str
+        Why the answer is not converged; otherwise empty.
+    outcome : str
+        Under a force "moves", "stays", "runs away" or "undecided"; empty if the solver failed, and
+        for a contact at a speed.
+    reasons : dict of str
+        Why the error of `static` is above its tolerance, and why `displacement` is unknown.
+    """
+
+    values: dict[str, Estimate]
+    model: str = "none"
+    converged: bool = False
+    reason: str = ""
+    outcome: str = ""
+    reasons: dict[str, str] = field(default_factory=dict)
+
+
+def answer_of(contact: Contact) -> Answer:
+    """Solve a contact.  Raises InputError."""
+    forced = contact.inputs.force is not None
+    accepted = contact.inputs.tolerance or (TOLERANCE_OF_SPEED if forced else TOLERANCE)
+    limit = None if contact.steady else static_limit(contact)
+    threshold = _threshold(contact, limit)
+    result = _friction(contact, limit, threshold, accepted)
+    if result.model == MAP and not result.converged:
+        where = f"velocity {result.velocity:.3g}"
+        where += "" if result.amplitude is None else f", amplitude {result.amplitude:.3g}"
+        raise InputError("map", result.motion, f"at {where}: {result.reason}")
+    values = {
+        "mean_load": Estimate(contact.mean_load),
+        "friction": result.friction,
+        "velocity": result.mean_velocity,
+        "static": None if limit is None else limit.friction,
+        "threshold": threshold,
+        "largest_force": Estimate(largest_force(contact)) if forced else None,
+    }
+    if result.converged:
+        torque = result.torque
+        values |= {"torque": None if torque is None else contact.shape.torque * torque}
+        values |= {"dissipation": result.dissipation}
+    outcome = _outcome(contact, result) if forced else ""
+    reasons = {} if limit is None or not limit.reason else {"static": limit.reason}
+    if outcome == "stays":
+        rest, reason = _rest(contact)
+        values, reasons = values | rest, reasons | ({"displacement": reason} if reason else {})
+    known = {name: one for name, one in values.items() if one is not None}
+    return Answer(known, result.model, result.converged, result.reason, outcome, reasons)
+
+
+def solve_at(contact: Contact, velocity: float | None, tolerance: float, **changes: Any) -> Result:
+    """The Result of microslip.solve, or of a map, for a contact.
+
+    velocity: dimensionless velocity; None under a force.  A velocity above the range of the solver
+    is replaced by the largest one, at which the vibration has no effect.  changes: dimensionless
+    force, stiffness, mass and damping.
+
+    Raises InputError.  The message names the input of `predict`.
+    """
+    inputs, amplitude = contact.inputs, contact.amplitude
+    amplitude = None if amplitude is None else float(amplitude)
+    poisson, pressure = float(contact.poisson), contact.pressure
+    if velocity is not None:
+        velocity = min(velocity, LARGEST["velocity"])
+    if inputs.map is not None:
+        assert velocity is not None  # a map is not allowed with a force
+        friction = FrictionMap(inputs.map, str(contact.motion), pressure)
+        return friction.solve(velocity, amplitude, poisson=poisson, tolerance=tolerance)
+    try:
+        return solve(
+            contact.motion,
+            velocity,
+            amplitude,
+            poisson=poisson,
+            pressure=pressure,
+            tolerance=tolerance,
+            **changes,
+        )
+    except InputError as error:
+        name = ARGUMENTS.get(error.argument, "")
+        if not changes or name not in inputs.quantities:
+            raise
+        group = f"{error.value:.6g}" if isinstance(error.value, float) else shown(error.value)
+        raise inputs.error(name, f"dimensionless {group}: {error.allowed}") from None
+
+
+def static_limit(contact: Contact) -> Result:
+    """mu_macro in the limit of vanishing speed."""
+    tolerance = contact.inputs.tolerance or TOLERANCE
+    if contact.inputs.force is not None:  # the tolerance applies to the speed here
+        tolerance = min(tolerance, STATIC_TOLERANCE)
+    if contact.kind.several:
+        tolerance = max(tolerance, TOLERANCE_OF_SEVERAL)
+    return solve_at(contact, 0.0, tolerance)
+
+
+def problem_of(contact: Contact) -> Problem:
+    """The dimensionless Problem in the limit of vanishing speed."""
+    amplitude = None if contact.steady else float(contact.amplitude)
+    settings: dict[str, Any] = {"poisson": float(contact.poisson), "pressure": contact.pressure}
+    return checked_driven_problem(contact.motion, 0.0, amplitude, **settings)
+
+
+def largest_force(contact: Contact) -> float:
+    """Smallest constant force at which the contact runs away, divided by mu times the mean load.
+
+    It is 1 for a body with a mass.  Otherwise it is the smallest normal load in a period divided by
+    the mean load.
+    """
+    if contact.inputs.mass or contact.steady:
+        return 1.0
+    return min(1.0, least_load(problem_of(contact)))
+
+
+def _threshold(contact: Contact, limit: Result | None) -> Estimate | None:
+    """Smallest constant force that moves the contact, divided by mu times the mean load.
+
+    The threshold equals the static limit if the oscillation exerts no forward force.  Otherwise, a
+    contact without mass follows the forward oscillation, and the threshold is the static limit of
+    the other components, or 1 without any.  This limit is computed only if a force is prescribed.
+    The threshold is None if it is unknown.
+    """
+    if limit is None:
+        return Estimate(0.0)  # under a steady spin any force moves the contact
+    problem, mass = problem_of(contact), contact.inputs.mass
+    if not oscillates_forward(problem) or is_even(problem):
+        return limit.friction
+    held = without_forward_motion(problem)
+    if not mass and not oscillates(held):
+        return Estimate(1.0)
+    if mass or contact.inputs.force is None or not is_even(held):
+        return None
+    return solve(held, tolerance=STATIC_TOLERANCE).friction
+
+
+def _friction(
+    contact: Contact, limit: Result | None, threshold: Estimate | None, tolerance: float
+) -> Result:
+    """The friction at a prescribed speed, or the velocity under a prescribed force.
+
+    If the force is below the threshold by more than the threshold's error, the contact comes to
+    rest, and no drift is computed.  If the force is within this error of the threshold, the result
+    is not converged, since computing the small speed would take minutes.
+    """
+    groups = contact.drive(contact.mean_load)
+    drive: dict[str, Any] = within_range(groups)
+    if "force" not in drive:
+        velocity = contact.velocity
+        if velocity == 0.0 and not drive and limit is not None and limit.tolerance == tolerance:
+            return limit  # the same problem
+        return solve_at(contact, velocity, tolerance, **drive)
+    force, near = groups["force"], False
+    if threshold is not None:
+        near = abs(force - threshold.value) <= threshold.error
+        below = force <= threshold.value - threshold.error and force < largest_force(contact)
+        if below and limit is not None and limit.converged:
+            return replace(limit, mean_velocity=Estimate(0.0), friction=Estimate(force), **groups)
+    result = solve_at(contact, None, tolerance, **drive)
+    if not result.converged:
+        return result
+    if near and threshold is not None:
+        reason = "the force differs from its threshold by less than the error of the threshold, "
+        reason += f"{threshold.error:.1e} of mu times the load"
+        drive["force"] = min(threshold.value + GAP_MARGIN * threshold.error, LARGEST_FORCE)
+        faster = solve_at(contact, None, tolerance, **drive).mean_velocity
+        half = 0.5 * (faster.value + faster.error)
+        between = Estimate(half, {"model": half})
+        return replace(result, mean_velocity=between, converged=False, reason=reason)
+    accepted = tolerance * max(result.velocity, SLOWEST)
+    if result.mean_velocity.error <= accepted:
+        return result
+    return solve_at(contact, None, max(MARGIN * accepted, SMALLEST_TOLERANCE), **drive)
+
+
+def within_range(drive: dict[str, float]) -> dict[str, float]:
+    """The dimensionless drive, reduced to the range of the solver.
+
+    If the force exceeds this range, the contact runs away.  A body that is too heavy or too stiff
+    hardly moves.  Its mass, stiffness and damping are scaled by one factor, which preserves the
+    natural frequency.
+    """
+    body = {name: value for name, value in drive.items() if name != "force"}
+    scale = max(1.0, max(body.values(), default=0.0) / LARGEST_BODY)
+    groups = {name: min(value / scale, LARGEST_BODY) for name, value in body.items()}
+    if "stiffness" in groups:  # a softer spring exerts nearly the same force
+        groups["stiffness"] = max(groups["stiffness"], SMALLEST_STIFFNESS)
+    if "force" in drive:
+        groups["force"] = min(drive["force"], LARGEST_FORCE)
+    return groups
+
+
+def _outcome(contact: Contact, result: Result) -> str:
+    value, error = result.mean_velocity.value, result.mean_velocity.error
+    if contact.drive(contact.mean_load)["force"] >= 1.0 or result.reason.startswith(RUNS_AWAY):
+        return RUNS_AWAY
+    if not math.isfinite(value):
+        return ""
+    if value == error == 0.0:
+        return "stays"
+    return "moves" if value > error else "undecided"
+
+
+def _rest(contact: Contact) -> tuple[dict[str, Estimate | None], str]:
+    """The displacement until the contact rests and the number of cycles, or why they are unknown.
+
+    They are computed for round contacts only, because other contacts would take minutes.
+    """
+    drive = contact.drive(contact.mean_load)
+    if set(drive) != {"force"}:
+        return {}, "computed for a contact without mass only"
+    if not contact.shape.is_round:
+        return {}, "computed for a round contact only"
+    settings: dict[str, Any] = {"poisson": float(contact.poisson), "pressure": contact.pressure}
+    try:
+        rest = shakedown(
+            contact.motion, float(contact.amplitude), float(drive["force"]), **settings
+        )
+    except InputError as error:  # a motion that exerts a forward force by itself
+        return {}, error.allowed
+    if not rest.converged:
+        return {}, rest.reason
+    cycles = rest.most_after
+    return {
+        "displacement": Estimate(rest.displacement, {"model": rest.displacement_error}),
+        "cycles": None if cycles is None else Estimate(float(cycles)),
+    }, ""

@@ -1,0 +1,347 @@
+"""Warnings if a contact violates an assumption of the theory.
+
+A measure is a named number that describes a contact.  A rule has limits for measures, and a warning
+for contacts beyond these limits.  The explorer's web page evaluates the same rules.
+"""
+
+from __future__ import annotations
+
+import math
+import re
+import sys
+from collections.abc import Mapping
+from typing import NamedTuple
+
+import numpy as np
+
+from microslip.foundation.number_text import prefixed_text
+from microslip.pressures.axisymmetric_indenter import Indenter
+from microslip.si.contact import Contact
+
+YIELDS_AT = 0.57
+"""Largest Hertz pressure divided by hardness at the onset of plastic flow below the surface.  At
+this onset, the pressure is 1.6 times the yield stress.  The hardness is 2.8 times the yield stress
+(K. L. Johnson, Contact Mechanics, 6.1 and 6.3)."""
+HARDEST = 0.1
+"""Largest hardness of metals, ceramics and glasses, divided by Young's modulus.  The hardness is
+2.8 times the yield stress.  The yield stress is at most a few per cent of the modulus."""
+RUBBERY = 0.45
+"""Smallest Poisson's ratio of a rubber.  Rubber does not yield.  It has internal losses, and its
+modulus increases with the frequency (K. A. Grosch, Proc. R. Soc. A 274, 1963)."""
+ADHESION = 0.05
+"""Typical work of adhesion between clean smooth surfaces due to van der Waals forces, N/m (J. N.
+Israelachvili, Intermolecular and Surface Forces)."""
+RANGE = 0.2e-9
+"""Range of van der Waals forces, m.  It is of the order of the distance between atoms."""
+SHORT, LONG = 5.0, 0.1
+"""Smallest Tabor number for the JKR theory, and largest Tabor number for the DMT theory (K. L.
+Johnson and J. A. Greenwood, J. Colloid Interface Sci. 192, 1997)."""
+LARGE_MU = 1.0
+"""Coefficient of friction above which Coulomb's law is doubtful."""
+SMALL = 0.1
+"""Ratios up to this value are negligible in the theory."""
+STEEP = 0.2
+"""Ratio above which half-spaces are a poor approximation: contact radius a divided by the bodies'
+smaller radius, or by the radius R of relative curvature.  Hertz's theory assumes a << R1, R2 and a
+<< R (K. L. Johnson, Contact Mechanics, 4.2)."""
+AGREES = 0.01
+"""Largest relative difference between two sizes or loads that count as equal.  It allows for
+rounding to two or three digits."""
+RADII = np.geomspace(1e-3, 1e3, 3001)
+"""Contact radii, divided by that under the load, among which the contact pulls off.  Neighbours
+differ by 0.5 %, which changes the largest force by less than a digit that is printed."""
+
+
+class Rule(NamedTuple):
+    """A condition under which an assumption is violated, and the warning.
+
+    Attributes
+    ----------
+    where : tuple of tuple
+        Conditions (left, factor, right): left > factor * right.  Each side is a number or the name
+        of a measure.  The rule applies if all conditions are true.  A condition on a missing
+        measure is false.
+    text : str
+        The sentence, with measures as in {load:.2g} N; see MEASURE.
+    """
+
+    where: tuple[tuple, ...]
+    text: str
+
+
+MEASURE = re.compile(r"\{(\w+):\.(\d+)g\}(?: (Pa|N|m)\b)?")
+"""Pattern of a measure in a sentence: the name, the number of digits, and the SI unit."""
+ADHERES = (
+    "clean smooth surfaces adhere with about {pull_off:.2g} N, {pull_off_share:.2g} of the load"
+)
+THEORY = f"{ADHERES} (Tabor's number {{tabor:.2g}}, Maugis's {{maugis:.2g}}: %s): adhesion matters"
+PULLS, PAIRS = ("pull_off", SMALL, "load"), ("tabor", 1.0, 0.0)
+TOO_HARD = (
+    "the largest pressure, {largest_pressure:.2g} Pa, is {%s_pressure:.2g} of Young's modulus: "
+    "every metal, ceramic or glass yields under it"
+)
+HALF_SPACES = "the contact radius is {%s:.2g} of the %s: half-spaces are a poor approximation"
+ATOMS = "%s is {%s:.2g} m, less than the distance between atoms, where the theory of continua fails"
+INERTIA = "inertia is not negligible"
+CHECKS = tuple(
+    tuple(Rule(tuple(where), text) for *where, text in group)
+    for group in (
+        (
+            (
+                ("largest_pressure", 1.0, sys.float_info.max),
+                "the pressure is infinite at the tip of the indenter, so the contact yields there "
+                "under any load; the mean pressure is {mean_pressure:.2g} Pa",
+            ),
+            (
+                ("largest_pressure", YIELDS_AT, "hardness"),
+                f"the largest pressure, {{largest_pressure:.2g}} Pa, is above {YIELDS_AT:g} of the "
+                "hardness, {hardness:.2g} Pa: the contact yields, and is larger than in Hertz's "
+                "theory",
+            ),
+        ),
+        tuple(
+            (("largest_pressure", YIELDS_AT * HARDEST, f"{side}_young"), TOO_HARD % side)
+            for side in ("first", "second")
+        ),
+        tuple(
+            (("contact_radius", STEEP, name), HALF_SPACES % (f"over_{name}", text))
+            for name, text in (
+                ("smallest_radius", "smaller radius of the bodies"),
+                ("radius", "radius of relative curvature"),
+            )
+        ),
+        (
+            (
+                ("stroke", 1.0, SMALL),
+                "the amplitude is {stroke:.2g} times the contact radius: the material carries the "
+                "tractions along in a stroke, which the theory neglects",
+            ),
+        ),
+        (
+            (
+                ("crossing", 1.0, SMALL),
+                "a shear wave travels the contact radius in {crossing:.2g} radians of the "
+                f"oscillation: {INERTIA}",
+            ),
+            (
+                ("slip_speed", 1.0, SMALL),
+                f"the slip speed is {{slip_speed:.2g}} times that of shear waves: {INERTIA}",
+            ),
+        ),
+        (
+            (
+                ("mismatch", 1.0, SMALL),
+                "the bodies are elastically dissimilar (Dundurs' beta {mismatch:.2g}): pressure "
+                "moves their surfaces sideways, which the theory neglects",
+            ),
+        ),
+        (
+            (PAIRS, PULLS, ("tabor", 1.0, SHORT), THEORY % "JKR"),
+            (PAIRS, PULLS, (LONG, 1.0, "tabor"), THEORY % "DMT"),
+            (PAIRS, PULLS, THEORY % "between JKR and DMT"),
+            (PULLS, f"{ADHERES}: adhesion matters"),
+        ),
+        (
+            (
+                ("separated", 1.0, 0.0),
+                "the load falls to 0: the bodies separate in every cycle, for {separated:.2g} of "
+                "it, and the mean load is {mean_load:.4g} N",
+            ),
+        ),
+        tuple(
+            ((name, 1.0, 0.0), (RANGE, 1.0, name), ATOMS % (text, name))
+            for name, text in (("u_lim", "u_lim"),)
+        ),
+        tuple(
+            ((name, 1.0, 0.0), (RANGE, 1.0, name), ATOMS % (text, name))
+            for name, text in (("amplitude", "the amplitude"),)
+        ),
+        (
+            (
+                ("mu", 1.0, LARGE_MU),
+                f"mu is {{mu:.3g}}: above {LARGE_MU:g} it is rare except for rubber and clean "
+                "metals that weld, for which Coulomb's law is a poor approximation",
+            ),
+        ),
+        (
+            (
+                ("rubbers", 1.0, 0.0),
+                f"a Poisson's ratio of {RUBBERY:g} or more is that of rubber and soft polymers, "
+                "whose modulus increases with the frequency: give Young's modulus at this "
+                "frequency; internal losses, which add to friction, are neglected",
+            ),
+        ),
+    )
+)
+"""Groups of rules.  The warnings have the order of the groups.  In each group, the first rule that
+applies gives the warning."""
+PROPERTIES = {"hardness": "whether the bodies stay elastic", "density": "inertia"}
+"""Checks that need an optional property of a body, keyed by the property's name."""
+MISSING = "{what} (the {name} of {whose} is missing)"
+UNKNOWN_PULL_OFF = "adhesion (the pull-off force under this pressure is not known)"
+SIDES = ("the body", "the counterbody")
+"""Names of the two bodies in sentences."""
+DISAGREES = (
+    "the {what} is {value}, but {measured} in the pressure file: only the shape of the pressure in "
+    "the file is used"
+)
+
+
+def warnings_of(contact: Contact, speed: float) -> list[str]:
+    """The warnings for a contact that moves at a speed, m/s."""
+    return [*_contradictions(contact), *broken_rules(measures(contact, speed))]
+
+
+def broken_rules(values: Mapping[str, float | None]) -> list[str]:
+    """The warnings for measures by name.  Rules about other measures do not apply."""
+
+    def value(side: float | str) -> float | None:
+        return values.get(side) if isinstance(side, str) else side
+
+    def applies(rule: Rule) -> bool:
+        sides = [(value(left), factor, value(right)) for left, factor, right in rule.where]
+        return all(a is not None and b is not None and a > factor * b for a, factor, b in sides)
+
+    def number(match: re.Match) -> str:
+        size, digits, unit = float(values[match[1]] or 0.0), int(match[2]), match[3]
+        return f"{size:.{digits}g}" if unit is None else prefixed_text(size, unit, digits)
+
+    first = (next(filter(applies, rules), None) for rules in CHECKS)
+    return [MEASURE.sub(number, rule.text) for rule in first if rule is not None]
+
+
+def unchecked(contact: Contact) -> list[str]:
+    """Texts for the checks that are skipped because a property is missing."""
+    sides, texts = list(zip(SIDES, contact.bodies, strict=True)), []
+    for name, what in PROPERTIES.items():
+        whose = [side for side, b in sides if getattr(b, name) is None and not b.rigid]
+        if whose and not (name == "hardness" and math.isinf(contact.largest_pressure)):
+            texts.append(MISSING.format(what=what, name=name, whose=" and ".join(whose)))
+    return texts + [UNKNOWN_PULL_OFF] * (_pull_off(contact)[1] is None)
+
+
+def measures(contact: Contact, speed: float) -> dict[str, float | None]:
+    """Measures of a contact by name.  A measure that is unknown or does not apply is None.
+
+    Pressures and the contact radius are those at the largest load in a period.
+    """
+    inputs, kind, most = contact.inputs, contact.kind, contact
+    if inputs.load_amplitude:
+        most = Contact(inputs.at(load=inputs.load + inputs.load_amplitude))
+    a, pressure = most.contact_radius, most.largest_pressure
+    along, turn = _reach(contact)
+    radius, smallest = most.radius, most.smallest_radius
+    tabor, pull = _pull_off(contact)
+    values: dict[str, float | None] = {
+        "largest_pressure": pressure,
+        "mean_pressure": most.load / (math.pi * a**2),
+        "hardness": min(
+            (b.hardness for b in contact.bodies if b.hardness is not None), default=None
+        ),
+        "contact_radius": a,
+        "radius": radius,
+        "smallest_radius": smallest,
+        "over_radius": a / radius,
+        "over_smallest_radius": a / smallest,
+        "mismatch": abs(contact.mismatch),
+        "load": contact.load,
+        "u_lim": contact.u_lim,
+        "mu": contact.mu,
+        "rubbers": sum(b.poisson >= RUBBERY and not b.rigid for b in contact.bodies),
+        "tabor": tabor,
+        "maugis": None if tabor is None else 1.157 * tabor,
+        "pull_off": pull,
+        "pull_off_share": None if pull is None else pull / contact.load,
+        "amplitude": along,
+        "stroke": None if kind.steady else along / contact.contact_radius,
+        "mean_load": contact.load * contact.mean_load,
+        "separated": contact.separated,
+    }
+    for side, body in zip(("first", "second"), contact.bodies, strict=True):
+        other = body.hardness is not None or body.rigid or body.poisson >= RUBBERY
+        other = other or math.isinf(pressure)  # an infinite pressure has its own warning
+        values[f"{side}_young"] = None if other else body.young
+        values[f"{side}_pressure"] = None if other else pressure / body.young
+    waves = [
+        math.sqrt(b.shear_modulus / b.density)
+        for b in contact.bodies
+        if b.density is not None and not b.rigid
+    ]
+    if waves:
+        edge, pace = contact.contact_radius, kind.stroke.pace if kind.stroke else (along, turn)
+        factor = inputs.amplitude if kind.stroke else 1.0
+        slip = speed + contact.omega * factor * (pace[0] + edge * pace[1])
+        if kind.steady:
+            slip = math.hypot(speed, contact.omega * edge)
+        values["crossing"] = contact.omega * edge / min(waves)
+        values["slip_speed"] = slip / min(waves)
+    return values
+
+
+def _reach(contact: Contact) -> tuple[float, float]:
+    """Largest displacement along the surface in a period, m, and largest rotation, rad."""
+    inputs, kind = contact.inputs, contact.kind
+    if kind.stroke is not None:
+        along, turn = kind.stroke.reach
+        return inputs.amplitude * along, inputs.amplitude * turn
+    if kind.unit == "rad":
+        return 0.0, inputs.amplitude
+    along = math.hypot(inputs.amplitude or 0.0, inputs.forward_amplitude or 0.0)
+    return along, inputs.rotation_amplitude or 0.0
+
+
+def _pull_off(contact: Contact) -> tuple[float | None, float | None]:
+    """Tabor's number of a paraboloid, and pull-off force, N; None if it is not known.
+
+    A paraboloid pulls off as a sphere whose radius is the geometric mean of both radii of relative
+    curvature.  This is exact in the DMT theory (B. V. Derjaguin, Kolloid-Z. 69, 1934).  In the JKR
+    theory it is an upper bound, which slender ellipses do not reach (K. L. Johnson and J. A.
+    Greenwood, J. Phys. D 38, 2005).  Another indenter of revolution pulls off with the largest
+    sqrt(8 pi E* w c^3) - F(c), where F(c) is the load without adhesion at the contact radius c (D.
+    Maugis, Contact, Adhesion and Rupture of Elastic Solids, 4.2).  For a flat punch, this is
+    Kendall's force (J. Phys. D 4, 1971).
+    """
+    a, E_star, shape = contact.contact_radius, contact.E_star, contact.shape
+    if contact.radii or (shape.hertzian and shape.is_round):
+        across = contact.inputs.radius_across
+        radius = contact.radius if across is None else math.sqrt(contact.radius * across)
+    elif shape.hertzian:
+        radius = _mean_radius(contact)
+    elif isinstance(shape, Indenter):
+        with np.errstate(over="ignore"):
+            load = contact.load * shape.total(shape.depth(RADII))
+        crack = np.sqrt(8.0 * math.pi * E_star * ADHESION * (a * RADII) ** 3)
+        return None, float((crack - load).max())
+    else:
+        return None, None
+    tabor = (ADHESION**2 * radius / (E_star**2 * RANGE**3)) ** (1.0 / 3.0)
+    return tabor, (1.5 if tabor > SHORT else 2.0) * math.pi * ADHESION * radius
+
+
+def _mean_radius(contact: Contact) -> float:
+    """Geometric mean of the radii of relative curvature of an elliptic contact of known size, m (K.
+    L. Johnson, Contact Mechanics, 4.2)."""
+    from scipy.special import ellipe, ellipk
+
+    ratio, a = contact.shape.ratio, contact.contact_radius  # type: ignore[attr-defined]
+    m = 1.0 - ratio**2
+    first, second = ellipk(m), ellipe(m)
+    sizes = (first - second) * (second / ratio**2 - first)
+    pressure = 1.5 * contact.load / (math.pi * a**2 * ratio)
+    return float(0.5 * contact.E_star * a * m / (pressure * ratio * math.sqrt(sizes)))
+
+
+def _contradictions(contact: Contact) -> list[str]:
+    """Messages about a size or a load that differs from the value in a pressure file with units.
+
+    Differences within the file's reading error are accepted; see AGREES.
+    """
+    texts, readings = [], (contact.shape, *contact.shape.readings) if not contact.radii else ()
+    size, load = ("size_m", "m"), ("load_N", "N")
+    known = {"contact radius": (contact.contact_radius, *size), "load": (contact.load, *load)}
+    for what, (value, name, unit) in known.items():
+        sizes = [getattr(one, name, None) or value for one in readings] or [value]
+        if not (1.0 - AGREES) * min(sizes) <= value <= (1.0 + AGREES) * max(sizes):
+            pair = [prefixed_text(one, unit) for one in (value, sizes[0])]
+            texts.append(DISAGREES.format(what=what, value=pair[0], measured=pair[1]))
+    return texts
