@@ -55,10 +55,14 @@ class Budget:
         return other
 
     def metered(self, contact: Contact) -> Contact:
-        """Wrap a contact so that its marches are counted.  The first call starts the clock."""
+        """Wrap a contact so that its marches are counted, and start the clock."""
+        self.start()
+        return _Metered(contact, self)
+
+    def start(self) -> None:
+        """Start the clock, unless it runs."""
         if self._began is None and self.time_limit < math.inf:
             self._began = _seconds()
-        return _Metered(contact, self)
 
     def take(self, solves: int, iterations: int, unknowns: int) -> None:
         """Count a march; raises Spent if a limit is exceeded.

@@ -139,6 +139,9 @@ class _Recorder(Budget):
         self.budget = budget
         self.marches: list[tuple[int, int, int]] = []
 
+    def start(self) -> None:
+        self.budget.start()
+
     def take(self, solves: int, iterations: int, unknowns: int) -> None:
         self.budget.take(solves, iterations, unknowns)
         self.marches.append((solves, iterations, unknowns))
