@@ -1,12 +1,11 @@
 # From the configuration to the figures:
 #
-#   config.yaml --> batches --> solve, map --> results/batches --> collect --> results/NAME.nc
-#                     results/points (the store) <--'               draw --> results/figures
-#                                                                explore --> results/*.html
+#   config.yaml --> solve_batch, solve_map --> results/batches --> make_dataset --> draw_figure
+#                                                            data/NAME.HASH.nc, .png in results
 #
-# CONTRIBUTING.md follows one point along this way, and explains how stamps and the file
-# results/.again decide what is made again.  Inputs that are up to date are marked `ancient`, so
-# neither other modification times nor .snakemake matter.
+# The name of a file contains a hash of all that it is made of, so a file that exists is right.  The
+# rules apply to missing files only: neither dates nor .snakemake matter.  Plain names, such as
+# results/bore.nc, are links.  CONTRIBUTING.md follows one point along this way.
 
 from snakemake.utils import min_version
 
@@ -23,173 +22,151 @@ onstart:
     make_ready()
 
 
-wildcard_constraints:
-    batch="[0-9a-f]+",
-    dataset="|".join(PLAN.datasets),
-    figure="|".join(PLAN.figures),
-    page="explorer|explorer_all",
-    kernels="rings|angles|pulled",
-
-
 rule all:
     input:
-        files_of_target("all"),
+        everything,
 
 
-# snakemake certified, snakemake fig2, and all other targets that `microslip sweep --help` lists.
-for target in PLAN.targets:
-    if target != "all":
-
-        rule:
-            name:
-                target
-            input:
-                files_of_target(target),
-
-
-# Compiles the solver once, so that parallel jobs do not all compile it.
-rule warm_up:
+# Makes all missing datasets and figures in one process, which imports the libraries once.
+rule make_products:
     input:
-        lambda wildcards: ancient(
-            compiled("rings", "angles") if wildcards.kernels == "pulled" else []
-        ),
+        inputs_of(*PLAN.products),
     output:
-        f"{RESULTS}/warm_up/{source_digest.of_solver()[:16]}_{{kernels}}.txt",
+        temp(f"{RESULTS}/data/{{marker}}.made"),
     log:
-        f"{RESULTS}/logs/warm_up/{{kernels}}.log",
+        f"{RESULTS}/logs/make/{{marker}}.log",
+    wildcard_constraints:
+        marker="[0-9a-f]+",
     conda:
         "workflow/envs/microslip.yaml"
     # Memory and time on a cluster, including Snakemake: see docs/how-to/cluster.md.
     resources:
         mem_mb=lambda wildcards, attempt: 1000 * attempt,
-        runtime=lambda wildcards, attempt: 10 * attempt,
+        runtime=lambda wildcards, attempt: 30 * attempt,
+    params:
+        products=lambda wildcards: STATE.orders(*STATE.missing),
     script:
-        "workflow/scripts/warm_up.py"
+        "workflow/scripts/make.py"
 
 
-rule solve:
-    input:
-        ancient(lambda wildcards: kernels_for(wildcards.group)),
-        again=lambda wildcards: made_again(
-            is_whole(f"batches/{wildcards.group}/{wildcards.batch}.jsonl")
-        ),
+# The results folder, with the prefix of a Snakemake module.
+STATE = look(os.path.dirname(os.path.dirname(str(rules.make_products.output[0]))))
+
+
+# Each dataset and each figure is a target.
+for name in PLAN.products:
+
+    rule:
+        name:
+            name
+        input:
+            files_of(name),
+
+
+# Solves a batch of points.
+rule solve_batch:
     output:
-        f"{RESULTS}/batches/{{group}}/{{batch}}.jsonl",
+        in_place(f"{RESULTS}/batches/{{folder}}/{{batch}}.jsonl"),
     log:
-        f"{RESULTS}/logs/solve/{{group}}/{{batch}}.log",
+        f"{RESULTS}/logs/{{folder}}/{{batch}}.log",
     wildcard_constraints:
-        group="|".join(PLAN.groups),
+        folder="[^/.]+",
+        batch=any_of(STATE.batches(certified=False)),
     conda:
         "workflow/envs/microslip.yaml"
     resources:
         mem_mb=lambda wildcards, attempt: 1000 * attempt,
         runtime=lambda wildcards, attempt: 60 * attempt,
     params:
-        batch=lambda wildcards: batch_of(wildcards.group, wildcards.batch),
-        store=lambda wildcards, output: output[0].rpartition("/batches/")[0],
+        batch=lambda wildcards: STATE.order_of_batch(wildcards.folder, wildcards.batch),
     script:
         "workflow/scripts/solve.py"
 
 
 # Solves all points of a certified map in several processes.
-use rule solve as map with:
-    log:
-        f"{RESULTS}/logs/map/{{group}}/{{batch}}.log",
+use rule solve_batch as solve_map with:
     wildcard_constraints:
-        group="|".join(CONFIGURATION.certified) or "(?!)",
+        folder="[^/.]+",
+        batch=any_of(STATE.batches(certified=True)),
     threads: 8
     resources:
         mem_mb=lambda wildcards, attempt, threads: 500 * attempt * (threads + 1),
         runtime=lambda wildcards, attempt: 120 * attempt,
 
 
-rule collect:
+rule make_dataset:
     input:
-        batches=lambda wildcards: batches_for(wildcards.dataset),
-        again=lambda wildcards: made_again(is_right(wildcards.dataset)),
+        lambda wildcards: inputs_of_stem(wildcards.stem),
     output:
-        in_place(f"{RESULTS}/{{dataset}}.nc"),
-        summary=report(
-            in_place(f"{RESULTS}/summaries/{{dataset}}.html"),
+        in_place(f"{RESULTS}/data/{{stem}}.nc"),
+        report(
+            in_place(f"{RESULTS}/data/{{stem}}.html"),
             caption="workflow/report/dataset.rst",
             category="Datasets",
-            labels={"dataset": "{dataset}.nc"},
+            labels={"dataset": "{stem}.nc"},
         ),
-        stamp=in_place(f"{RESULTS}/{stamps.stamp_of('{dataset}')}"),
     log:
-        f"{RESULTS}/logs/collect/{{dataset}}.log",
+        f"{RESULTS}/logs/dataset/{{stem}}.log",
+    wildcard_constraints:
+        stem=any_of(STATE.stems_of("dataset")),
     conda:
         "workflow/envs/microslip.yaml"
     resources:
         mem_mb=lambda wildcards, attempt: 1000 * attempt,
         runtime=lambda wildcards, attempt: 10 * attempt,
     params:
-        made_of=lambda wildcards: PLAN.made_of(wildcards.dataset),
+        products=lambda wildcards: STATE.orders(PRODUCT_OF[wildcards.stem]),
     script:
-        "workflow/scripts/collect.py"
+        "workflow/scripts/make.py"
 
 
-rule draw:
-    input:
-        datasets=lambda wildcards: datasets_for(f"figures/{wildcards.figure}"),
-        again=lambda wildcards: made_again(is_right(f"figures/{wildcards.figure}")),
+use rule make_dataset as draw_figure with:
     output:
         report(
-            in_place(f"{RESULTS}/figures/{{figure}}.png"),
+            in_place(f"{RESULTS}/data/{{stem}}.png"),
             caption="workflow/report/figure.rst",
-            category=lambda wildcards: figure_targets.heading_of(
-                CONFIGURATION, PLAN.figures[wildcards.figure][0]
-            ),
-            labels={"figure": "{figure}"},
+            category="Figures",
+            labels={"figure": "{stem}"},
         ),
-        in_place(f"{RESULTS}/figures/{{figure}}.pdf"),
-        stamp=in_place(f"{RESULTS}/{stamps.stamp_of('figures/{figure}')}"),
+        in_place(f"{RESULTS}/data/{{stem}}.pdf"),
     log:
-        f"{RESULTS}/logs/draw/{{figure}}.log",
-    conda:
-        "workflow/envs/microslip.yaml"
-    resources:
-        mem_mb=lambda wildcards, attempt: 1000 * attempt,
-        runtime=lambda wildcards, attempt: 10 * attempt,
-    params:
-        made_of=lambda wildcards: PLAN.made_of(f"figures/{wildcards.figure}"),
-    script:
-        "workflow/scripts/draw.py"
+        f"{RESULTS}/logs/draw/{{stem}}.log",
+    wildcard_constraints:
+        stem=any_of(STATE.stems_of("figure")),
 
 
-# Interactive page of the maps. The page explorer_all.html also contains all other sweeps.
-rule explore:
-    input:
-        datasets=lambda wildcards: datasets_for(f"pages/{wildcards.page}"),
-        batches=lambda wildcards: batches_for(f"pages/{wildcards.page}"),
-        again=lambda wildcards: made_again(is_right(f"pages/{wildcards.page}")),
+# Interactive page of maps, with stored periods of their points.
+use rule make_dataset as make_page with:
     output:
         report(
-            in_place(f"{RESULTS}/{{page}}.html"),
+            in_place(f"{RESULTS}/data/{{stem}}.html"),
             caption="workflow/report/explorer.rst",
             category="Explorer",
-            labels={"page": "{page}.html"},
+            labels={"page": "{stem}.html"},
         ),
-        stamp=in_place(f"{RESULTS}/{stamps.stamp_of('pages/{page}')}"),
     log:
-        f"{RESULTS}/logs/explore/{{page}}.log",
+        f"{RESULTS}/logs/explore/{{stem}}.log",
+    wildcard_constraints:
+        stem=any_of(STATE.stems_of("explorer")),
+
+
+# A plain name, such as results/bore.nc, as a target.
+rule link_file:
+    input:
+        file=lambda wildcards: file_of_link(wildcards.plain),
+        again=lambda wildcards: again_of_link(wildcards.plain),
+    output:
+        f"{RESULTS}/{{plain}}",
+    log:
+        f"{RESULTS}/logs/link/{{plain}}.log",
+    wildcard_constraints:
+        plain=any_of(STATE.plain()),
+    localrule: True
     conda:
         "workflow/envs/microslip.yaml"
-    resources:
-        mem_mb=lambda wildcards, attempt: 1000 * attempt,
-        runtime=lambda wildcards, attempt: 10 * attempt,
     params:
-        made_of=lambda wildcards: PLAN.made_of(f"pages/{wildcards.page}"),
-    script:
-        "workflow/scripts/explore.py"
-
-
-# The folder in which the rules write results, with the prefix of a Snakemake module.
-PLACE = os.path.dirname(str(rules.collect.output[0]))
-
-with refused_in_one_line():
-    if HERE:
-        groups = {"batches", "figures", "logs", "warm_up", *batches.FOLDERS.values()}
-        made = [file for product in PLAN.products.values() for file in product.files]
-        files.refuse_unusable(*([f"{PLACE}/{name}" for name in names] for names in (groups, made)))
-    stamps.write_again(f"{PLACE}/{stamps.AGAIN}" if HERE else AGAIN, dated=HERE)
+        to=lambda wildcards, input: os.path.relpath(
+            input.file, os.path.dirname(f"{RESULTS}/{wildcards.plain}")
+        ),
+    shell:
+        "(ln -s {params.to:q} {output:q} || cp {input.file:q} {output:q}) 2> {log:q}"

@@ -8,60 +8,55 @@ import re
 import sys
 from collections.abc import Iterator
 from pathlib import Path
-from typing import Any
 
-from microslip.config.schema import allowed_values, options, schema
+from pydantic.fields import FieldInfo
 
-SECTIONS = {
-    "Top level": "Root",
-    "Every sweep": "SteadySweep",
-    "`sweeps`: `transverse` and `bore`": "Sweep",
-    "`extended`: a sweep": "ExtendedSweep",
-    "`drives`: a sweep": "DriveSweep",
-    "`adaptive`": "Adaptive",
-    "`linear` and `log` of an axis": "Range",
-    "`histories`: `transverse`": "ForceHistory",
-    "`histories`: `field`": "TractionField",
-    "`histories`: `transients`": "Transients",
-    "`accuracy`": "Accuracy",
-    "`accuracy`: a point": "StudyPoint",
-    "`accuracy`: `map`": "ModelMap",
-    "`stability`": "Stability",
-    "`claims`": "Claims",
+from microslip.config import settings
+from microslip.config.settings import Allowed, Settings
+
+SECTIONS: dict[str, type[Settings]] = {
+    "Top level": settings.Configuration,
+    "`sweeps`: a sweep": settings.Sweep,
+    "`figures`: a figure": settings.Figure,
+    "`accuracy`": settings.Accuracy,
+    "`accuracy`: a point": settings.StudyPoint,
+    "`accuracy`: `map`": settings.ModelMap,
+    "`stability`": settings.Stability,
+    "`claims`": settings.Claims,
 }
-"""Pydantic models of the tables by heading."""
-COMMON = "SteadySweep"
-"""Model with the common keys of all sweeps; tables of other sweeps list their further keys."""
+"""Models of the tables by heading."""
 BEGIN, END = "<!-- keys: begin -->", "<!-- keys: end -->"
-LONGEST = 100
+LONGEST = 60
 """Largest number of characters of a default in a table."""
 
 
 def tables() -> str:
     """Markdown of all tables in SECTIONS."""
-    return "\n".join(line for title, name in SECTIONS.items() for line in _section(title, name))
+    return "\n".join(line for title, model in SECTIONS.items() for line in _section(title, model))
 
 
-def _section(title: str, name: str) -> Iterator[str]:
-    rule = schema() if name == "Root" else schema()["$defs"][name]
-    yield from ("", f"### {title}", "", " ".join(rule["description"].split()), "")
+def _section(title: str, model: type[Settings]) -> Iterator[str]:
+    yield from ("", f"### {title}", "", " ".join(str(model.__doc__).split()), "")
     yield from ("| key | meaning | allowed | default |", "| --- | --- | --- | --- |")
-    common = {} if name == COMMON else schema()["$defs"][COMMON]["properties"]
-    for key, inner in rule["properties"].items():
-        if common.get(key) == inner:
-            continue
-        meaning = " ".join(inner["description"].split())
-        values = allowed_values(options(inner)).replace("|", "\\|")
-        yield f"| `{key}` | {meaning} | {values} | {_default(key, inner, rule)} |"
+    for key, field in model.model_fields.items():
+        meaning = " ".join(str(field.description or "").split())
+        yield f"| `{key}` | {meaning} | {_allowed(field)} | {_default(field)} |"
 
 
-def _default(key: str, inner: dict[str, Any], rule: dict[str, Any]) -> str:
-    if key in rule.get("required", ()):
+def _allowed(field: FieldInfo) -> str:
+    texts = [item.text for item in field.metadata if isinstance(item, Allowed)]
+    return (texts[0] if texts else "a mapping").replace("|", "\\|")
+
+
+def _default(field: FieldInfo) -> str:
+    if field.is_required():
         return "required"
-    text = json.dumps(inner["default"]) if "default" in inner else ""
-    if text == "{}" and any("properties" in rule for rule in options(inner)):
-        return "see below"
-    return f"`{text}`" if 0 < len(text) <= LONGEST else "as in config.yaml" if text else "none"
+    value = field.default
+    if value is None or value in ((), {}):
+        return "none"
+    value = value[0] if isinstance(value, tuple) and len(value) == 1 else value
+    text = json.dumps(value)
+    return f"`{text}`" if len(text) <= LONGEST else "all"
 
 
 def main(path: str) -> None:

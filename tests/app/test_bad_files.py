@@ -12,8 +12,7 @@ from stubs.new_process import output
 from microslip.foundation import files
 from microslip.foundation.errors import CacheError
 from microslip.report.figures.data import loaded
-from microslip.sweeps import batches, evaluate
-from microslip.sweeps.store import Store
+from microslip.sweeps import batch, evaluate
 
 POINT = ["point", "continuous-bore", "--velocity", "2"]
 REQUEST = {"kind": "point", "motion": "continuous-bore", "velocity": "2", "poisson": "0"}
@@ -47,26 +46,16 @@ def test_a_folder_that_cannot_keep_results_is_refused_before_work(
     (tmp_path / "file").write_text("kept")
     (tmp_path / "link").symlink_to("nowhere/at/all")
     (tmp_path / "half").mkdir()
-    (tmp_path / "half" / "points").write_text("kept")
+    (tmp_path / "half" / "batches").write_text("kept")
     if name == "new":
         monkeypatch.setattr(files.os, "fsync", full)
     monkeypatch.setattr(evaluate, "computed", lambda _: pytest.fail("work has started"))
     with pytest.raises(CacheError) as caught:
-        batches.run_batch([REQUEST], Store(tmp_path / name))
+        batch.solve([REQUEST], tmp_path / name / "batches" / "bore" / "0.jsonl")
     message = one_line(caught)
     assert str(tmp_path / name) in message and part in message and "another folder" in message
     names = [p.name for p in tmp_path.rglob("*") if p.is_file()]
-    assert sorted(names) == ["file", "points"]
-
-
-def test_a_place_to_write_is_tried_once(tmp_path, monkeypatch):
-    store = Store(tmp_path / "new")
-    store.try_writing()
-    assert list(tmp_path.rglob("*")) == [store.folder]
-    monkeypatch.setattr(files.os, "fsync", full)
-    store.try_writing()
-    with pytest.raises(CacheError, match="No space left"):
-        Store(tmp_path / "new").try_writing()
+    assert sorted(names) == ["batches", "file"]
 
 
 @pytest.mark.parametrize(
@@ -92,16 +81,15 @@ def test_files_and_folders_that_have_changed_places_are_refused(make, part, tmp_
 # Damaged files
 
 
-def test_a_damaged_point_is_computed_again_and_said(tmp_path, caplog):
-    first, _ = batches.answer(REQUEST, Store(tmp_path))
-    (path,) = tmp_path.glob("points/*/*/*.json")
+def test_a_damaged_batch_is_computed_again_and_said(tmp_path, caplog):
+    path = tmp_path / "a.jsonl"
+    batch.solve([REQUEST], path)
     whole = path.read_bytes()
-    path.write_bytes(whole[:100])
+    path.write_bytes(whole[:-100])
     with caplog.at_level(logging.WARNING):
-        second, _ = batches.answer(REQUEST, Store(tmp_path))
-    assert caplog.messages == [f"damaged result {path}: computed again"]
+        batch.solve([REQUEST], path)
+    assert caplog.messages == [f"{path} is damaged; run again: finished points are kept"]
     assert path.read_bytes() == whole
-    assert first == second
 
 
 def data():

@@ -8,7 +8,7 @@ from stubs.new_process import output
 from stubs.point_contract import CONTRACT
 
 import microslip
-from microslip.app import cli, sweep_command
+from microslip.app import cli
 from microslip.motions.by_name import MOTIONS
 
 TRANSVERSE = ("point", "transverse", "--velocity", "0.5", "--amplitude", "0.5")
@@ -59,7 +59,7 @@ def test_text_says_what_was_found():
     [
         ("", ["point", "sweep", "predict", SPIN]),
         ("point", [*MOTIONS, "mu F_z", "mu_apparent", SPIN]),
-        ("sweep", [*sweep_command.TARGETS, "--cores"]),
+        ("sweep", ["--configfile", "--cores"]),
         ("point transverse", ["--velocity", "v0 / (omega u_lim)", "--amplitude", "y0 / u_lim"]),
         ("point continuous-bore", ["v0 / (omega a)", "--cells", "--json", SPIN]),
     ],

@@ -149,7 +149,7 @@ STILL = f"{VIBRATED} --load '10 N' --speed '1 mm/s'"
     ],
 )
 def test_bad_input_is_one_line_with_code_2_before_any_work(capsys, monkeypatch, command, parts):
-    monkeypatch.setattr("microslip.si.table.predict_arguments", None)
+    monkeypatch.setattr("microslip.si.table.predict_inputs", None)
     code, out, error = run(capsys, command)
     assert code == 2 and not out
     (line,) = error.splitlines()

@@ -7,7 +7,7 @@ from bad_input_tables.odd_files import SWEEP
 from stubs.in_process import run_apart
 
 from microslip.config import load
-from microslip.config.records import ConfigError
+from microslip.config.load import ConfigError
 from microslip.datasets.open_map import open_map
 from microslip.foundation.errors import InputError
 from microslip.foundation.files import CacheError
@@ -38,9 +38,8 @@ def test_odd_settings(text, words, tmp_path):
     path = tmp_path / "given.yaml"
     path.write_text(SWEEP % "[1]" + text + "\n", encoding="utf-8")
     if words is None:
-        key, value = next(iter(yaml.safe_load(text).items()))
-        result = getattr(load.load(path), key)
-        assert result == value or set(result.values()) == {value}
+        key, value = next(iter(yaml.safe_load(text.replace("010", "10")).items()))
+        assert getattr(load.load(path), key) == value
         return
     with pytest.raises(ConfigError) as caught:
         load.load(path)
@@ -115,7 +114,7 @@ def test_a_damaged_dataset_without_a_stamp_is_one_line(case, tmp_path):
 @pytest.mark.long
 def test_sweep_runs_where_the_home_takes_no_files(tmp_path):
     (tmp_path / "home").write_text("no folder")
-    axes = "{velocity: [1], amplitude: [0, 1], model: rigid, tolerance: 0.01}"
+    axes = "{motion: bore, velocity: 1, amplitude: [0, 1], model: rigid, tolerance: 0.01}"
     (tmp_path / "tiny.yaml").write_text(f"sweeps: {{bore: {axes}}}\n")
     environment = {"HOME": str(tmp_path / "home"), "XDG_CACHE_HOME": "", "NUMBA_CACHE_DIR": ""}
     words = ("sweep", "-n", "--configfile", "tiny.yaml")

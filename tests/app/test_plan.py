@@ -1,90 +1,201 @@
-"""The plan of a configuration, without Snakemake."""
+"""The plan of a configuration and the state of its results folder, without Snakemake."""
+
+import json
+import os
+import time
+import tracemalloc
 
 import pytest
 from stubs.claims_stub import CLAIMS
 from stubs.studies_stub import ACCURACY, STABILITY
+from stubs.sweep_stub import Solver, configured
 from stubs.workflow_project import AXES, TINY
 
-from microslip.app.plan import Plan
+from microslip.app import plan as planning
+from microslip.app.plan import Plan, Results
 from microslip.config import load
-from microslip.config.records import ConfigError
 from microslip.foundation import source_digest
 from microslip.report.figures import drawing
+from microslip.sweeps import batch, content
 
 STUDIES = {"accuracy": ACCURACY, "stability": STABILITY, "claims": CLAIMS}
+FIGURES = {
+    "profile": {"kind": "accuracy_profile"},
+    "explorer": {"kind": "explorer", "sweep": ["transverse", "bore"]},
+}
 
 
-def plan(**changed):
-    return Plan(load.from_mapping(TINY | STUDIES | changed))
-
-
-def test_a_sweep_too_small_for_a_map_has_no_map():
-    small = plan(sweeps={"transverse": {**AXES, "amplitude": [1]}})
-    assert small.products_of("all") == ["transverse", "figures/fig1_force_history"]
-    assert "figures/fig2_transverse_map" in plan().products_of("all")
-
-
-def test_each_figure_of_the_paper_is_a_target_by_its_number():
-    for number in range(1, 7):
-        (figure,) = plan().products_of(f"fig{number}")
-        assert figure.startswith(f"figures/fig{number}_")
-
-
-def test_a_figure_without_data_is_refused():
-    small = plan(sweeps={"transverse": {**AXES, "amplitude": [1]}})
-    with pytest.raises(ConfigError, match="needs the sweep bore"):
-        small.products_of("fig6_bore_map")
-    with pytest.raises(ConfigError, match="several velocities and amplitudes"):
-        small.products_of("fig2")
+def plan(sweeps=None, **changed):
+    figures = TINY["figures"] | FIGURES
+    sweeps = TINY["sweeps"] | (sweeps or {})
+    return Plan(
+        load.from_mapping(TINY | STUDIES | {"figures": figures, "sweeps": sweeps} | changed)
+    )
 
 
 def changed(before, after):
-    return {name for name in before.products if before.made_of(name) != after.made_of(name)}
+    return {n for n in before.products if before.products[n].stem != after.products[n].stem}
+
+
+def test_datasets_and_figures_are_products_with_plain_names():
+    products = plan().products
+    assert list(products["bore"].links) == ["bore.nc", "summaries/bore.html"]
+    assert list(products["profile"].links) == ["figures/profile.png", "figures/profile.pdf"]
+    assert list(products["explorer"].links) == ["explorer.html"]
+    assert products["profile"].inputs == ("accuracy",)
 
 
 def test_no_product_depends_on_the_size_of_jobs():
     assert changed(plan(), plan(points_per_job=1)) == set()
 
 
-def test_what_a_product_is_made_of_changes_with_its_own_settings_alone():
-    sweeps = {**TINY["sweeps"], "transverse": {**AXES, "amplitude": [0, 0.5, 1]}}
-    pages = {"pages/explorer", "pages/explorer_all"}
-    figures = {"figures/fig1_force_history", "figures/fig2_transverse_map"}
-    assert changed(plan(), plan(sweeps=sweeps)) == {"transverse"} | figures | pages
-
-
-MOTIONS = {
-    "circle": {**AXES, "group": "motions", "motion": "elliptic:phase=90"},
-    "line": {**AXES, "group": "motions", "motion": "elliptic:forward=0.5,phase=0"},
-}
+def test_the_name_of_a_product_changes_with_its_own_settings_alone():
+    transverse = TINY["sweeps"]["transverse"] | {"amplitude": [0, 0.5, 1]}
+    names = {"transverse", "fig1_force_history", "fig2_transverse_map", "explorer"}
+    assert changed(plan(), plan({"transverse": transverse})) == names
+    history = TINY["figures"]["fig1_force_history"] | {"periods": 2}
+    figures = TINY["figures"] | FIGURES | {"fig1_force_history": history}
+    assert changed(plan(), plan(figures=figures)) == names  # the run is in the dataset
+    assert changed(plan(), plan(claims=CLAIMS | {"tolerance": 2e-3})) == {"claims"}
 
 
 def test_another_way_to_write_a_motion_computes_nothing():
-    before = plan(extended=MOTIONS)
-    circle = MOTIONS["circle"] | {"motion": "elliptic"}
-    after = plan(extended=MOTIONS | {"circle": circle})
-    assert after.batch_files(*after.groups) == before.batch_files(*before.groups)
+    def batches(motion):
+        one = {"circle": {**AXES, "motion": motion}}
+        return plan(one).batches("circle").keys()
+
+    assert batches("elliptic") == batches("elliptic:phase=90")
 
 
-def test_a_map_with_another_error_has_another_batch_and_the_sweep_has_not():
-    def certified(**adaptive):
-        return plan(sweeps={"transverse": {**AXES, "adaptive": adaptive}})
+def test_an_edit_of_a_builder_or_of_the_script_renames_what_it_makes(monkeypatch):
+    before = plan()
+    digest = source_digest.of_builder
 
-    before, after = certified(error=0.05), certified(error=0.06)
-    assert before.batch_files("certified_transverse") != after.batch_files("certified_transverse")
-    assert before.batch_files("transverse") == after.batch_files("transverse")
-    assert before.products_of("certified") == [
-        "certified_transverse",
-        "figures/certified_transverse",
-    ]
+    def edited(*files):
+        return "edited" if "studies" in files else digest(*files)
+
+    monkeypatch.setattr(source_digest, "of_builder", edited)
+    assert changed(before, plan()) == {*STUDIES, "profile"}
+    monkeypatch.setattr(source_digest, "of_builder", digest)
+    monkeypatch.setattr(source_digest, "of_script", lambda path: "edited")
+    assert changed(before, plan()) == before.products.keys()
 
 
 def test_the_look_of_figures_counts_for_all_of_them_and_a_kind_for_its_own():
-    made_of = {
-        figure: source_digest.LOADED.closure(drawing.modules_of(figure))
-        for figure in plan().figures
+    files = {
+        kind: source_digest.LOADED.of_builder(*drawing.modules_of(kind)) for kind in drawing.DRAWN
     }
-    assert len(made_of) > 10
-    assert all("report/figures/style.py" in files for files in made_of.values())
-    of_field = [figure for figure, files in made_of.items() if "report/figures/field.py" in files]
-    assert of_field == ["fig3_traction_field"]
+    assert all("report/figures/style.py" in some for some in files.values())
+    assert [k for k, some in files.items() if "report/figures/field.py" in some] == ["field"]
+    assert not any(
+        name.startswith(("app/", "foundation/")) for some in files.values() for name in some
+    )
+
+
+# The results folder
+
+
+@pytest.fixture
+def folder(tmp_path, monkeypatch):
+    """A folder with the dataset of a sweep of 6 points, whose files are made up."""
+    Solver(monkeypatch)
+    sweeps = {"bore": {"velocity": [0.1, 1], "amplitude": [0, 1, 2]}}
+    planned = Plan(configured(sweeps, figures={"look": {"kind": "map", "sweep": "bore"}}))
+    state = Results(planned, tmp_path)
+    for path, one in planned.batches("bore").items():
+        batch.solve(one.requests, tmp_path / "batches" / f"{path}.jsonl")
+    (tmp_path / "data").mkdir()
+    for name in ("bore", "look"):
+        for file in state.files(name):
+            (tmp_path / file).write_bytes(WHOLE[file.rpartition(".")[2]])
+    return planned, tmp_path
+
+
+SIZE = (64).to_bytes(8, "little")
+WHOLE = {
+    "nc": b"\x89HDF\r\n\x1a\n\x02" + bytes(19) + SIZE + bytes(28),
+    "html": b"<html></html>\n",
+    "png": b"\x89PNG....IEND\xaeB`\x82",
+    "pdf": b"%PDF-1.4\n%%EOF\n",
+}
+
+
+def test_what_exists_is_right_and_plain_names_are_links_to_it(folder):
+    planned, path = folder
+    state = Results(planned, path)
+    assert state.missing == {}
+    state.link()
+    assert os.readlink(path / "bore.nc") == f"data/{planned.products['bore'].stem}.nc"
+    assert (path / "figures/look.png").read_bytes() == WHOLE["png"]
+    before = os.lstat(path / "bore.nc").st_ino
+    state.link()
+    assert os.lstat(path / "bore.nc").st_ino == before
+
+
+@pytest.mark.parametrize("ending", WHOLE)
+def test_a_truncated_product_is_missing_and_its_successor_has_another_name(ending, folder):
+    planned, path = folder
+    name = "bore" if ending in ("nc", "html") else "look"
+    stem = planned.products[name].stem
+    file = path / "data" / f"{stem}.{ending}"
+    file.write_bytes(WHOLE[ending][:-5])
+    state = Results(planned, path)
+    assert list(state.missing) == ["bore", "look"][name == "look" :]
+    assert state.stems[name] == f"{stem}-1"
+    for new in state.files(name):
+        (path / new).write_bytes(WHOLE[new.rpartition(".")[2]])
+        content.remove_others(path / new)
+    assert not file.exists()
+    assert Results(planned, path).stems[name] == f"{stem}-1"
+
+
+def test_a_dataset_with_gaps_is_made_again_with_what_depends_on_it(folder):
+    planned, path = folder
+    marker = path / "data" / f"{planned.products['bore'].stem}{content.GAPS}"
+    marker.touch()
+    state = Results(planned, path)
+    assert list(state.missing) == ["bore", "look"]
+    assert state.missing["bore"] == [f"batches/{p}.jsonl" for p in planned.batches("bore")]
+    content.remove_others(path / "data" / f"{state.stems['bore']}.nc")
+    assert not marker.exists()
+
+
+def test_a_link_does_not_replace_a_file_of_the_user_and_may_be_a_copy(folder, monkeypatch):
+    planned, path = folder
+    (path / "bore.nc").write_text("mine")
+    monkeypatch.setattr("pathlib.Path.symlink_to", lambda *_: (_ for _ in ()).throw(OSError))
+    for _ in range(2):
+        Results(planned, path).link()
+        assert (path / "bore.nc").read_bytes() == WHOLE["nc"]
+        assert (path / "bore.nc.replaced").read_text() == "mine"
+        assert not (path / "bore.nc").is_symlink()
+
+
+def test_a_batch_is_ordered_as_a_whole_and_a_map_by_its_name():
+    axes = {"velocity": [0.1, 10], "amplitude": [0, 1]}
+    planned = Plan(
+        configured({"bore": axes, "certified": axes | {"motion": "bore", "error": 0.01}})
+    )
+    state = Results(planned, "none")
+    (one,) = state.batches(certified=False)
+    assert json.loads(state.order_of_batch("bore", one))["axis"] == "velocity"
+    (one,) = state.batches(certified=True)
+    assert json.loads(state.order_of_batch("bore", one)) == "certified"
+    with pytest.raises(batch.SourcesEdited):
+        state.order_of_batch("bore", "0123")
+
+
+def test_a_hundred_thousand_points_are_planned_in_few_files_and_little_memory():
+    axes = {"velocity": {"log": [0.001, 10, 250]}, "amplitude": {"linear": [0, 3, 400]}}
+    configuration = configured({"transverse": axes})
+    tracemalloc.start()
+    began = time.process_time()
+    planned = Plan(configuration)
+    named = time.process_time() - began
+    state = Results(planned, "none")
+    assert sum(len(one.requests) for one in planned.batches("transverse").values()) == 100_000
+    assert len(state.batch_files("transverse")) < 480  # and as many logs
+    assert tracemalloc.get_traced_memory()[1] < 2.5e8
+    tracemalloc.stop()
+    assert named < 5.0  # the product is named without its points
+    assert planning.script_of_products() is not None

@@ -243,7 +243,7 @@ def test_a_long_period_gives_a_hint_to_fold_before_any_work(folder, capsys):
 
 @pytest.mark.long
 def test_a_map_is_found_by_its_name_and_by_its_path(folder, capsys):
-    axes = {"velocity": [0.05, 1], "amplitude": [0.5, 2], "adaptive": {"error": 2e-2}}
+    axes = {"velocity": [0.05, 1], "amplitude": [0.5, 2], "error": 2e-2}
     map_ = certified_stub.configured("transverse", **axes)
     dataset = certified_map.build(map_, certified_stub.played(map_, certified_stub.solved))
     (folder / "results").mkdir()

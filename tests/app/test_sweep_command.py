@@ -24,11 +24,11 @@ SNAKEMAKE = [str(Path(sys.executable).with_name("snakemake")), "-s", str(ROOT / 
 # Help
 
 
-def test_help_and_pages_name_every_target():
-    table = (ROOT / "docs" / "how-to" / "workflow.md").read_text()
-    for target in sweep_command.TARGETS:
-        assert f"    {target} " in sweep_command.HELP
-        assert f"`{target}`" in table
+def test_help_names_every_configuration():
+    shipped = sweep_command.configurations()
+    assert {"config", "extended", "certified", "accuracy", "claims"} <= shipped.keys()
+    text = in_process.run("sweep", "--help").stdout
+    assert all(name in text for name in shipped)
 
 
 # Refused arguments and configurations
@@ -40,8 +40,8 @@ REFUSED = [
     ("-nj0", "--jobs = 0", CORES),
     ("--no-such-option", "unrecognized arguments: --no-such-option"),
     ("--cores 1 --configfile", "argument --configfile", "expected at least one argument"),
-    ("al", "TARGET = 'al'", "did you mean all?", "explorer_all, a figure such as fig2, or a file"),
-    ("fig7", "TARGET = 'fig7'", "a figure such as fig2"),
+    ("al", "TARGET = 'al'", "did you mean all?", "allowed is one of all, transverse, bore"),
+    ("extendd", "TARGET = 'extendd'", "did you mean extended?"),
     ("fig2_transverse", "TARGET = 'fig2_transverse'", "did you mean fig2_transverse_map?"),
     ("-n --config poisson", "--config = 'poisson'", "KEY=VALUE"),
     ("-n --configfile none.yaml", "--configfile = 'none.yaml'", "no such file", "a YAML file"),
@@ -60,6 +60,7 @@ REFUSED = [
         "good.yaml, --config: results: good.yaml is not a folder; allowed: a folder, or a new",
     ),
     ("-c1 --configfile good.yaml --config sweeps={bore:3}", "--config: sweeps.bore"),
+    ("-n --configfile good.yaml bore", "--configfile = 'bore'", "no such file"),
 ]
 
 
@@ -80,12 +81,26 @@ def test_bad_arguments_are_one_line_before_snakemake_starts(arguments, parts, he
     refused(in_process.run("sweep", *arguments.split()), parts)
 
 
-@pytest.mark.parametrize("target", ["fig2", "extended_motions"])
-def test_a_figure_is_handed_to_snakemake_as_a_target(target, here, monkeypatch):
+@pytest.mark.parametrize("target", ["fig2_transverse_map", "bore", "results/bore.nc", "all"])
+def test_a_target_is_handed_to_snakemake(target, here, monkeypatch):
     started = []
     monkeypatch.setattr("snakemake.cli.main", started.append)
     in_process.run("sweep", target)
     assert target in started[0]
+
+
+@pytest.mark.parametrize("place", ["the package", "here"])
+def test_the_name_of_a_configuration_stands_for_its_file(place, here, monkeypatch):
+    started = []
+    monkeypatch.setattr("snakemake.cli.main", started.append)
+    if place == "here":
+        (here / "config").mkdir()
+        (here / "config" / "extended.yaml").write_text(GOOD)
+    in_process.run("sweep", "extended", "-c1")
+    option = started[0].index("--configfile")
+    folder = here if place == "here" else ROOT
+    assert Path(started[0][option + 1]).resolve() == folder / "config" / "extended.yaml"
+    assert "extended" not in started[0]
 
 
 def test_a_bad_key_is_one_line_in_a_file_and_in_the_default(here):
@@ -142,7 +157,12 @@ def test_results_that_cannot_be_written_are_one_line_with_the_folder(tmp_path):
 # Two jobs of hours.
 SLOW = """
 sweeps:
-  bore: {velocity: [1.0e-3, 2.0e-3], amplitude: [0.5, 0.6], poisson: 0.3, tolerance: 1.0e-6}
+  bore:
+    motion: bore
+    velocity: [1e-3, 2e-3]
+    amplitude: [0.5, 0.6]
+    poisson: 0.3
+    tolerance: 1e-6
 points_per_job: 2
 """
 

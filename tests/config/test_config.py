@@ -1,4 +1,4 @@
-"""Configurations: defaults, expanded axes, merged mappings, and the reference of all keys."""
+"""Configurations: defaults, axes, numbers of YAML 1.2, files, and the reference of all keys."""
 
 import itertools
 import json
@@ -8,17 +8,22 @@ import sys
 from pathlib import Path
 
 import pytest
+import yaml
 from bad_input_tables.bad_configurations import GOOD
+from stubs.sweep_stub import configured
 
 from microslip.config import load as config
 from microslip.config.load import ConfigError, load
+from microslip.config.settings import KINDS, Sweep
 from microslip.contact.registry import MODELS
 from microslip.motions.by_name import motion_named
 from microslip.motions.problem import Problem
-from microslip.solver import method_names
+from microslip.pressures.by_name import pressure_named
+from microslip.report.figures import drawing
+from microslip.sweeps import request
 
 ROOT = Path(__file__).parents[2]
-PAPER = {"sweeps": {"bore": {"velocity": [1], "amplitude": [1]}}}
+SHIPPED = sorted((ROOT / "config").glob("*.yaml"))
 
 
 def saved(folder, text):
@@ -29,14 +34,13 @@ def saved(folder, text):
 
 def test_defaults_are_filled_in(tmp_path):
     result = load(saved(tmp_path, GOOD))
-    assert result.results == "results"
-    assert result.points_per_job == dict.fromkeys(result.sweeps, 50)
+    assert (result.results, result.studies) == ("results", {})
     sweep = result.sweeps["transverse"]
-    assert (sweep.poisson, sweep.poisson_is_axis) == ((0.0,), False)
+    assert (sweep.poisson, sweep.dims) == ((0.0,), ("amplitude", "velocity"))
     assert (sweep.model, sweep.tolerance, sweep.cells, sweep.steps) == ("auto", 1e-3, None, None)
-    assert result.histories["transients"]["velocity"] == 0.8
-    assert result.sweeps["continuous_bore"].motion == "continuous-bore"
-    assert result.extended == result.groups == result.drives == result.certified == {}
+    run = {"velocity": 0.1, "amplitude": 1.0, "periods": 4, "cells": None, "steps": None}
+    assert result.figures["forces"].run == run
+    assert list(result.datasets) == ["transverse", "bore", "continuous_bore"]
 
 
 def test_a_byte_order_mark_and_line_ends_of_windows_do_no_harm(tmp_path):
@@ -46,102 +50,85 @@ def test_a_byte_order_mark_and_line_ends_of_windows_do_no_harm(tmp_path):
     assert load(path) == plain
 
 
-MERGED = """
-sweeps:
-  transverse: &slow
-    velocity: [0.1, 1]
-    amplitude: [0, 1]
-    poisson: 0.3
-  bore: &faster
-    <<: *slow
-    velocity: [2]
-  continuous_bore: {velocity: [1]}
-extended:
-  again: {<<: *faster, velocity: [3], motion: bore, group: loops}
-"""
-
-
 def test_mappings_are_merged_as_yaml_says(tmp_path):
     """Keys beside << replace merged keys, also in a mapping that is merged again."""
-    result = load(saved(tmp_path, MERGED))
-    assert result.sweeps["bore"].velocity == (2.0,)
-    assert result.sweeps["bore"].amplitude == (0.0, 1.0)
-    assert result.extended["again"].velocity == (3.0,)
-    assert result.extended["again"].poisson == result.sweeps["transverse"].poisson == (0.3,)
+    slow = "slow: &slow {motion: bore, velocity: [0.1, 1], amplitude: [0, 1], poisson: 0.3}"
+    text = f"sweeps:\n  {slow}\n  fast: &fast {{<<: *slow, velocity: 2}}\n"
+    result = load(saved(tmp_path, text + "  again: {<<: *fast, velocity: 3}\n")).sweeps
+    assert [sweep.velocity[-1] for sweep in result.values()] == [1.0, 2.0, 3.0]
+    assert result["again"].amplitude == (0.0, 1.0)
+    assert result["again"].poisson == (0.3,)
 
 
-def test_a_sweep_may_have_its_own_number_of_points_in_a_job(tmp_path):
-    text = GOOD.replace("  bore:", "    points_per_job: 7\n  bore:") + "points_per_job: 3\n"
-    result = load(saved(tmp_path, text))
-    assert result.points_per_job == dict.fromkeys(result.sweeps, 3) | {"transverse": 7}
-    # Datasets do not depend on it.
-    plain = load(saved(tmp_path, GOOD))
-    assert result.of_sweep("transverse") == plain.of_sweep("transverse")
+@pytest.mark.parametrize(
+    ("axis", "values"),
+    [
+        ("1", (1.0,)),
+        ("[1, 0.30000000000000004, 0.1]", (0.1, 0.3, 1.0)),
+        ("{log: [1, 10, 4]}", (1.0, 2.15443, 4.64159, 10.0)),
+        ("[{linear: [0, 1, 3]}, 0.25, 0.5]", (0.0, 0.25, 0.5, 1.0)),
+        ("[1e-3, 1E2, +.5, 1., 010]", (0.001, 0.5, 1.0, 10.0, 100.0)),
+    ],
+)
+def test_axes_are_expanded_sorted_and_numbers_are_those_of_yaml_1_2(axis, values, tmp_path):
+    text = f"sweeps: {{a: {{motion: bore, velocity: {axis}, amplitude: 1}}}}\n"
+    path = saved(tmp_path, text)
+    assert load(path).sweeps["a"].velocity == values
+    # Snakemake reads the file as YAML 1.1.
+    snakemake = yaml.safe_load(text) | {"points_per_job": 7}
+    again = config.from_mapping(config.reread(snakemake, [path]))
+    assert (again.sweeps["a"].velocity, again.points_per_job) == (values, 7)
 
 
-def test_axes_are_expanded_sorted_and_rounded_to_six_digits(tmp_path):
-    text = GOOD.replace("[0.1, 1]", "[1, 0.30000000000000004, 0.1]")
-    result = load(saved(tmp_path, text)).sweeps
-    assert result["transverse"].velocity == (0.1, 0.3, 1.0)
-    assert result["bore"].velocity == (0.1, 1.0, 10.0)
-    assert result["bore"].amplitude == (0.0, 0.5, 1.0)
-    thirds = {"log": {"start": 1, "stop": 10, "count": 4.0}}
-    ratios = {"velocity": thirds, "amplitude": [1], "poisson": [0.3, 0]}
-    sweep = config.from_mapping({"sweeps": {"bore": ratios}}).sweeps["bore"]
-    assert sweep.velocity == (1.0, 2.15443, 4.64159, 10.0)
-    assert (sweep.poisson, sweep.poisson_is_axis) == ((0.0, 0.3), True)
+def test_one_value_is_a_coordinate_and_several_are_a_dimension():
+    axes = {"motion": "bore", "stiffness": [1, 2], "mass": 3, "velocity": [1, 2], "amplitude": 1}
+    sweep = Sweep(**axes)
+    assert list(sweep.axes) == ["mass", "stiffness", "poisson", "amplitude", "velocity"]
+    assert sweep.dims == ("stiffness", "velocity")
+    assert sweep.drives == {"mass": (3.0,), "stiffness": (1.0, 2.0)}
+    forces = Sweep(motion="bore", force=[0.1, 0.5], amplitude=[1, 2], poisson=[0.3, 0])
+    assert forces.dims == ("poisson", "amplitude", "force")
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("name", ["config", "smoke", "poisson", "coarse"])
-def test_shipped_configurations_are_good_and_filled_ones_are_the_same(name):
-    settings, folders = config.read_yaml(ROOT / "config" / f"{name}.yaml"), [ROOT / "config"]
-    result = config.from_mapping(settings, folders=folders)
-    filled = config.with_defaults_and_paths(settings, folders=folders)
-    assert config.from_mapping(json.loads(json.dumps(filled))) == result
+@pytest.mark.parametrize("path", SHIPPED, ids=lambda path: path.stem)
+def test_shipped_configurations_are_good_and_jobs_read_the_same(path):
+    result = load(path)
+    handed = config.with_paths(config.read_yaml(path), [path.parent])
+    assert config.from_mapping(json.loads(json.dumps(handed))) == result
+    assert len({load(other).results for other in SHIPPED}) == len(SHIPPED)
 
 
-def test_the_default_configuration_is_that_of_the_paper():
-    result = load(ROOT / "config" / "config.yaml")
+def test_the_default_configuration_is_that_of_the_paper_on_a_page():
+    path = ROOT / "config" / "config.yaml"
+    assert len(path.read_text().splitlines()) <= 40
+    result = load(path)
     for name, top in (("transverse", 3.0), ("bore", 5.0)):
         sweep = result.sweeps[name]
         assert len(sweep.velocity) == len(sweep.amplitude) == 25
         assert (sweep.amplitude[0], sweep.amplitude[-1]) == (0.0, top)
         assert (sweep.velocity[0], sweep.velocity[-1]) == (1e-3, 10.0)
     assert {0.1, 1.0, 10.0} <= set(result.sweeps["continuous_bore"].velocity)
-    # It names all methods; the atlas cannot vary two of them.
-    assert set(result.accuracy.methods) == set(method_names.names())
-    assert set(result.stability.methods) == set(method_names.names()) - {"paper", "aspher"}
-    # Its studies equal the defaults.
-    plain = config.from_mapping(PAPER)
-    for study in ("accuracy", "stability", "claims"):
-        one, other = getattr(plain, study), getattr(result, study)
-        methods = {"methods": other.methods} if hasattr(other, "methods") else {}
-        assert one.model_copy(update=methods) == other
-    assert plain.accuracy.methods == list(method_names.names())
+    assert [name[:4] for name in result.figures] == [f"fig{i}" for i in range(1, 7)]
+
+
+def test_every_kind_of_figure_is_drawn():
+    on_demand = {"fit", "curve"}
+    assert drawing.DRAWN.keys() - on_demand == KINDS.keys() - {"explorer"}
+
+
+STUDIED = {"map": {"velocity": [1, 2], "amplitude_transverse": [1, 2], "amplitude_bore": [1, 2]}}
 
 
 @pytest.mark.parametrize("title", [r"$\frac{", "{} % # _ ^ &", "\N{GREEK SMALL LETTER NU} > 0"])
 def test_titles_may_hold_what_is_markup_elsewhere(title):
-    point = {"motion": "bore", "velocity": 1, "amplitude": 1}
-    points = {"named": point | {"title": title}, title: point}
-    result = config.from_mapping(PAPER | {"accuracy": {"points": points}}).accuracy.points
-    assert result["named"].title == title in result
-
-
-LINE = {"motion": "longitudinal", "group": "g", "velocity": [1], "amplitude": [1]}
+    assert configured({"bore": {"velocity": 1, "title": title}}).sweeps["bore"].title == title
 
 
 @pytest.mark.parametrize("title", ["", "  ", "x" * 101, "two\nlines", "\x00", "\ud800", "\u2028"])
 def test_titles_that_cannot_be_drawn_or_written_are_refused(title):
-    point = {"motion": "bore", "velocity": 1, "amplitude": 1}
-    for more, where in (
-        ({"extended": {"a": LINE | {"title": title}}}, "extended.a.title"),
-        ({"accuracy": {"points": {"p": point | {"title": title}}}}, "accuracy.points.p.title"),
-        ({"accuracy": {"points": {title: point}}}, "accuracy.points"),
-    ):
-        with pytest.raises(ConfigError, match=rf"^configuration: {where}: .*allowed: text on"):
-            config.from_mapping(PAPER | more, ask_solver=False)
+    with pytest.raises(ConfigError, match=r"^configuration: sweeps.bore.title: .*allowed: text on"):
+        configured({"bore": {"velocity": 1, "title": title}})
 
 
 def test_the_tables_of_all_keys_are_those_of_the_models(tmp_path):
@@ -155,19 +142,17 @@ def test_the_tables_of_all_keys_are_those_of_the_models(tmp_path):
 
 
 def test_models_are_refused_here_exactly_where_the_solver_refuses_them():
-    for sweep, motion in config.MOTION_OF_SWEEP.items():
+    for motion in ("transverse", "bore", "continuous-bore"):
         for model, poisson in itertools.product(MODELS, (0.0, 0.3)):
-            settings = {"velocity": [1], "model": model, "poisson": poisson}
-            if sweep != "continuous_bore":
-                settings["amplitude"] = [1]
+            amplitude = {} if motion == "continuous-bore" else {"amplitude": 1.0}
+            sweep = {"motion": motion, "velocity": 1, "model": model, "poisson": poisson}
+            result = configured({"a": sweep | amplitude})
             try:
-                config.from_mapping({"sweeps": {sweep: settings}})
+                config.refuse_unsolvable(result)
                 refused = False
             except ConfigError:
                 refused = True
-            problem = Problem(
-                motion_named(motion), 1.0, settings.get("amplitude", [None])[0], poisson
-            )
+            problem = Problem(motion_named(motion), 1.0, amplitude.get("amplitude"), poisson)
             assert refused == bool(MODELS[model].refuses(problem))
 
 
@@ -175,12 +160,85 @@ def test_models_are_refused_here_exactly_where_the_solver_refuses_them():
 @pytest.mark.parametrize("poisson", [0, 0.3])
 def test_the_static_limit_goes_with_all_that_the_solver_takes_it_with(model, poisson):
     axes = {"velocity": [0, 1], "amplitude": [0.5], "poisson": poisson, "model": model}
-    settings = {"sweeps": {"transverse": axes, "bore": axes}, "extended": {"line": LINE | axes}}
-    assert [grid.velocity[0] for grid in config.from_mapping(settings).grids.values()] == [0, 0, 0]
+    names = ("transverse", "bore", "longitudinal")
+    config.refuse_unsolvable(configured(dict.fromkeys(names, axes)))
 
 
-def test_an_imposed_resolution_goes_without_a_tolerance():
-    steady = {"velocity": [1], "tolerance": None, "cells": 8}
-    sweeps = {"transverse": steady | {"amplitude": [1], "steps": 16}, "continuous_bore": steady}
-    result = config.from_mapping({"sweeps": sweeps}).sweeps
-    assert result["transverse"].tolerance is result["continuous_bore"].tolerance is None
+@pytest.mark.parametrize(
+    ("sweep", "line"),
+    [
+        ({"stiffness": 0, "velocity": 1}, "a.stiffness: 0.0: allowed is a finite number of at"),
+        ({"force": [0.1, 2], "stiffness": 1}, "a.stiffness: 1.0: allowed is none beside a force"),
+        ({"mass": 1, "velocity": 1}, "a.mass: 1.0: allowed beside a stiffness alone"),
+        ({"model": "mdr", "force": 0.5}, "a.model: 'mdr'"),
+    ],
+)
+def test_drives_that_the_solver_refuses_are_refused_before_any_job(sweep, line):
+    result = configured({"a": {"motion": "bore", "amplitude": 1} | sweep})
+    with pytest.raises(ConfigError, match=f"^configuration: sweeps.{line}"):
+        config.refuse_unsolvable(result)
+
+
+# Files
+
+
+def with_pressure(folder, name):
+    pad = {"motion": "transverse", "velocity": 20, "amplitude": 0.1, "pressure": name}
+    return saved(folder, yaml.safe_dump({"sweeps": {"pad": pad}}))
+
+
+EVEN = "forward,lateral,pressure\n0,0,1\n0,1,1\n1,0,1\n1,1,1\n"
+
+
+def test_files_of_a_configuration_are_looked_for_beside_it_then_here(tmp_path, monkeypatch):
+    beside, here = tmp_path / "beside", tmp_path / "here"
+    for folder, pressure in ((beside, 1), (here, 2)):
+        folder.mkdir()
+        (folder / "pad.csv").write_text(f"# {pressure}\n{EVEN}")
+    monkeypatch.chdir(here)
+    path = with_pressure(beside, "file:pad.csv")
+    first = load(path).sweeps["pad"].pressure
+    assert first == pressure_named(f"file:{beside / 'pad.csv'}").name
+    (beside / "pad.csv").unlink()
+    assert load(path).sweeps["pad"].pressure == pressure_named("file:pad.csv").name != first
+    (here / "pad.csv").unlink()
+    with pytest.raises(ConfigError) as refused:
+        load(path)
+    message = str(refused.value)
+    assert message.startswith(f"{path}: sweeps.pad.pressure: 'file:pad.csv': pad.csv cannot be")
+    assert f"No such file; looked for {beside / 'pad.csv'}, {here / 'pad.csv'}" in message
+
+
+def test_a_request_names_a_file_by_its_content_and_jobs_find_it(tmp_path, monkeypatch):
+    """Relative paths, absolute paths and links to one file give equal requests."""
+    (tmp_path / "sub").mkdir()
+    (tmp_path / "pad.csv").write_text(EVEN)
+    (tmp_path / "sub" / "link.csv").symlink_to(tmp_path / "pad.csv")
+    found = []
+    for folder, name in (
+        (tmp_path, "file:pad.csv"),
+        (tmp_path, "file:./sub/../pad.csv"),
+        (tmp_path / "sub", "file:link.csv"),
+        (tmp_path / "sub", f"file:{tmp_path / 'pad.csv'},grid=cells"),
+    ):
+        found.append(request.points_of(load(with_pressure(folder, name)).sweeps["pad"]).requests)
+    assert all(requests == found[0] for requests in found)
+    assert found[0][0]["pressure"].startswith("file:sha256=")
+    # A job runs in another folder and process.
+    handed = config.with_paths(
+        config.read_yaml(with_pressure(tmp_path, "file:pad.csv")), [tmp_path]
+    )
+    monkeypatch.setattr("microslip.foundation.named_files.PLACES", {})
+    monkeypatch.chdir(tmp_path / "sub")
+    result = config.from_mapping(handed)
+    assert request.points_of(result.sweeps["pad"]).requests == found[0]
+    assert config.with_paths(handed) == handed
+
+
+def test_equal_motions_are_asked_for_alike():
+    axes = {"velocity": 1, "amplitude": 1}
+    names = ("elliptic", "elliptic:phase=90", "elliptic:phase=90.0")
+    sweeps = configured({f"m{i}": axes | {"motion": name} for i, name in enumerate(names)}).sweeps
+    requests = [request.points_of(sweep).requests for sweep in sweeps.values()]
+    assert requests[0] == requests[1] == requests[2]
+    assert not {"pressure", "stiffness", "force", "method"} & requests[0][0].keys()

@@ -29,7 +29,7 @@ def record(request):
 def dataset(tmp_path_factory):
     """A certified map over Poisson's ratios from 0 to 0.4, read from a file."""
     axes = {"velocity": [0.01, 10], "amplitude": [0, 3], "poisson": [0, 0.4]}
-    map_ = certified_stub.configured("transverse", **axes, adaptive={"error": ERROR})
+    map_ = certified_stub.configured("transverse", **axes, error=ERROR)
     built = certified_stub.built(map_, record)
     return certified_stub.reopened(built, tmp_path_factory.mktemp("certified"))
 

@@ -10,7 +10,7 @@ from microslip.datasets import netcdf
 from microslip.theory import paper
 
 ERROR = 2e-3
-STATIC = {"velocity": [0], "amplitude": [0, 1.5], "adaptive": {"error": ERROR}}
+STATIC = {"velocity": [0], "amplitude": [0, 1.5], "error": ERROR}
 
 
 def record(request):

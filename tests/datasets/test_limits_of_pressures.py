@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from scipy.integrate import quad
 
-from microslip.config import load as config
+from microslip.config.settings import Sweep
 from microslip.datasets import theory_limits
 from microslip.datasets.catalogue import FORMS
 from microslip.pressures.by_name import pressure_named
@@ -79,19 +79,13 @@ def _share(v, r, t):
 
 
 def test_datasets_of_other_pressures_have_them():
-    settings = {
-        "sweeps": {"continuous_bore": {"velocity": [0.5]}},
-        "extended": {
-            "cone": {
-                "motion": "transverse",
-                "pressure": "power:exponent=1",
-                "group": "profiles",
-                "velocity": [0.1, 1.0],
-                "amplitude": [0.2, 0.5],
-            }
-        },
-    }
-    result = theory_limits.variables(config.from_mapping(settings).extended["cone"])
+    cone = Sweep(
+        motion="transverse",
+        pressure="power:exponent=1",
+        velocity=[0.1, 1.0],
+        amplitude=[0.2, 0.5],
+    )
+    result = theory_limits.variables(cone)
     names = {"mu_large_amplitude", "mu_static_slider", "mu_static_stick_zone", "mu_static"}
     assert names <= result.keys()
     dims, values, attributes = result["mu_static_stick_zone"]

@@ -14,9 +14,9 @@ from microslip.studies.stability.dataset import OUTCOMES, outcome
 def accuracy(tmp_path):
     """The dataset of accuracy from invented results, read from a file."""
     answer, _ = answered(accuracy_result)
-    data = registry.build("accuracy", configured(), answer)
-    netcdf.write(tmp_path / "accuracy_cost.nc", *netcdf.divide(data, registry.groups("accuracy")))
-    return netcdf.whole(tmp_path / "accuracy_cost.nc")
+    data = registry.undivided(configured(), "accuracy", answer)
+    netcdf.write(tmp_path / "accuracy.nc", *registry.divided(data, "accuracy"))
+    return netcdf.whole(tmp_path / "accuracy.nc")
 
 
 def rows_of(data, **where):
@@ -50,7 +50,7 @@ def test_the_dataset_names_every_computer_that_it_was_timed_on():
             result["machine"] = {"cpu": "AMD EPYC 7B13", "host": host, "threads": 1}
         return result
 
-    data = registry.build("accuracy", configured(), answered(timed)[0])
+    data = registry.undivided(configured(), "accuracy", answered(timed)[0])
     timed_trials = np.isfinite(data.seconds.values)
     machines = data.trial_machine.values[timed_trials]
     assert set(data.machine_host.values[machines]) == {"b"}
@@ -104,7 +104,7 @@ def test_a_reference_that_did_not_converge_says_so():
             answer |= {"converged": False, "reason": "stalled"}
         return answer
 
-    data = registry.build("accuracy", configured(), answered(result)[0])
+    data = registry.undivided(configured(), "accuracy", answered(result)[0])
     assert data.reference_source.values[0] == "model radial, tolerance 1e-6, not met: stalled"
     assert data.reference.values[0] == pytest.approx(0.1 / 1.6)
 
@@ -128,7 +128,7 @@ def test_where_no_model_is_good_enough_the_map_is_empty():
         answer = accuracy_result(request)
         return answer | {"mu_macro": 0.9} if request["kind"] == "trial" else answer
 
-    data = registry.build("accuracy", configured(), answered(result)[0])
+    data = registry.undivided(configured(), "accuracy", answered(result)[0])
     assert (data.bore_cheapest == "").all()
     assert np.isnan(data.bore_cheapest_seconds).all()
 
@@ -175,8 +175,8 @@ def test_a_method_is_not_to_blame_for_a_resolution_that_was_imposed():
 @pytest.fixture
 def atlas(tmp_path):
     """The dataset of stability from invented results, read from a file."""
-    data = registry.build("stability", configured(), answered(stability_result)[0])
-    netcdf.write(tmp_path / "stability.nc", *netcdf.divide(data, registry.groups("stability")))
+    data = registry.undivided(configured(), "stability", answered(stability_result)[0])
+    netcdf.write(tmp_path / "stability.nc", *registry.divided(data, "stability"))
     return netcdf.whole(tmp_path / "stability.nc")
 
 
@@ -206,11 +206,11 @@ def test_the_atlas_holds_what_became_of_every_method(atlas, tmp_path):
 
 @pytest.mark.slow
 def test_reports_count(accuracy, atlas):
-    assert list(registry.report("accuracy", accuracy))[0] == (
+    assert list(registry.report(accuracy, "accuracy"))[0] == (
         f"mid: {rows_of(accuracy, point='mid').sizes['trial']} trials, 3 not converged, "
         "reference within 2.0e-04"
     )
-    assert list(registry.report("stability", atlas)) == [
+    assert list(registry.report(atlas, "stability")) == [
         "shipped: 21 converged, 0 slow, 0 wrong, 0 diverged",
         "projected-gradient: 21 converged, 0 slow, 0 wrong, 0 diverged",
         "euler: 0 converged, 14 slow, 0 wrong, 0 diverged",
@@ -220,8 +220,8 @@ def test_reports_count(accuracy, atlas):
 def test_the_digest_of_results_follows_what_was_asked():
     def digest(**changes):
         configuration = configured(stability=changes)
-        return registry.build(
-            "stability", configuration, answered(stability_result)[0]
+        return registry.undivided(
+            configuration, "stability", answered(stability_result)[0]
         ).results_digest
 
     assert digest() == digest()

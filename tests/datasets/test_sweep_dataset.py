@@ -13,16 +13,15 @@ import netCDF4
 import numpy as np
 import pytest
 import xarray as xr
-from stubs.sweep_stub import EFFORT, Solver
+from stubs import sweep_stub
+from stubs.sweep_stub import EFFORT, RUNS, Solver
 
 import microslip
-from microslip.config import load
 from microslip.datasets import netcdf, point_variables, sweep_dataset
 from microslip.foundation import files
 from microslip.foundation.errors import InputError, SolverError
 from microslip.foundation.files import CacheError
-from microslip.sweeps import batches
-from microslip.sweeps.store import Store
+from microslip.sweeps import request
 from microslip.theory import paper
 
 GRIDS = {
@@ -33,18 +32,16 @@ GRIDS = {
 NU = {"transverse": {**GRIDS["transverse"], "poisson": [0, 0.3]}}
 
 
-def write(name, folder, path, grids=GRIDS):
-    configuration = load.from_mapping({"sweeps": grids})
-    store = Store(folder)
-    grid = configuration.sweeps[name]
-    requests = batches.history_requests(configuration, name)
-    sweep_dataset.write_sweep(
-        path,
-        grid,
-        (batches.answer(request, store)[0] for request in batches.points_of(grid).requests),
-        [batches.answer(request, store)[0] for request in requests],
-        configuration.of_sweep(name),
-    )
+def configured(grids):
+    """A configuration of sweeps, with the figures of single runs of the sweeps that it has."""
+    figures = {name: figure for name, figure in RUNS.items() if figure["sweep"] in grids}
+    return sweep_stub.configured(grids, figures=figures)
+
+
+def write(name, path, grids=GRIDS):
+    configuration = configured(grids)
+    records = sweep_stub.records_of(configuration, name)
+    netcdf.write(path, *sweep_dataset.build(configuration, name, records))
 
 
 @pytest.fixture
@@ -53,13 +50,13 @@ def solver(monkeypatch):
 
 
 def on_disk(name, folder, grids=GRIDS):
-    write(name, folder, folder / f"{name}.nc", grids)
+    write(name, folder / f"{name}.nc", grids)
     return xr.open_dataset(folder / f"{name}.nc")
 
 
 def built(name, folder):
     """A dataset with the variables of its groups."""
-    write(name, folder, folder / f"{name}.nc")
+    write(name, folder / f"{name}.nc")
     return netcdf.whole(folder / f"{name}.nc")
 
 
@@ -105,7 +102,7 @@ def test_errors_convergence_and_effort_are_there(tmp_path, monkeypatch):
             assert data[name].dtype.kind == ("f" if name in ("periods", "work", "effort") else "i")
             assert (data[name] == value).all()
         assert (data.mu_macro_error == 4e-5).all()
-        assert list(sweep_dataset.report(data)) == [
+        assert list(sweep_dataset.report(data, "transverse")) == [
             "transverse: 6 points, 3 not converged",
             *(
                 f"  not converged: amplitude 2, velocity {v}: no periodic state"
@@ -164,7 +161,7 @@ def test_single_runs_for_the_figures_are_in_the_dataset(tmp_path, solver):
     assert data.history_phase.attrs["units"] == "rad"
     assert (float(data.history_velocity), float(data.history_amplitude)) == (0.1, 1.0)
     data = built("continuous_bore", tmp_path)
-    assert list(data.start.values) == list(batches.STARTS)
+    assert list(data.start.values) == list(request.STARTS)
     assert data.transient_torque.dims == ("start", "transient_step")
     assert data.transient_force_forward.sel(start="stress-free").values[-1] == 1
     assert data.transient_force_forward.sel(start="full-slip").values[-1] == 0
@@ -200,7 +197,7 @@ def test_equal_results_give_equal_bytes(tmp_path, solver):
     first, second = tmp_path / "first", tmp_path / "second"
     for folder in (first, second):
         for name in GRIDS:
-            write(name, tmp_path, folder / f"{name}.nc")
+            write(name, folder / f"{name}.nc")
         time.sleep(1.1 * (folder == first))  # HDF5 can store times in seconds
     for path in first.iterdir():
         assert path.read_bytes() == (second / path.name).read_bytes()
@@ -208,24 +205,22 @@ def test_equal_results_give_equal_bytes(tmp_path, solver):
 
 @pytest.mark.slow
 def test_a_missing_or_additional_point_is_an_error(tmp_path, solver):
-    configuration = load.from_mapping({"sweeps": GRIDS})
-    grid, store = configuration.sweeps["bore"], Store(tmp_path)
-    records = [batches.answer(request, store)[0] for request in batches.points_of(grid).requests]
+    configuration = configured(GRIDS)
+    records = sweep_stub.records_of(configuration, "bore")
     for wrong in (records[:-1], [*records, records[0]]):
-        with pytest.raises(ValueError, match="results for 6 points"):
-            sweep_dataset.write_sweep(tmp_path / "bore.nc", grid, wrong, [], {})
-        assert not list(tmp_path.glob("*.nc*"))
+        with pytest.raises(ValueError, match="results for 6 points|1 single runs"):
+            sweep_dataset.build(configuration, "bore", wrong)
 
 
 def test_a_dataset_is_replaced_whole_or_not_at_all(tmp_path, monkeypatch, solver):
     path = tmp_path / "bore.nc"
-    write("bore", tmp_path, path)
+    write("bore", path)
     before = path.read_bytes()
 
     full = OSError(errno.ENOSPC, "No space left on device")
     monkeypatch.setattr(files.os, "fsync", Mock(side_effect=full))
     with pytest.raises(CacheError, match="No space left"):
-        write("transverse", tmp_path, path, NU)
+        write("transverse", path, NU)
     assert path.read_bytes() == before
     assert {p.name for p in tmp_path.iterdir() if p.is_file()} == {"bore.nc"}
 
@@ -233,10 +228,9 @@ def test_a_dataset_is_replaced_whole_or_not_at_all(tmp_path, monkeypatch, solver
 def test_a_dataset_of_many_points_can_be_opened(tmp_path):
     """A file with fewer bytes than values is taken for a damaged one."""
     axes = {"velocity": np.geomspace(0.01, 1, 70).tolist(), "amplitude": np.arange(70).tolist()}
-    configuration = load.from_mapping({"sweeps": {"transverse": axes}})
-    grid, path = configuration.sweeps["transverse"], tmp_path / "transverse.nc"
+    configuration, path = sweep_stub.configured({"transverse": axes}), tmp_path / "transverse.nc"
     record = {"versions": {}, "result": {"reason": "no periodic state"}}
-    sweep_dataset.write_sweep(path, grid, [record] * 4900, [], {})
+    netcdf.write(path, *sweep_dataset.build(configuration, "transverse", [record] * 4900))
     assert microslip.open_map(path).reason.shape == (70, 70)
 
 
@@ -255,7 +249,7 @@ VERBS = {
 @pytest.mark.parametrize("chunks", [None, {}, "auto"], ids=str)
 def test_an_opened_map_supports_the_verbs_of_xarray(chunks, tmp_path, monkeypatch):
     Solver(monkeypatch, fails=2.0)
-    write("transverse", tmp_path, tmp_path / "transverse.nc")
+    write("transverse", tmp_path / "transverse.nc")
     with warnings.catch_warnings():
         warnings.simplefilter("error")
         for of in (xr.open_dataset, microslip.open_map):
@@ -270,7 +264,7 @@ def test_an_opened_map_supports_the_verbs_of_xarray(chunks, tmp_path, monkeypatc
 
 
 def test_variables_of_a_map_have_types_of_cf_1_8_and_no_texts(tmp_path, solver):
-    write("transverse", tmp_path, tmp_path / "transverse.nc")
+    write("transverse", tmp_path / "transverse.nc")
     with netCDF4.Dataset(tmp_path / "transverse.nc") as raw:
         kinds = {name: variable.dtype for name, variable in raw.variables.items()}
     assert set(map(str, kinds.values())) <= {"int8", "int16", "int32", "float32", "float64"}
@@ -305,7 +299,7 @@ def test_a_single_run_that_fails_is_left_out_and_listed(tmp_path, monkeypatch, s
     data = built("transverse", tmp_path)
     assert not [name for name in data.variables if name.startswith("history_")]
     assert data.converged.all()
-    *_, last = sweep_dataset.report(data)
+    *_, last = sweep_dataset.report(data, "transverse")
     assert last == "  single runs left out: history: SolverError: a root finder found none"
     with on_disk("continuous_bore", tmp_path) as data:
         assert "transient_torque" not in data and "field_bound" not in data
@@ -318,7 +312,7 @@ def test_a_sweep_at_an_imposed_resolution_counts_what_misses_its_tolerance(tmp_p
     for tolerance, count in ((1e-3, "2 not"), (None, "all")):
         grids = {"transverse": {**axes, "tolerance": tolerance}}
         with on_disk("transverse", tmp_path / str(tolerance), grids) as data:
-            summed = next(sweep_dataset.report(data))
+            summed = next(sweep_dataset.report(data, "transverse"))
             assert summed == f"transverse: 2 points, {count} converged"
             assert (data.mu_macro_error > 1e-3).all()
             assert np.isnan(data.tolerance) == (tolerance is None)
@@ -334,7 +328,7 @@ def test_a_sweep_at_an_imposed_resolution_counts_what_misses_its_tolerance(tmp_p
 def test_every_part_of_a_file_is_a_table_of_its_own(name, tmp_path, solver):
     """A table has a row for each point and a column for each variable."""
     path = tmp_path / f"{name}.nc"
-    write(name, tmp_path, path)
+    write(name, path)
     with xr.open_dataset(path) as data:
         assert len(data.to_dataframe()) == data.mu_macro.size
         assert set(data.dims) == set(data.mu_macro.dims)
@@ -348,7 +342,7 @@ def test_every_part_of_a_file_is_a_table_of_its_own(name, tmp_path, solver):
 
 
 def test_groups_are_opened_by_name(tmp_path, solver):
-    write("transverse", tmp_path, tmp_path / "transverse.nc")
+    write("transverse", tmp_path / "transverse.nc")
     history = microslip.open_map("transverse", tmp_path, group="history")
     assert history.history_force_forward.dims == ("history_step",)
     assert history.source_digest == microslip.open_map("transverse", tmp_path).source_digest
@@ -362,13 +356,7 @@ def test_groups_are_opened_by_name(tmp_path, solver):
 def test_files_of_parts_of_an_axis_are_one_dataset(tmp_path, solver):
     axes = {"amplitude": [0, 2]}
     for name, velocity in (("slow", [0.1, 1]), ("fast", [10, 100])):
-        (tmp_path / name).mkdir()
-        write(
-            "bore",
-            tmp_path / name,
-            tmp_path / f"{name}.nc",
-            {"bore": axes | {"velocity": velocity}},
-        )
+        write("bore", tmp_path / f"{name}.nc", {"bore": axes | {"velocity": velocity}})
     paths = [tmp_path / "fast.nc", tmp_path / "slow.nc"]
     with xr.open_mfdataset(paths, data_vars="minimal", compat="no_conflicts") as both:
         assert both.velocity.values.tolist() == [0.1, 1, 10, 100]
@@ -381,7 +369,7 @@ def test_files_of_parts_of_an_axis_are_one_dataset(tmp_path, solver):
 @pytest.mark.long
 def test_a_file_may_be_open_many_times_at_once(tmp_path, solver):
     """With texts of variable length Python would crash here, since HDF5 loses their type."""
-    write("transverse", tmp_path, tmp_path / "transverse.nc")
+    write("transverse", tmp_path / "transverse.nc")
     code = (
         "import microslip, sys\n"
         "for _ in range(30):\n"
@@ -412,7 +400,7 @@ def test_texts_come_back_whole_and_long_ones_are_cut(tmp_path, monkeypatch, solv
 
 @pytest.mark.slow
 def test_a_part_is_saved_and_read_again_and_plots_have_labels(tmp_path, solver):
-    write("transverse", tmp_path, tmp_path / "transverse.nc")
+    write("transverse", tmp_path / "transverse.nc")
     data = microslip.open_map("transverse", tmp_path)
     part = data.isel(velocity=[0, 2])
     part.to_netcdf(tmp_path / "part.nc")

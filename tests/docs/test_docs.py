@@ -29,6 +29,7 @@ from pathlib import Path
 
 import pytest
 import yaml
+from microslip.sweeps.store import Store
 from stubs import certified_stub, job_server
 from stubs.workflow_project import ENVIRONMENT
 
@@ -39,7 +40,6 @@ from microslip.datasets import certified_map, netcdf, sweep_dataset
 from microslip.report.figures import drawing
 from microslip.solver import method_names
 from microslip.sweeps import batches
-from microslip.sweeps.store import Store
 
 ROOT = Path(__file__).parents[2]
 PAGES = sorted(

@@ -5,6 +5,7 @@ from pathlib import Path
 
 import pytest
 import xarray as xr
+from microslip.sweeps.store import Store
 from stubs import certified_stub, claims_stub, studies_stub
 from stubs.sweep_stub import Solver
 
@@ -15,7 +16,6 @@ from microslip.si.output import Prediction
 from microslip.si.response import UNITS
 from microslip.studies import registry
 from microslip.sweeps import batches
-from microslip.sweeps.store import Store
 
 PAGE = (Path(__file__).parents[2] / "docs" / "reference" / "fields.md").read_text(encoding="utf-8")
 GRIDS = {

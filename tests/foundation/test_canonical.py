@@ -45,13 +45,13 @@ import sys
 from microslip.app import plan
 from microslip.config import load
 from microslip.foundation import source_digest
-from microslip.sweeps import batches
+from microslip.sweeps import request
 
 source_digest.of_solver()
-axes = {"velocity": [1], "amplitude": [1]}
-ellipse = {"motion": "elliptic:phase=30", "group": "g"}
-mapping = {"sweeps": {"bore": axes}, "extended": {"ellipse": axes | ellipse}}
-batches.points_of(load.from_mapping(mapping, ask_solver=False).sweeps["bore"])
+sweep = {"motion": "bore", "velocity": 1, "amplitude": 1}
+configuration = load.from_mapping({"sweeps": {"bore": sweep}})
+planned = plan.Plan(configuration)
+plan.Results(planned, "none").batches(certified=False)
 print([m for m in ("numpy", "scipy", "numba", "xarray", "matplotlib") if m in sys.modules])
 """
 

@@ -14,7 +14,7 @@ from stubs import figures_stub
 from microslip.report.figures import drawing
 
 dataset = figures_stub.spanning("a map")
-drawing.save(drawing.draw("extended_motions", {"a": dataset}), sys.argv[1])
+drawing.save(drawing.draw("map", {"a": dataset}), sys.argv[1])
 import matplotlib
 print(matplotlib.rcParams._get("backend"))
 """

@@ -21,7 +21,7 @@ from microslip.studies.claims.runs import command
 
 @pytest.fixture(scope="module")
 def data():
-    return registry.build("claims", configured(), answered()[0])
+    return registry.undivided(configured(), "claims", answered()[0])
 
 
 @pytest.fixture(scope="module")
@@ -31,8 +31,8 @@ def page(data):
 
 def requests():
     """All requests of the study."""
-    long, short = registry.pieces("claims", configured())
-    return [request for piece in long + short for request in piece]
+    pieces = registry.pieces("claims", configured().claims)
+    return [request for piece in pieces for request in piece]
 
 
 def test_every_verdict_is_there_with_a_run_that_shows_it(page, data):

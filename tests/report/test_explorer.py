@@ -8,19 +8,18 @@ import pytest
 from stubs import explorer_stub as stub
 from stubs.in_node import needs_node, page_says
 from stubs.unpacked_period import unpacked
-from stubs.workflow_project import ROOT, jobs_in
+from stubs.workflow_project import ROOT, TINY, jobs_in
 
 from microslip.config import load
 from microslip.datasets.catalogue import FORMS
 from microslip.report.explorer import explorer, page, payload
-from microslip.sweeps.store import Store
 
 
 @pytest.fixture(scope="module")
 def made(tmp_path_factory):
     """Datasets and periods by the names of maps, and the contents of their page."""
     folder = tmp_path_factory.mktemp("explorer")
-    datasets, records = stub.computed(folder, Store(folder))
+    datasets, records = stub.computed(folder)
     return datasets, records, payload.build(datasets, records)
 
 
@@ -163,79 +162,35 @@ def test_unconverged_points_missing_periods_and_hidden_limits(made):
 
 
 @pytest.mark.long
-def test_the_default_configuration_has_a_period_for_every_point_and_stays_small(tmp_path):
-    """The page has every sweep. A certified map would take 25 kB more."""
-    default = load.load(ROOT / "config" / "config.yaml")
-    datasets, records = stub.made_up(tmp_path, default)
-    left_out = set(explorer.sweeps_of(default, explorer.PAGE_OF_ALL)) - set(datasets)
-    assert len(left_out) < 0.2 * len(datasets)
+def test_a_page_of_the_paper_has_a_period_for_every_point_and_stays_small(tmp_path):
+    """A certified map would take 25 kB more."""
+    shipped = load.load(ROOT / "config" / "explorer.yaml")
+    grids = {name: one for name, one in shipped.sweeps.items() if not one.is_certified}
+    page_of_grids = shipped.figures["explorer"].model_copy(update={"sweep": tuple(grids)})
+    shipped = shipped.model_copy(update={"sweeps": grids, "figures": {"explorer": page_of_grids}})
+    datasets, records = stub.made_up(tmp_path, shipped)
     for name in explorer.MAPS:
-        grid = default.sweeps[name]
+        grid = shipped.sweeps[name]
         assert len(records[name]) == np.count_nonzero(grid.amplitude) * len(grid.velocity)
-    page.write(tmp_path / "explorer_all.html", datasets, records)
-    size = (tmp_path / "explorer_all.html").stat().st_size
-    assert size < 14e6  # 15 MB are allowed, but computed numbers may be longer
-    few = {name: datasets[name] for name in explorer.sweeps_of(default, explorer.PAGE)}
-    page.write(tmp_path / "explorer.html", few, records)
+    page.write(tmp_path / "explorer.html", datasets, records)
     assert (tmp_path / "explorer.html").stat().st_size < 13e6
 
 
 def test_a_finer_map_has_periods_for_some_points_of_both_axes():
-    fine = {"log": {"start": 0.001, "stop": 10, "count": 101}}
+    fine = {"log": [0.001, 10, 101]}
     configuration = stub.configured(velocity=fine, amplitude=[0, *range(1, 51)])
-    requests = explorer.period_requests(configuration, "bore")
+    requests = stub.period_requests(configuration, "bore")
     assert 300 < len(requests) <= 625
     assert len({request["velocity"] for request in requests}) == 34
     assert len({request["amplitude"] for request in requests}) == 17
 
 
-def test_the_most_accurate_of_several_certified_maps_is_used():
-    exact, rough = ({"adaptive": {"error": error}} for error in (1e-3, 5e-3))
-    axes = {"velocity": [0.1, 1], "amplitude": [0, 1]}
-    extended = axes | {"motion": "transverse", "group": "motions"}
-    configuration = {
-        "sweeps": {"transverse": axes | rough},
-        "extended": {
-            "again": extended | exact,
-            "along": extended | exact | {"motion": "longitudinal"},
-            "cone": extended | exact | {"pressure": "power:exponent=1"},
-        },
-    }
-    assert explorer.certified_of(load.from_mapping(configuration)) == ["certified_again"]
-    assert explorer.certified_of(load.from_mapping({"sweeps": {"bore": axes}})) == []
-
-
-def test_the_default_configuration_has_maps_over_all_poissons_ratios():
-    default = load.load(ROOT / "config" / "config.yaml")
-    chosen = explorer.certified_of(default)
-    assert chosen == ["certified_poisson_transverse", "certified_poisson_bore"]
-    assert {default.certified[name].poisson for name in chosen} == {(0, 0.5)}
-
-
-FINE = {"velocity": {"log": {"start": 0.001, "stop": 10, "count": 101}}}
-SMALL = {"velocity": [0.1, 1], "amplitude": [0, 1]}
-LARGE = FINE | {"amplitude": [0, *range(1, 201)], "motion": "longitudinal", "group": "motions"}
-
-
-@pytest.mark.parametrize(
-    ("configuration", "page_name", "refusal"),
-    [
-        ({"sweeps": {"bore": SMALL}}, explorer.PAGE, None),
-        ({"sweeps": {"bore": FINE | {"amplitude": [1]}}}, explorer.PAGE,
-         "sweeps: no map for the explorer; allowed: transverse or bore with two "
-         "amplitudes and two velocities above 0"),
-        ({"sweeps": {"bore": FINE | {"amplitude": [0, *range(1, 51)]}}}, explorer.PAGE,
-         "sweeps.bore: 5,151 points do not fit into the explorer; allowed: up to 5,000"),
-        ({"sweeps": {"bore": SMALL}, "extended": {"large": LARGE}}, explorer.PAGE, None),
-        ({"sweeps": {"bore": SMALL}, "extended": {"large": LARGE}}, explorer.PAGE_OF_ALL,
-         "sweeps: 20,305 points do not fit into explorer_all.html; allowed: up to 20,000, "
-         "at all of Poisson's ratios together"),
-    ],
-)  # fmt: skip
-def test_a_configuration_without_a_map_or_with_too_many_points_is_refused(
-    configuration, page_name, refusal
-):
-    assert explorer.refusal(load.from_mapping(configuration), page_name) == refusal
+def test_certified_maps_of_a_page_serve_its_form_and_have_no_periods():
+    shipped = load.load(ROOT / "config" / "explorer.yaml")
+    figure = shipped.figures["explorer"]
+    assert explorer.certified_of(shipped, figure) == ["contact_transverse", "contact_bore"]
+    assert explorer.maps_of(shipped, figure) == ["transverse", "bore"]
+    assert {shipped.sweeps[f"contact_{name}"].poisson for name in explorer.MAPS} == {(0, 0.5)}
 
 
 def test_the_page_needs_no_network(made, monkeypatch):
@@ -267,14 +222,16 @@ def test_the_log_names_periods_that_did_not_converge(made):
 
 
 @pytest.mark.long
-def test_the_workflow_makes_the_page_and_makes_it_again_only_when_it_changes(finished, project):
-    assert "explorer" not in jobs_in(finished.said)
-    assert jobs_in(project.run("explorer")) == {"solve": 2, "explore": 1, "explorer": 1}
+def test_the_workflow_makes_the_page_and_makes_it_again_only_when_it_changes(project):
+    figures = {"explorer": {"kind": "explorer", "sweep": ["transverse", "bore"]}}
+    project.configure(TINY | {"figures": TINY["figures"] | figures})
+    jobs = {"solve_batch": 2, "make_page": 1, "explorer": 1}
+    assert jobs_in(project.run("explorer")) == jobs
     results = project.folder / "results"
     text = (results / "explorer.html").read_text(encoding="utf-8")
     assert '"name":"bore"' in text
-    assert len(list(results.glob("periods/*/*/*.json"))) == 4
-    assert "bore: 2 periods, all converged" in (results / "logs/explore/explorer.log").read_text()
+    (log,) = results.glob("logs/explore/explorer.*.log")
+    assert "bore: 2 periods, all converged" in log.read_text()
     assert project.planned("explorer") == {}
     project.append("src/microslip/report/explorer/disc.js", "\n// Another look.\n")
-    assert project.planned("explorer") == {"explore": 1, "explorer": 1}
+    assert project.planned("explorer") == {"make_page": 1, "explorer": 1}

@@ -8,7 +8,6 @@ from stubs import explorer_stub as stub
 
 from microslip.report.explorer.explorer import MAPS
 from microslip.report.explorer.page import write
-from microslip.sweeps.store import Store
 
 CHROMIUM = next(filter(None, map(shutil.which, ("chromium", "chromium-browser"))), None)
 pytestmark = [
@@ -23,7 +22,7 @@ FLAGS += ["--disable-component-update", "--disable-sync"]
 def made(tmp_path_factory):
     """The path of the page, and its datasets and periods."""
     folder = tmp_path_factory.mktemp("explorer")
-    datasets, records = stub.computed(folder, Store(folder))
+    datasets, records = stub.computed(folder)
     write(folder / "explorer.html", datasets, records)
     return folder / "explorer.html", datasets, records
 

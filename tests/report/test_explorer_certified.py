@@ -6,7 +6,6 @@ import xarray as xr
 from stubs import certified_stub
 from stubs.in_node import answers, needs_node
 
-from microslip.config import load
 from microslip.foundation.errors import InputError
 from microslip.report.explorer import certified
 from microslip.theory import masing, paper
@@ -37,7 +36,7 @@ def made(map_, friction, failed=None):
 
     def answered(request):
         place = float(request["velocity"]), float(request["amplitude"])
-        if map_.poisson:
+        if len(map_.sweeps["map"].poisson) > 1:
             place += (float(request["poisson"]),)
         is_known = failed is None or not failed(*place)
         return certified_stub.record(request, friction(*place) if is_known else None)
@@ -63,7 +62,7 @@ def compare(page_answers, truth):
 
 @pytest.mark.parametrize("motion", ["transverse", "bore"])
 def test_answers_on_a_map_are_those_of_at(motion):
-    axes = {"velocity": [0.001, 10], "amplitude": [0, 3], "adaptive": {"error": 1e-2}}
+    axes = {"velocity": [0.001, 10], "amplitude": [0, 3], "error": 1e-2}
     dataset = made(certified_stub.configured(motion, **axes), FRICTION[motion])
     rng = np.random.default_rng(7)
     velocity, amplitude = 10 ** rng.uniform(-3, 1, 200), rng.uniform(0.01, 3, 200)
@@ -73,7 +72,7 @@ def test_answers_on_a_map_are_those_of_at(motion):
 @pytest.mark.parametrize("motion", ["transverse", "bore"])
 def test_maps_over_poissons_ratio_answer_as_at(motion):
     axes = {"velocity": [0.001, 10], "amplitude": [0, 3], "poisson": [0, 0.5]}
-    map_ = certified_stub.configured(motion, **axes, adaptive={"error": 3e-2})
+    map_ = certified_stub.configured(motion, **axes, error=3e-2)
     dataset = made(map_, lambda v, a, nu: FRICTION[motion](v, a / (1 - 0.3 * nu)))
     rng = np.random.default_rng(12)
     velocity, amplitude = 10 ** rng.uniform(-3, 1, 60), rng.uniform(0.01, 3, 60)
@@ -100,7 +99,7 @@ def test_limits_are_those_of_the_theory(call, truth):
 
 
 def test_next_to_an_unconverged_point_both_answers_are_unknown():
-    axes = {"velocity": [0.01, 1], "amplitude": [0.2, 0.8], "adaptive": {"error": 3e-2}}
+    axes = {"velocity": [0.01, 1], "amplitude": [0.2, 0.8], "error": 3e-2}
     map_ = certified_stub.configured("bore", **axes)
     dataset = made(map_, boring, failed=lambda v, a: v < 0.02 and a < 0.3)
     velocity = 10 ** np.random.default_rng(10).uniform(-2.5, 0.5, 60)
@@ -110,7 +109,7 @@ def test_next_to_an_unconverged_point_both_answers_are_unknown():
 
 
 def test_bad_arguments_are_refused_in_the_words_of_at():
-    axes = {"velocity": [0.01, 1], "amplitude": [0, 1], "adaptive": {"error": 0.05}}
+    axes = {"velocity": [0.01, 1], "amplitude": [0, 1], "error": 0.05}
     dataset = made(certified_stub.configured("transverse", **axes), sideways)
     questions = [(-1.0, 1.0, 0.0), (1.0, -0.5, 0.0), (1.0, 1.0, 0.3), (1.0, 1.0, -0.1)]
     page_answers = answers(SCRIPTS, "frictionAt", certified.packed(dataset), questions)
@@ -123,11 +122,9 @@ def test_bad_arguments_are_refused_in_the_words_of_at():
 
 
 def test_a_motion_without_limits_is_refused_outside_its_map_in_the_words_of_at():
-    axes = {"velocity": [0.01, 1], "amplitude": [0.1, 0.9], "group": "lines"}
-    axes |= {"motion": "longitudinal", "adaptive": {"error": 0.05}}
-    paper_too = {"bore": {"velocity": [1], "amplitude": [1]}}
-    map_ = load.from_mapping({"sweeps": paper_too, "extended": {"along": axes}}).certified
-    dataset = made(*map_.values(), lambda v, a: float(masing.longitudinal(v, a)))
+    axes = {"velocity": [0.01, 1], "amplitude": [0.1, 0.9], "error": 0.05}
+    map_ = certified_stub.configured("longitudinal", **axes)
+    dataset = made(map_, lambda v, a: float(masing.longitudinal(v, a)))
     compare(*both_answers(dataset, np.array([0.02, 0.2, 0.9]), np.array([0.15, 0.5, 0.85])))
     questions = [(2.0, 0.5), (0.0, 0.5), (0.5, 0.95)]
     packed = certified.packed(dataset)

@@ -97,9 +97,9 @@ def made_up(request):
 
 
 MAPS = {
-    "one ratio": {"velocity": [1e-3, 1e2], "amplitude": [0, 10], "adaptive": {"error": 5e-2}},
+    "one ratio": {"velocity": [1e-3, 1e2], "amplitude": [0, 10], "error": 5e-2},
     "all ratios": {"velocity": [1e-5, 1e2], "amplitude": [0, 10], "poisson": [0, 0.5]}
-    | {"adaptive": {"error": 0.1}},
+    | {"error": 0.1},
 }
 
 

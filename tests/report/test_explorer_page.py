@@ -2,11 +2,10 @@
 
 import numpy as np
 import pytest
-from stubs import certified_stub
+from stubs import certified_stub, sweep_stub
 from stubs import explorer_stub as stub
 from stubs.in_node import needs_node, page_says
 
-from microslip.config import load
 from microslip.datasets.accessor import Map
 from microslip.report.explorer import payload
 from microslip.theory import paper
@@ -18,17 +17,16 @@ RATIOS = [0, 0.3, 0.5]
 
 def configured():
     """A configuration with maps with and without periods, lines, and several Poisson's ratios."""
-    extended = {
-        "along": MAP | {"motion": "longitudinal", "group": "motions", "title": "to and fro"},
-        "ratios": MAP | {"motion": "bore", "group": "poisson", "poisson": RATIOS},
+    others = {
+        "along": MAP | {"motion": "longitudinal", "title": "to and fro"},
+        "ratios": MAP | {"motion": "bore", "poisson": RATIOS},
         "still": {
             "motion": "bore",
-            "group": "static",
             "velocity": [0, 0.001],
             "amplitude": [0, 0.5, 1, 2],
         },
     }
-    drives = {
+    others |= {
         "drift": {"motion": "transverse", "force": [0.2, 0.4, 0.8], "amplitude": [0.5, 1]},
         "body": {
             "motion": "transverse",
@@ -38,9 +36,10 @@ def configured():
             "mass": [0.1, 1, 10],
         },
     }
-    steady = {"velocity": {"log": {"start": 0.1, "stop": 10, "count": 5}}}
+    steady = {"velocity": {"log": [0.1, 10, 5]}}
     sweeps = {"transverse": MAP | {"poisson": RATIOS}, "bore": MAP, "continuous_bore": steady}
-    return load.from_mapping({"sweeps": sweeps, "extended": extended, "drives": drives})
+    page = {"kind": "explorer", "sweep": ["transverse", "bore"]}
+    return sweep_stub.configured(sweeps | others, figures={"explorer": page})
 
 
 def smooth(request):
@@ -51,7 +50,7 @@ def smooth(request):
 @pytest.fixture(scope="module")
 def certified():
     """A certified map of transverse oscillation with a made-up friction."""
-    axes = {"velocity": [0.001, 10], "amplitude": [0, 3], "adaptive": {"error": 1e-2}}
+    axes = {"velocity": [0.001, 10], "amplitude": [0, 3], "error": 1e-2}
     return certified_stub.built(certified_stub.configured("transverse", **axes), smooth)
 
 

@@ -3,16 +3,14 @@
 import numpy as np
 import pytest
 from stubs.drives_stub import FORCES, drift, pulled
-from stubs.figures_stub import artists
-
-from microslip.report.figures import drawing
+from stubs.figures_stub import artists, draw
 
 pytestmark = [pytest.mark.slow, pytest.mark.usefixtures("without_layout")]
 
 
 def test_maps_of_drift_show_threshold_rest_and_the_rigid_contact():
     datasets = {"drift_transverse": drift("transverse"), "drift_bore": drift("bore")}
-    figure = drawing.draw("drift_maps", datasets)
+    figure = draw("drift_maps", datasets)
     for axes, dataset in zip(figure.axes, datasets.values(), strict=False):
         (line,) = artists(axes, "mu_static")
         force, across = line.get_data()
@@ -31,7 +29,7 @@ def test_points_of_a_map_that_did_not_converge_are_marked(panel):
     datasets = {"drift_transverse": drift("transverse"), "drift_bore": drift("bore")}
     broken = list(datasets.values())[panel]
     broken["converged"][2, 3] = 0
-    figure = drawing.draw("drift_maps", datasets)
+    figure = draw("drift_maps", datasets)
     marks = [artists(axes, "unconverged")[0].get_xydata() for axes in figure.axes[:2]]
     plain, marked = marks[1 - panel], marks[panel]
     assert len(plain) == 0
@@ -42,7 +40,7 @@ def test_points_of_a_map_that_did_not_converge_are_marked(panel):
 
 def test_the_points_of_all_drives_are_drawn():
     datasets = pulled()
-    figure = drawing.draw("drives", datasets)
+    figure = draw("drives", datasets)
     left, right = figure.axes
     (line,) = artists(left, "velocity")
     assert np.array_equal(line.get_ydata(), datasets["transverse"]["mu_macro"][0])

@@ -28,7 +28,8 @@ def arguments() -> dict[str, tuple[str, dict]]:
     for dataset in ratios.values():
         stub.labelled(dataset, "y0 / u_lim")
     datasets = stub.studies() | {"continuous_bore": stub.fake_continuous_bore()}
-    figures = {name: (name, stub.pulled() | datasets | paper) for name in drawing.FIGURES}
+    others = stub.pulled() | datasets | paper | {"fit": fit_stub.fitted()}
+    figures = {name: (name, others) for name in stub.FIGURES}
     figures["drives"] = "drives", stub.pulled()
     few = stub.fake_transverse(7)
     few["converged"][2, 2] = 0
@@ -62,7 +63,7 @@ def drawn(name):
     """A figure, which is drawn once and without a warning."""
     with warnings.catch_warnings():
         warnings.simplefilter("error")
-        figure = drawing.draw(*FIGURES[name])
+        figure = stub.draw(*FIGURES[name])
     figure.draw_without_rendering()  # places the titles
     return figure
 
@@ -71,7 +72,7 @@ def drawn(name):
 def test_its_files_are_complete_and_reproducible(name, tmp_path, monkeypatch):
     """Two drawings have the same pixels. The PDF is complete and has no date."""
     monkeypatch.setattr(PdfFile, "writeFonts", lambda f: f.writeObject(f.fontObject, {}))
-    figures = drawn(name), drawing.draw(*FIGURES[name])
+    figures = drawn(name), stub.draw(*FIGURES[name])
     pictures = [drawing.save(f, tmp_path / f"{k}.png").read_bytes() for k, f in enumerate(figures)]
     assert pictures[0] == pictures[1]
     page = drawing.save(figures[1], tmp_path / "page.pdf").read_bytes()
@@ -145,10 +146,10 @@ def test_labels_of_tolerances_hide_no_markers():
 
 @pytest.mark.parametrize("points", [1, 3])
 def test_any_number_of_points_has_room_for_panels_and_legends(points):
-    accuracy = FIGURES["accuracy_vs_cost"][1]["accuracy_cost"]
+    accuracy = FIGURES["accuracy_vs_cost"][1]["accuracy"]
     names = accuracy["point"].values[:points]
     data = accuracy.isel(trial=np.isin(accuracy["trial_point"], names)).sel(point=names)
-    figure = drawing.draw("accuracy_vs_work", {"accuracy_cost": data})
+    figure = stub.draw("accuracy_vs_work", {"accuracy": data})
     frames = [axes.get_window_extent() for axes in figure.axes if axes.axison]
     legends = [legend.get_window_extent() for legend in figure.findobj(Legend)]
     assert len(frames) == points and len(legends) == 2
@@ -160,7 +161,7 @@ def test_any_number_of_points_has_room_for_panels_and_legends(points):
 @pytest.mark.filterwarnings("ignore:Glyph")
 def test_unknown_characters_and_long_words_fit_the_page(tmp_path):
     maps = {"a": stub.spanning("\u4e2d\u6587"), "b": stub.spanning("x" * 100)}
-    figure = drawing.draw("extended_motions", maps)
+    figure = stub.draw("extended_motions", maps)
     drawing.save(figure, tmp_path / "maps.pdf")
     figure.draw_without_rendering()
     assert figure.get_tightbbox().x1 <= figure.get_size_inches()[0] + 0.02

@@ -20,7 +20,7 @@ from stubs.figures_stub import VELOCITY, artists, words
 from microslip.datasets.accessor import Map
 from microslip.datasets.surface import Surface
 from microslip.motions.by_name import MOTIONS, motion_named
-from microslip.report.figures import drawing, groups, map_panel, signed
+from microslip.report.figures import groups, map_panel, signed
 from microslip.report.figures import style as look
 from microslip.report.figures.formulas import mathtext
 from microslip.theory import paper
@@ -145,7 +145,7 @@ def test_the_cells_around_an_unknown_point_are_masked():
 
 def contours_of(dataset):
     """The panel of a single map, and its contours."""
-    figure = drawing.draw("extended_motions", {"m": dataset})
+    figure = stub.draw("extended_motions", {"m": dataset})
     (axes,) = artists(figure, "map")
     (lines,) = artists(axes, "contours")
     return axes, lines
@@ -240,14 +240,14 @@ def test_points_are_drawn_neither_over_a_number_nor_close_to_its_letters():
 
 def test_a_group_is_drawn_with_one_scale_and_shared_labels():
     data = {"b": stub.spanning("second"), "a": stub.spanning("first")}
-    figure = drawing.draw("extended_motions", data)
+    figure = stub.draw("extended_motions", data)
     titles = [axes.get_title(loc="left") for axes in maps_in(figure)]
     assert [title.split()[-1] for title in titles] == ["second", "first"]
     (bar,) = [axes for axes in figure.axes if axes.get_label() == "<colorbar>"]
     assert bar.get_ylim() == (0, 1)
     assert words(figure).count(r"$x_{0}/u_{\mathrm{lim}}$") == 1
     data["c"] = stub.spanning("c", amplitude_label="phi0 / phi_lk(a/2)")
-    labels = [axes.get_ylabel() for axes in maps_in(drawing.draw("extended_motions", data))]
+    labels = [axes.get_ylabel() for axes in maps_in(stub.draw("extended_motions", data))]
     formulas = r"$x_{0}/u_{\mathrm{lim}}$", r"$\varphi_{0}/\varphi_{\mathrm{lk}}(a/2)$"
     assert (labels[0], labels[2]) == formulas
 
@@ -259,7 +259,7 @@ def test_friction_below_zero_widens_the_scale_of_all():
     assert 0 in contours
     fills, *_ = groups.levels_of([stub.spanning(shift=-0.004)])  # within the error of the points
     assert (fills[0], fills[-1]) == (0.0, 1.0)
-    figure = drawing.draw("extended_motions", {"a": negative, "b": stub.spanning("b")})
+    figure = stub.draw("extended_motions", {"a": negative, "b": stub.spanning("b")})
     (bands,) = [c for c in figure.axes[0].collections if len(getattr(c, "levels", ())) > 20]
     middles = (bands.levels[1:] + bands.levels[:-1]) / 2
     np.testing.assert_allclose(bands.get_facecolor()[:, :3], shown(middles), atol=0.03)
@@ -276,16 +276,16 @@ def test_all_of_poissons_ratios_of_a_group_are_drawn():
         return both.assign(mu_macro_change=change).assign_attrs(tolerance=1e-3)
 
     two = at_ratios(stub.spanning("a"))
-    mixed = drawing.draw("extended_motions", {"a": two, "b": stub.spanning("b")})
+    mixed = stub.draw("extended_motions", {"a": two, "b": stub.spanning("b")})
     heads = [axes.get_title(loc="left") for axes in maps_in(mixed)]
     assert [r"$\nu = 0.3$" in head for head in heads] == [False, True, False]
     lines = {"a": at_ratios(stub.static("a")), "b": stub.static("b")}
-    (legend,) = drawing.draw("extended_static", lines).findobj(Legend)
+    (legend,) = stub.draw("extended_static", lines).findobj(Legend)
     labels = [text.get_text() for text in legend.get_texts()]
     assert labels == [r"a, $\nu = 0$", r"a, $\nu = 0.3$", "b"]
     # Up to three datasets show the effect of the ratios; more have a map for each ratio.
     for count, differences, drawn in ((1, 1, 2), (4, 0, 8)):
-        figure = drawing.draw("extended_motions", {f"m{k}": two for k in range(count)})
+        figure = stub.draw("extended_motions", {f"m{k}": two for k in range(count)})
         labels = [axes.get_ylabel() for axes in figure.axes]
         assert sum("less that" in label for label in labels) == differences
         assert len(maps_in(figure)) == drawn
@@ -308,14 +308,14 @@ def test_every_value_of_a_map_is_visible_as_colour_or_marker(size, ratios):
     """Half of the points have no value, so that no cell of the map has a colour."""
     dataset = stub.holed(*size)
     shown = stub.at_ratios(dataset, *ratios) if len(ratios) > 1 else dataset
-    figure = drawing.draw("extended_motions", {"m": shown})
+    figure = stub.draw("extended_motions", {"m": shown})
     assert blank(figure, figure.axes[0], dataset).empty
     assert "computed points" in words(figure)
 
 
 def test_a_coarse_map_at_several_ratios_has_colour_and_says_that_contours_end():
     dataset = mapped(7, 5)
-    figure = drawing.draw("extended_motions", {"m": stub.at_ratios(dataset, 0.0, 0.3)})
+    figure = stub.draw("extended_motions", {"m": stub.at_ratios(dataset, 0.0, 0.3)})
     axes = figure.axes[0]
     finer = dataset.interp(
         velocity=np.geomspace(0.011, 9, 20), amplitude=np.linspace(0.25, 2.9, 20)
@@ -328,7 +328,7 @@ def test_a_coarse_map_at_several_ratios_has_colour_and_says_that_contours_end():
 @pytest.mark.parametrize("velocity", [0.1, 1e-3])
 def test_figure_2_names_the_velocities_of_the_markers_and_of_the_limits(velocity):
     dataset = stub.fake_transverse(5).assign_coords(velocity=velocity * np.geomspace(1, 100, 5))
-    text = words(drawing.draw("fig2_transverse_map", {"transverse": dataset}))
+    text = words(stub.draw("fig2_transverse_map", {"transverse": dataset}))
     assert f"markers: $\\tilde v_0 = {look.number(velocity)}$" in text.replace("{v}", " v")
     assert "\\to 0$" in text
 
@@ -336,7 +336,7 @@ def test_figure_2_names_the_velocities_of_the_markers_and_of_the_limits(velocity
 def test_all_computed_values_of_a_cut_are_inside_its_panel():
     """Values can exceed 1, and static friction can vanish well before the largest amplitude."""
     dataset = stub.at_ratios(stub.fake_transverse(9), 0.0, 0.2, 0.4)
-    figure = drawing.draw("fig2_transverse_map", {"transverse": dataset})
+    figure = stub.draw("fig2_transverse_map", {"transverse": dataset})
     markers = artists(figure, "computed")
     assert len(markers) == 6
     for line in markers:
@@ -352,7 +352,7 @@ def test_lines_show_the_limit_and_marks_the_smallest_velocity():
     slow = stub.static("line", velocity=(0.0, 1e-3))
     loop = stub.static("loop", velocity=(1e-3,))
     loop["converged"][3, 0] = 0
-    figure = drawing.draw("extended_static", {"a": slow, "b": loop})
+    figure = stub.draw("extended_static", {"a": slow, "b": loop})
     (line,) = artists(figure, "limit")  # the second dataset has no limit
     np.testing.assert_array_equal(line.get_ydata(), slow["mu_macro"].sel(velocity=0))
     first, solved, failed = (bars.lines[0] for bars in figure.axes[0].containers)
@@ -367,7 +367,7 @@ def test_a_limit_from_theory_is_drawn_on_its_finer_axis_where_it_holds():
     data = stub.static("a", mu_static=("amplitude", np.zeros(7)), mu_static_curve=curve)
     data = data.assign_coords(amplitude_curve=fine)
     for poisson, points in ((0.0, 50), (0.3, 7)):
-        figure = drawing.draw("extended_static", {"a": data.assign_coords(poisson=poisson)})
+        figure = stub.draw("extended_static", {"a": data.assign_coords(poisson=poisson)})
         (line,) = artists(figure, "limit")
         assert len(line.get_xdata()) == points
 
@@ -379,7 +379,7 @@ def test_a_steady_motion_is_drawn_over_its_velocity():
     steady["mu_forward_theory"] = "velocity", force
     coords = {"velocity": velocity, "poisson": 0.0}
     data = stub.labelled(xr.Dataset(steady, coords, {"title": "spin", "group": "steady"}), "")
-    figure = drawing.draw("extended_steady", {"spin": data})
+    figure = stub.draw("extended_steady", {"spin": data})
     (line,) = artists(figure, "limit")
     np.testing.assert_array_equal(line.get_ydata(), force)
     assert figure.axes[0].get_xscale() == "log"
@@ -400,11 +400,11 @@ def drawn_words(figure):
 
 def test_titles_are_drawn_verbatim():
     maps = {f"m{k}": stub.spanning(title) for k, title in enumerate(TITLES)}
-    figure = drawing.draw("extended_motions", maps)
+    figure = stub.draw("extended_motions", maps)
     assert set(TITLES) <= set(drawn_words(figure))
     figure.draw_without_rendering()  # parses them
     lines = {f"s{k}": stub.static(title) for k, title in enumerate(TITLES)}
-    (legend,) = drawing.draw("extended_static", lines).findobj(Legend)
+    (legend,) = stub.draw("extended_static", lines).findobj(Legend)
     labels = [text.get_text() for text in legend.get_texts()]
     assert len(labels) == 8 and "_first" in labels
 

@@ -11,14 +11,14 @@ from matplotlib.text import Text
 from stubs import figures_stub as stub
 from stubs.figures_stub import artists
 
-from microslip.report.figures import atlas, drawing
+from microslip.report.figures import atlas
 
 pytestmark = [pytest.mark.slow, pytest.mark.usefixtures("without_layout")]
 
 
 @pytest.fixture(scope="module")
 def accuracy() -> xr.Dataset:
-    return stub.studies()["accuracy_cost"]
+    return stub.studies()["accuracy"]
 
 
 @pytest.fixture(scope="module")
@@ -28,7 +28,7 @@ def stability() -> xr.Dataset:
 
 def panels_of(name, dataset) -> list:
     """Panels of an accuracy figure with the trials of their points."""
-    panels = [axes for axes in drawing.draw(name, {"accuracy_cost": dataset}).axes if axes.axison]
+    panels = [axes for axes in stub.draw(name, {"accuracy": dataset}).axes if axes.axison]
     return [
         (axes, dataset.isel(trial=dataset["trial_point"].values == str(point)))
         for axes, point in zip(panels, dataset["point"].values, strict=True)
@@ -84,7 +84,7 @@ def test_the_error_of_the_reference_is_hatched_where_it_is_known(accuracy):
 
 
 def test_a_profile_shows_the_share_of_points_within_a_ratio_of_the_best(accuracy):
-    figure = drawing.draw("accuracy_profile", {"accuracy_cost": accuracy})
+    figure = stub.draw("accuracy_profile", {"accuracy": accuracy})
     tightest = accuracy.isel(map_tolerance=int(np.argmin(accuracy["map_tolerance"].values)))
     looks = set()
     for name, ratios in zip(
@@ -120,7 +120,7 @@ def test_the_map_colours_and_names_every_region_of_the_cheapest_model():
     names[2:4, 1:3] = names[6:8, 9:12] = names[0, 12] = "mdr"
     names[8, 0] = ""
     data = cheapest(names, np.geomspace(0.1, 5, 9))
-    figure = drawing.draw("model_map", {"accuracy_cost": data})
+    figure = stub.draw("model_map", {"accuracy": data})
     (legend,) = figure.findobj(Legend)
     handles = zip(legend.get_texts(), legend.legend_handles, strict=True)
     colours = {text.get_text().split()[-1]: to_hex(one.get_facecolor()) for text, one in handles}
@@ -138,7 +138,7 @@ def test_the_map_colours_and_names_every_region_of_the_cheapest_model():
         i = np.argmin(abs(np.log(data["bore_amplitude"].values / amplitude)))
         assert names[i, j][:2].capitalize() == text
     even = cheapest(names[:1, :1], np.array([0.5]))
-    axes = drawing.draw("model_map", {"accuracy_cost": even}).axes[0]
+    axes = stub.draw("model_map", {"accuracy": even}).axes[0]
     assert axes.get_yscale() == "linear" and len(artists(axes, "region")) == 1
 
 
@@ -146,7 +146,7 @@ def test_the_atlas_shows_every_outcome(stability):
     data = stability.copy(deep=True)
     data["outcome"][:] = np.arange(data["outcome"].size).reshape(data["outcome"].shape) % 5
     data["outcome"].loc[{"method": "midpoint"}] = 0  # the method applies to no case
-    figure = drawing.draw("stability_atlas", {"stability": data})
+    figure = stub.draw("stability_atlas", {"stability": data})
     methods: list[str] = []
     for axes, axis in zip(figure.axes, data["axis"].values, strict=True):
         cases = data.isel(case=data["case_axis"].values == axis)

@@ -16,7 +16,7 @@ ERROR = 2e-2
 
 @pytest.fixture(scope="module")
 def friction():
-    axes = {"velocity": [0.05, 1], "amplitude": [0.2, 3], "adaptive": {"error": ERROR}}
+    axes = {"velocity": [0.05, 1], "amplitude": [0.2, 3], "error": ERROR}
     map_ = certified_stub.configured("transverse", **axes)
     return certified_map.build(map_, certified_stub.played(map_, certified_stub.solved))
 

@@ -12,7 +12,6 @@ from stubs.studies_stub import configured
 
 import microslip
 from microslip.adaptive import single_run as trial
-from microslip.config.records import MODELS_OF_MOTION
 from microslip.contact.path import EULER, make_path
 from microslip.contact.registry import MODELS
 from microslip.contact.squares import CartesianContact
@@ -25,6 +24,7 @@ from microslip.solver.discretise import Resolution
 from microslip.solver.methods import aspher
 from microslip.studies import ladders
 from microslip.studies.accuracy import accuracy_cost
+from microslip.studies.ladders import MODELS_OF_MOTION
 
 os.environ.setdefault("OMP_NUM_THREADS", "1")  # read when the package is first imported
 needs_it = pytest.mark.skipif(find_spec("aspher") is None, reason="the package is not installed")

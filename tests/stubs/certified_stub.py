@@ -1,16 +1,14 @@
 """A certified map, refined in one process without a workflow."""
 
 import xarray as xr
+from stubs import sweep_stub
 
 import microslip
 from microslip.app import question
-from microslip.config import load
 from microslip.datasets import certified_map, netcdf
 from microslip.si.map import FrictionMap
 from microslip.sweeps import evaluate, map_refinement
-from microslip.sweeps.batches import key_of
-
-PAPER = {"transverse": {"velocity": [1], "amplitude": [1]}}
+from microslip.sweeps.request import key_of
 
 
 def record(request, mu, error=1e-4):
@@ -21,9 +19,8 @@ def record(request, mu, error=1e-4):
 
 
 def configured(motion, **settings):
-    """Certified map of a sweep with some settings."""
-    (map_,) = load.from_mapping({"sweeps": {motion: settings}}).certified.values()
-    return map_
+    """Configuration of a certified map with some settings."""
+    return sweep_stub.configured({"map": {"motion": motion} | settings})
 
 
 def played(map_, answer):
@@ -34,13 +31,13 @@ def played(map_, answer):
         records.extend(map(answer, requests))
         return records[-len(requests) :]
 
-    map_refinement.refine(map_, ask)
+    map_refinement.refine(map_.sweeps["map"], ask)
     return records
 
 
 def built(map_, answer):
     """Dataset of a map; answer: function from a request to its record."""
-    return certified_map.build(map_, played(map_, answer))
+    return certified_map.build(map_, "map", played(map_, answer))[0]
 
 
 def reopened(dataset, folder) -> xr.Dataset:
@@ -67,7 +64,7 @@ def bore(**settings) -> xr.Dataset:
         velocity, amplitude = (float(request[name]) for name in ("velocity", "amplitude"))
         return record(request, (velocity + 0.1) / (velocity + 0.1 + amplitude))
 
-    axes = {"velocity": [0.01, 10], "amplitude": [0, 5], "adaptive": {"error": 0.02}}
+    axes = {"velocity": [0.01, 10], "amplitude": [0, 5], "error": 0.02}
     map_ = configured("bore", **axes | settings)
     return built(map_, answer)
 

@@ -1,11 +1,10 @@
 """A small configuration of the claims, and results from the formulas that the claims test."""
 
 import numpy as np
-from stubs.studies_stub import SWEEPS
 
 from microslip.config import load
 from microslip.pressures.by_name import pressure_named
-from microslip.sweeps import batches
+from microslip.sweeps import request as requests
 from microslip.theory import oscillating_load, paper
 
 CLAIMS = {
@@ -19,7 +18,7 @@ CLAIMS = {
 
 def configured(**changes):
     """Configuration of the claims with some settings changed."""
-    return load.from_mapping({"sweeps": SWEEPS, "claims": CLAIMS | changes})
+    return load.from_mapping({"claims": CLAIMS | changes})
 
 
 LIMITS = {"transverse": paper.static_limit_transverse, "bore": paper.static_limit_bore}
@@ -102,7 +101,7 @@ def answered(results=result):
 
     def answer(request):
         calls.append(request)
-        key = batches.key_of(request)
+        key = requests.key_of(request)
         return {"key": key, "result": results(request), "versions": {"numpy": "2.0"}}
 
     return answer, calls

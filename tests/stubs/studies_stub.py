@@ -3,10 +3,9 @@
 from microslip.config import load
 from microslip.foundation import canonical
 from microslip.studies import registry
-from microslip.sweeps import batches
+from microslip.sweeps import request as requests
 from microslip.theory import paper
 
-SWEEPS = {"bore": {"velocity": [1], "amplitude": [1]}}
 ACCURACY = {
     "methods": ["shipped", "euler", "paper", "full-newton"],
     "points": {
@@ -31,13 +30,13 @@ STABILITY = {
 def configured(accuracy=(), stability=()):
     """Configuration of both studies with some settings changed."""
     settings = {"accuracy": ACCURACY | dict(accuracy), "stability": STABILITY | dict(stability)}
-    return load.from_mapping({"sweeps": SWEEPS} | settings)
+    return load.from_mapping(settings)
 
 
 def asked(study, configuration):
     """All requests of a study as canonical JSON, in a list."""
-    long, short = registry.pieces(study, configuration)
-    return [canonical.canonical_json(request) for piece in long + short for request in piece]
+    pieces = registry.pieces(study, configuration.studies[study])
+    return [canonical.canonical_json(request) for piece in pieces for request in piece]
 
 
 GOOD = {
@@ -56,7 +55,7 @@ def answered(results):
 
     def answer(request):
         calls.append(canonical.canonical_json(request))
-        key = batches.key_of(request)
+        key = requests.key_of(request)
         return {"key": key, "result": results(request), "versions": {"numpy": "2.0"}}
 
     return answer, calls

@@ -4,6 +4,9 @@ from types import SimpleNamespace
 
 import numpy as np
 
+from microslip.config import load
+from microslip.sweeps import batch, request
+
 EFFORT = {
     "cells": 16,
     "angles": 1,
@@ -13,6 +16,31 @@ EFFORT = {
     "work": 8,
     "effort": 72,
 }
+
+
+def configured(sweeps, **keys):
+    """A configuration of sweeps; a sweep without a motion has the motion of its name."""
+    named = {name: {"motion": name.replace("_", "-")} | sweep for name, sweep in sweeps.items()}
+    return load.from_mapping({"sweeps": named, **keys})
+
+
+RUNS = {
+    "history": {"kind": "history", "sweep": "transverse"},
+    "field": {"kind": "field", "sweep": "continuous_bore"},
+    "transients": {"kind": "transients", "sweep": "continuous_bore"},
+}
+"""Figures that ask for single runs."""
+
+
+def requests_of(configuration, name):
+    """Requests of the points and single runs of a sweep."""
+    points = request.points_of(configuration.sweeps[name]).requests
+    return points + request.runs_of(configuration, name)
+
+
+def records_of(configuration, name):
+    """Records of a sweep, from the solver or its substitute."""
+    return [batch.computed(one)[0] for one in requests_of(configuration, name)]
 
 
 class Solver:

@@ -1,5 +1,6 @@
 """A copy of the project in a folder of its own, for runs of Snakemake and edits."""
 
+import json
 import os
 import re
 import shutil
@@ -26,18 +27,32 @@ RUN = ["-j2", "--configfile", "tiny.yaml"]
 AXES = {"velocity": [0.5, 2], "amplitude": [0, 1], "model": "rigid", "tolerance": 1e-2}
 TINY = {
     "sweeps": {
-        "transverse": AXES,
-        "bore": AXES,
-        "continuous_bore": {"velocity": [0.5, 2], "model": "rigid", "tolerance": 1e-2},
+        "transverse": {"motion": "transverse", **AXES},
+        "bore": {"motion": "bore", **AXES},
+        "continuous_bore": {
+            "motion": "continuous-bore",
+            **{name: AXES[name] for name in ("velocity", "model", "tolerance")},
+        },
     },
-    "histories": {
-        "transverse": {"periods": 1, "cells": 4, "steps": 16},
-        "field": {"cells": 4},
-        "transients": {"travel": 1.0, "cells": 4, "steps": 16},
+    "figures": {
+        "fig1_force_history": {"kind": "history", "sweep": "transverse", "periods": 1}
+        | {"cells": 4, "steps": 16},
+        "fig2_transverse_map": {"kind": "map", "sweep": "transverse"},
+        "fig3_traction_field": {"kind": "field", "sweep": "continuous_bore", "cells": 4},
+        "fig4_continuous_bore": {"kind": "curves", "sweep": "continuous_bore"},
+        "fig5_transients": {"kind": "transients", "sweep": "continuous_bore", "travel": 1.0}
+        | {"cells": 4, "steps": 16},
+        "fig6_bore_map": {"kind": "map", "sweep": "bore"},
     },
     "points_per_job": 4,  # every job takes a second or two to start
 }
-ALL_JOBS = {"warm_up": 2, "solve": 5, "collect": 3, "draw": 6, "all": 1}
+"""Three sweeps of 4, 4 and 2 points, with 1 + 4 single runs."""
+ALL_JOBS = {"solve_batch": 5, "make_products": 1, "all": 1}
+
+
+def of_transverse(**changed):
+    """A configuration of the transverse sweep alone, with some of its keys changed."""
+    return {"sweeps": {"transverse": TINY["sweeps"]["transverse"] | changed}, "points_per_job": 4}
 
 
 def jobs_in(message):
@@ -87,8 +102,11 @@ class Project:
         assert done.returncode == 0, done.stderr
         return jobs_in(done.stdout)
 
-    def points(self):
-        return {p.name: p.read_bytes() for p in self.folder.glob("results/points/*/*/*.json")}
+    def records(self):
+        """Records in all batch files, by key."""
+        files = self.folder.glob("results/batches/*/*.jsonl")
+        lines = [json.loads(line) for path in files for line in path.read_text().splitlines()[1:-1]]
+        return {record["key"]: record for record in lines}
 
     def append(self, path, text):
         """Append text to an existing file."""

@@ -20,7 +20,7 @@ NOT_DECIDED, HOLDS, PARTLY, NOT = verdicts.WORDS
 
 def judged(results=result, **changes):
     """Dataset of the claims with invented results."""
-    return registry.build("claims", configured(**changes), answered(results)[0])
+    return registry.undivided(configured(**changes), "claims", answered(results)[0])
 
 
 def words(data):
@@ -33,7 +33,7 @@ def words(data):
 def claims(tmp_path_factory):
     """Dataset of the claims with invented results, read from disk."""
     path = tmp_path_factory.mktemp("claims") / "claims.nc"
-    netcdf.write(path, *netcdf.divide(judged(), registry.groups("claims")))
+    netcdf.write(path, *registry.divided(judged(), "claims"))
     return netcdf.whole(path)
 
 
@@ -291,5 +291,5 @@ def test_what_the_papers_run_is_off_by_is_split(claims):
 
 
 def test_the_report_has_a_line_for_every_statement(claims):
-    lines = list(registry.report("claims", claims))
+    lines = list(registry.report(claims, "claims"))
     assert lines == [f"claim {number}: {text}" for number, text in words(claims).items()]

@@ -21,7 +21,7 @@ def answered(study):
     """Dataset of a study with invented results, and its requests."""
     configured, results = STUDIES[study]
     answer, calls = studies_stub.answered(results)
-    return registry.build(study, configured(), answer), calls
+    return registry.undivided(configured(), study, answer), calls
 
 
 @pytest.fixture(scope="module", params=STUDIES)
@@ -29,14 +29,14 @@ def file(request, tmp_path_factory):
     """Name of a study, and the file of its dataset."""
     study = request.param
     path = tmp_path_factory.mktemp(study) / f"{study}.nc"
-    netcdf.write(path, *netcdf.divide(answered(study)[0], registry.groups(study)))
+    netcdf.write(path, *registry.divided(answered(study)[0], study))
     return study, path
 
 
 @pytest.mark.parametrize("study", STUDIES)
 def test_a_dataset_asks_for_what_jobs_have_answered_and_for_all_of_it(study):
-    long, short = registry.pieces(study, STUDIES[study][0]())
-    of_jobs = [canonical_json(request) for piece in long + short for request in piece]
+    pieces = registry.pieces(study, STUDIES[study][0]().studies[study])
+    of_jobs = [canonical_json(request) for piece in pieces for request in piece]
     assert set(answered(study)[1]) == set(of_jobs)
 
 
@@ -61,11 +61,11 @@ def test_conventions_and_provenance(file):
     assert data.source and data.institution
     assert len(data.source_digest) == len(data.results_digest) == 64
     settings = getattr(STUDIES[study][0](), study)
-    assert type(settings).model_validate(json.loads(data.configuration)) == settings
+    assert settings.model_dump(mode="json") == json.loads(data.configuration)
     assert data.library_versions == '{"numpy":"2.0"}'
 
 
 def test_equal_results_give_equal_bytes(file, tmp_path):
     study, path = file
-    netcdf.write(tmp_path / "again.nc", *netcdf.divide(answered(study)[0], registry.groups(study)))
+    netcdf.write(tmp_path / "again.nc", *registry.divided(answered(study)[0], study))
     assert (tmp_path / "again.nc").read_bytes() == path.read_bytes()

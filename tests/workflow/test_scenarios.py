@@ -9,13 +9,19 @@ import time
 
 import pytest
 import xarray as xr
-from stubs.workflow_project import ENVIRONMENT, RUN, SNAKEMAKE, Project, jobs_in
+from stubs.workflow_project import ENVIRONMENT, ROOT, RUN, SNAKEMAKE, Project, jobs_in
+
+from microslip.config import load
+from microslip.config.settings import Sweep
+from microslip.sweeps import request
 
 pytestmark = pytest.mark.long
 
-AXES = {"velocity": [0.5, 1, 2], "amplitude": [0.5, 1, 2], "tolerance": 1e-2}
-RIGID = {**AXES, "motion": "transverse", "model": "rigid", "group": "rigid"}
-DATASET, FIGURE = "results/slide.nc", "results/figures/extended_rigid.png"
+SLIDE = {
+    **{"motion": "transverse", "velocity": [0.5, 1, 2], "amplitude": [0.5, 1, 2]},
+    **{"model": "rigid", "tolerance": 1e-2},
+}
+DATASET, FIGURE = "results/slide.nc", "results/figures/look.png"
 COUNTING = """
 
 import time
@@ -33,9 +39,8 @@ def solve(**arguments):
 
 
 def configured(**changed):
-    slide = RIGID | changed
-    paper = {"transverse": {"velocity": [1], "amplitude": [0]}}
-    return {"sweeps": paper, "extended": {"slide": slide}, "points_per_job": 3}
+    figures = {"look": {"kind": "map", "sweep": "slide"}}
+    return {"sweeps": {"slide": SLIDE | changed}, "figures": figures, "points_per_job": 3}
 
 
 class Counted(Project):
@@ -57,12 +62,8 @@ def finished(tmp_path_factory):
     project = Counted(tmp_path_factory.mktemp("scenarios") / "it")
     project.append("src/microslip/adaptive/point.py", COUNTING)
     project.configure(configured())
-    assert jobs_in(project.run(DATASET, FIGURE)) == {
-        "warm_up": 2,
-        "solve": 3,
-        "collect": 1,
-        "draw": 1,
-    }
+    jobs = {"solve_batch": 3, "make_dataset": 1, "draw_figure": 1, "link_file": 2}
+    assert jobs_in(project.run(DATASET, FIGURE)) == jobs
     assert len(project.solved()) == 9
     return project
 
@@ -83,17 +84,32 @@ def test_again_there_is_nothing_to_do_whatever_the_triggers(finished):
     ("axis", "values", "batches", "new"),
     [
         ("velocity", [0.5, 1, 1.5, 2], 3, 3),
+        ("amplitude", [0.5, 0.7, 1, 2], 1, 3),
         ("poisson", [0, 0.3], 3, 9),
     ],
 )
 def test_a_grown_axis_solves_its_new_points_alone(axis, values, batches, new, project):
     project.configure(configured(**{axis: values}))
-    assert jobs_in(project.run(DATASET))["solve"] >= batches
+    assert jobs_in(project.run(DATASET))["solve_batch"] >= batches
     assert len(project.solved()) == 9 + new
     assert project.values(axis) == values
     assert project.planned(DATASET) == {}
     project.configure(configured())
-    assert jobs_in(project.run(DATASET)) == {"collect": 1}
+    assert project.planned(DATASET) == {}
+    assert len(project.values("velocity")) == 3
+
+
+def test_the_shipped_configuration_grows_by_its_new_points_alone():
+    """README: if you add a value to an axis, only the new points are computed."""
+    mapping = load.read_yaml(ROOT / "config/config.yaml")
+    before = mapping["sweeps"]["transverse"]["velocity"]
+    grown = {**mapping["sweeps"]["transverse"], "velocity": [before, 0.07]}
+    keys = [
+        {request.key_of(r) for r in request.points_of(sweep).requests}
+        for sweep in (Sweep(**mapping["sweeps"]["transverse"]), Sweep(**grown))
+    ]
+    assert keys[0] < keys[1]
+    assert len(keys[1] - keys[0]) == 25
 
 
 def started(project, *arguments):
@@ -106,32 +122,6 @@ def started(project, *arguments):
         stderr=subprocess.DEVNULL,
         start_new_session=True,
     )
-
-
-def killed(project, seconds):
-    """Start a run, and kill it with its jobs after some seconds."""
-    running = started(project, DATASET, "--nolock")
-    time.sleep(seconds)
-    os.killpg(running.pid, signal.SIGKILL)
-    running.wait()
-
-
-def test_kills_lose_the_points_in_flight_at_most(finished, project):
-    shutil.rmtree(project.folder / "results" / "points")
-    shutil.rmtree(project.folder / "results" / "batches")
-    (project.folder / DATASET).unlink()
-    (project.folder / "solved").unlink()
-    (project.folder / "slow").touch()
-    draw = random.Random(1)
-    for _ in range(6):
-        killed(project, draw.uniform(2.0, 12.0))
-    (project.folder / "slow").unlink()
-    project.run(DATASET)
-    solved = project.solved()
-    assert len(set(solved)) == 9
-    assert len(solved) - 9 <= 6 * 2
-    assert (project.folder / DATASET).read_bytes() == (finished.folder / DATASET).read_bytes()
-    assert project.planned(DATASET) == {}
 
 
 def wait_until(holds):
@@ -151,6 +141,44 @@ def is_alive(session):
     return True
 
 
+@pytest.fixture
+def emptied(project):
+    """A project without results."""
+    shutil.rmtree(project.folder / "results")
+    (project.folder / "solved").unlink()
+    return project
+
+
+def batch_files(project):
+    return list(project.folder.glob("results/batches/*/*.jsonl"))
+
+
+def wait_for_a_point(project, count):
+    """Wait until the solver has been called more than `count` times."""
+    wait_until(lambda: len(project.solved()) > count)
+
+
+def test_kills_of_all_processes_lose_the_points_in_flight_at_most(finished, emptied):
+    """Each kill waits until a point is being solved."""
+    (emptied.folder / "slow").touch()
+    draw = random.Random(1)
+    for _ in range(3):
+        count = len(emptied.solved())
+        running = started(emptied, DATASET, "--nolock")
+        wait_for_a_point(emptied, count)
+        time.sleep(draw.uniform(0.0, 0.3))
+        os.killpg(running.pid, signal.SIGKILL)
+        running.wait()
+    (emptied.folder / "slow").unlink()
+    emptied.run(DATASET)
+    solved = emptied.solved()
+    assert len(set(solved)) == 9
+    assert len(solved) <= 9 + 3 * 2
+    assert (emptied.folder / DATASET).read_bytes() == (finished.folder / DATASET).read_bytes()
+    assert emptied.planned(DATASET) == {}
+    assert not list(emptied.folder.rglob("*.journal"))
+
+
 PLAIN = ["--workflow-profile", "none", "--rerun-triggers", "mtime", "--rerun-incomplete"]
 
 
@@ -160,35 +188,32 @@ PLAIN = ["--workflow-profile", "none", "--rerun-triggers", "mtime", "--rerun-inc
     ids=["after", "after, without the profile", "beside"],
 )
 def test_one_run_makes_every_file_after_a_kill_of_snakemake_alone(
-    moment, options, finished, project
+    moment, options, finished, emptied
 ):
     """The jobs of the killed process go on, and end before the next run begins or during it."""
-    shutil.rmtree(project.folder / "results" / "points")
-    shutil.rmtree(project.folder / "results" / "batches")
-    for name in (DATASET, FIGURE, "solved"):
-        (project.folder / name).unlink()
-    (project.folder / "hold").touch()
-    running = started(project, DATASET, FIGURE)
+    hold = emptied.folder / "hold"
+    hold.touch()
+    running = started(emptied, DATASET, FIGURE)
     try:
-        wait_until(project.solved)
+        wait_until(emptied.solved)
         running.kill()
         running.wait()
         assert is_alive(running.pid)  # the job that solves
-        assert not list(project.folder.glob("results/batches/*/*"))
+        assert not batch_files(emptied)
         if moment == "after its jobs":
-            (project.folder / "hold").unlink()
+            hold.unlink()
             wait_until(lambda: not is_alive(running.pid))
-            assert list(project.folder.glob("results/batches/*/*"))
-        assert project.snakemake("--unlock", *RUN).returncode == 0
-        (project.folder / "hold").unlink(missing_ok=True)
-        project.run(DATASET, FIGURE, *options)
+            assert batch_files(emptied)
+        assert emptied.snakemake("--unlock", *RUN).returncode == 0
+        hold.unlink(missing_ok=True)
+        emptied.run(DATASET, FIGURE, *options)
         wait_until(lambda: not is_alive(running.pid))
     finally:
         if is_alive(running.pid):
             os.killpg(running.pid, signal.SIGKILL)
     for file in (DATASET, FIGURE):
-        assert (project.folder / file).read_bytes() == (finished.folder / file).read_bytes()
-    assert project.planned(DATASET, FIGURE) == {}
+        assert (emptied.folder / file).read_bytes() == (finished.folder / file).read_bytes()
+    assert emptied.planned(DATASET, FIGURE) == {}
 
 
 def forget(project):
@@ -218,15 +243,17 @@ def test_what_snakemake_remembers_does_not_count(how, project):
     elsewhere = how(project)
     assert elsewhere.planned(DATASET, FIGURE) == {}
     elsewhere.configure(configured(velocity=[0.5, 1]))
-    assert elsewhere.planned(DATASET)["collect"] == 1
+    assert elsewhere.planned(DATASET)["make_dataset"] == 1
 
 
 def test_dates_do_not_count(project):
     """Dates between 1970 and 2096, in any order."""
     draw = random.Random(1)
     for path in (project.folder / "results").rglob("*"):
-        os.utime(path, (draw.uniform(1e3, 4e9),) * 2)
+        os.utime(path, (draw.uniform(1e3, 4e9),) * 2, follow_symlinks=False)
     assert project.planned(DATASET, FIGURE) == {}
+    shutil.rmtree(project.folder / "results" / "data")
+    assert "solve_batch" not in jobs_in(project.run(DATASET, FIGURE))
 
 
 def test_two_configurations_share_a_folder_of_results(finished, project):
@@ -238,11 +265,15 @@ def test_two_configurations_share_a_folder_of_results(finished, project):
     assert project.values("velocity") == [0.5, 1, 2, 3]
     assert (project.folder / FIGURE).read_bytes() != figure
     project.configure(configured())
-    assert jobs_in(project.run(DATASET)) == {"collect": 1}
+    assert "Nothing to be done" in project.run(DATASET, FIGURE)
     assert (project.folder / DATASET).read_bytes() == first
-    project.run(FIGURE)
     assert (project.folder / FIGURE).read_bytes() == figure
     assert len(project.solved()) == 9 + 3
+
+
+def test_an_edit_of_a_script_of_the_workflow_makes_products_again(project):
+    project.append("workflow/scripts/make.py", "\nSPARE = 1\n")
+    assert project.planned(DATASET, FIGURE) == {"make_dataset": 1, "draw_figure": 1, "link_file": 2}
 
 
 EDITING = """
@@ -260,12 +291,13 @@ def solve(*arguments, **settings):
 
 def test_a_solver_that_is_edited_during_a_run_ends_it(project):
     project.append("src/microslip/adaptive/point.py", EDITING)
-    before = project.points()
+    before = project.records()
     process = project.snakemake(DATASET, "-j2", "--configfile", "tiny.yaml")
     assert process.returncode != 0
     assert "was edited while its code was running" in process.stderr
     assert "Traceback" not in process.stderr
-    assert project.points() == before
+    assert project.records() == before
+    assert not list((project.folder / "results").rglob("*.journal"))
     project.run(DATASET)
     assert project.planned(DATASET) == {}
 
@@ -277,54 +309,63 @@ def test_a_collector_that_fails_leaves_the_old_dataset(finished, project):
     assert (project.folder / DATASET).read_bytes() == (finished.folder / DATASET).read_bytes()
 
 
-DAMAGED = {
-    "a dataset cut short": (DATASET, lambda path: os.truncate(path, 1000), {"collect", "draw"}),
-    "a dataset of another": (DATASET, lambda path: path.write_text("mine"), {"collect", "draw"}),
-    "no page": ("results/summaries/slide.html", lambda path: path.unlink(), {"collect", "draw"}),
-    "an empty figure": (FIGURE, lambda path: os.truncate(path, 0), {"draw"}),
-    "no stamp": ("results/.made/slide.json", lambda path: path.unlink(), {"collect", "draw"}),
-    "a bad stamp": (
-        "results/.made/slide.json",
-        lambda path: path.write_text("{"),
-        {"collect", "draw"},
+CUT = {
+    "a dataset cut short": (
+        DATASET,
+        lambda path: os.truncate(path, 1000),
+        {"make_dataset", "draw_figure"},
     ),
+    "a dataset of another": (
+        DATASET,
+        lambda path: path.write_text("mine"),
+        {"make_dataset", "draw_figure"},
+    ),
+    "no page": ("results/summaries/slide.html", os.unlink, {"make_dataset", "draw_figure"}),
+    "an empty figure": (FIGURE, lambda path: os.truncate(path, 0), {"draw_figure"}),
+    "a figure cut short": (FIGURE, lambda path: os.truncate(path, 9000), {"draw_figure"}),
 }
 
 
-@pytest.mark.parametrize("case", DAMAGED)
+@pytest.mark.parametrize("case", CUT)
 def test_a_damaged_product_is_made_again(case, finished, project):
-    file, damage, rules = DAMAGED[case]
-    damage(project.folder / file)
-    message = project.run(DATASET, FIGURE)
-    assert set(jobs_in(message)) >= rules
+    file, damage, rules = CUT[case]
+    damage((project.folder / file).resolve())
+    jobs = jobs_in(project.run(DATASET, FIGURE))
+    assert set(jobs) == rules | {"link_file"}
     for path in (DATASET, FIGURE):
         assert (project.folder / path).read_bytes() == (finished.folder / path).read_bytes()
-    files = project.folder / f"{DATASET}.damaged"
-    assert files.exists() == (
-        case in ("a dataset cut short", "a dataset of another", "no stamp", "a bad stamp")
-    )
     assert project.planned(DATASET, FIGURE) == {}
 
 
-def test_a_damaged_batch_is_made_again_from_its_points(finished, project):
-    batch, *_ = (project.folder / "results/batches/slide").glob("*.jsonl")
-    whole = batch.read_bytes()
-    os.truncate(batch, len(whole) - 30)
-    message = project.run(DATASET)
-    assert jobs_in(message) == {"solve": 1, "collect": 1}
-    assert batch.read_bytes() == whole
-    assert len(project.solved()) == 9
-    point, *_ = (project.folder / "results/points/transverse").rglob("*.json")
-    os.truncate(point, 40)
-    shutil.rmtree(project.folder / "results/batches")
+def test_a_file_of_the_user_in_the_place_of_a_link_stays(finished, project):
     (project.folder / DATASET).unlink()
-    assert "damaged result" in project.run(DATASET)
-    assert len(project.solved()) == 10
+    (project.folder / DATASET).write_text("mine")
+    assert "Nothing to be done" in project.run(DATASET)
+    assert (project.folder / f"{DATASET}.replaced").read_text() == "mine"
     assert (project.folder / DATASET).read_bytes() == (finished.folder / DATASET).read_bytes()
 
 
+def test_a_damaged_batch_is_solved_again(finished, project):
+    batch, *_ = (project.folder / "results/batches/transverse").glob("*.jsonl")
+    lost = len(batch.read_text().splitlines()) - 2
+    os.truncate(batch, batch.stat().st_size - 30)
+    assert project.planned(DATASET) == {}  # the dataset is there
+    shutil.rmtree(project.folder / "results" / "data")
+    assert jobs_in(project.run(DATASET)) == {"solve_batch": 1, "make_dataset": 1, "link_file": 1}
+    assert len(project.solved()) == 9 + lost
+    assert (project.folder / DATASET).read_bytes() == (finished.folder / DATASET).read_bytes()
+
+
+def test_other_sizes_of_jobs_solve_nothing(project):
+    project.configure(configured() | {"points_per_job": 100})
+    assert project.planned(DATASET) == {}
+    shutil.rmtree(project.folder / "results" / "data")
+    assert jobs_in(project.run(DATASET)) == {"solve_batch": 1, "make_dataset": 1, "link_file": 1}
+    assert len(project.solved()) == 9
+
+
 def test_a_dry_run_changes_no_content(project):
-    (project.folder / DATASET).write_bytes(b"\x89HDF, once")
+    os.truncate((project.folder / DATASET).resolve(), 1000)
     results = project.folder / "results"
 
     def contents():
@@ -353,7 +394,8 @@ def solve(**arguments):
 def test_a_point_that_failed_is_a_gap_and_is_tried_again(project):
     project.append("src/microslip/adaptive/point.py", FAILING.format(error="SolverError"))
     assert "slide: 9 points, 3 not converged" in project.run(DATASET)
-    assert project.planned(DATASET)["solve"] == 3
+    assert project.planned(DATASET)["solve_batch"] == 3
+    assert "slide: 9 points, 3 not converged" in project.run(DATASET)
     (project.folder / "mended").touch()
     assert "slide: 9 points, all converged" in project.run(DATASET)
     assert project.planned(DATASET) == {}

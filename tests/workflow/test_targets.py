@@ -1,7 +1,7 @@
 """Certified maps, other motions and the studies, run by Snakemake in a copy of the project."""
 
+import os
 import re
-import shutil
 
 import pytest
 import xarray as xr
@@ -17,8 +17,6 @@ from microslip.report.figures import drawing
 
 pytestmark = pytest.mark.long
 
-PAPER = {"transverse": {"velocity": [1], "amplitude": [0]}}
-
 
 def made(folder, configuration, *targets):
     """A project with a configuration, after a run of some targets; `said` is the output."""
@@ -31,88 +29,93 @@ def made(folder, configuration, *targets):
 # Certified maps of the rigid model, whose points are cheap.
 
 AXES = {"velocity": [0.1, 10], "amplitude": [0.5, 3], "model": "rigid", "tolerance": 0.01}
-MAP = {"sweeps": {"transverse": {**AXES, "adaptive": {"error": 0.03}}}}
+MAP = {"motion": "transverse", **AXES, "error": 0.03}
+
+
+def of_map(**changed):
+    figures = {"look": {"kind": "map", "sweep": "transverse"}}
+    return {"sweeps": {"transverse": MAP | changed}, "figures": figures}
 
 
 @pytest.fixture(scope="module")
 def certified(tmp_path_factory):
     """A project with a certified map. Tests must not change it."""
-    return made(tmp_path_factory.mktemp("certified"), MAP, "certified")
+    return made(tmp_path_factory.mktemp("certified"), of_map())
 
 
 def map_bytes(project):
-    return (project.folder / "results" / "certified_transverse.nc").read_bytes()
+    return (project.folder / "results" / "transverse.nc").read_bytes()
 
 
 def test_one_command_makes_a_map_whose_error_holds_everywhere(certified):
     results = certified.folder / "results"
-    data = microslip.open_map("certified_transverse", results).load()
+    data = microslip.open_map("transverse", results).load()
     assert float(data.cell_error.max()) <= data.error == 0.03
-    assert data.points == len(certified.points()) > 25
-    assert (results / "figures/certified_transverse.png").read_bytes().startswith(b"\x89PNG")
-    page = (results / "summaries/certified_transverse.html").read_text()
+    assert data.points == len(certified.records()) > 25
+    assert (results / "figures/look.png").read_bytes().startswith(b"\x89PNG")
+    page = (results / "summaries/transverse.html").read_text()
     assert f"{data.points} points, all converged" in page
     answer = data.microslip.at(velocity=0.7, amplitude=1.9)
     rigid = microslip.solve("transverse", 0.7, 1.9, model="rigid", tolerance=0.01)
     assert abs(float(answer.mu_macro) - rigid.mu_macro) <= float(answer.mu_macro_error)
+    assert re.search(r"point/s", certified.said)  # progress
+    assert "Nothing to be done" in certified.run()
 
 
-def test_progress_of_a_map_is_shown(certified):
-    assert re.search(r"certified_transverse: .*point/s", certified.said)
-
-
-def test_a_second_run_has_nothing_to_do_and_a_plain_one_makes_no_map(certified):
-    assert "Nothing to be done" in certified.run("certified")
-    assert "map" not in certified.planned()
-
-
-def test_a_map_that_was_killed_goes_on_from_its_points_to_the_same_bytes(certified, tmp_path):
+def test_a_map_that_was_killed_goes_on_from_its_journal_to_the_same_bytes(certified, tmp_path):
     project = certified.copied(tmp_path / "killed")
-    results, before = project.folder / "results", project.points()
-    (results / "certified_transverse.nc").unlink()
-    shutil.rmtree(results / "batches")
-    for path in sorted(results.glob("points/*/*/*.json"))[::3]:
-        path.unlink()
-    project.run("certified")
+    (project.folder / "results" / "transverse.nc").resolve().unlink()
+    (batch,) = project.folder.glob("results/batches/*/*.jsonl")
+    lines = batch.read_bytes().splitlines(keepends=True)
+    batch.with_suffix(".0.journal").write_bytes(b"".join(lines[1:-9]))
+    os.truncate(batch, 1000)
+    project.run()
     assert map_bytes(project) == map_bytes(certified)
-    assert project.points() == before
+    (log,) = project.folder.glob("results/logs/*/*-1.log")
+    assert ", 7 computed" in log.read_text()
 
 
 def test_a_looser_error_computes_nothing_anew(certified, tmp_path):
     project = certified.copied(tmp_path / "looser")
-    looser = {**AXES, "adaptive": {"error": 0.1, "tolerance": 0.009}}
-    project.configure({"sweeps": {"transverse": looser}})
-    before = project.points()
-    assert jobs_in(project.run("certified"))
-    data = microslip.open_map("certified_transverse", project.folder / "results").load()
+    before = project.records().keys()
+    project.configure(of_map(error=0.1))
+    project.run("transverse")
+    data = microslip.open_map("transverse", project.folder / "results").load()
     assert data.error == 0.1
     assert data.points <= len(before)
-    assert project.points() == before
+    assert project.records().keys() == before
 
 
 # Other motions
 
 
-def test_other_motions_have_datasets_and_a_figure_of_each_group(tmp_path):
+def test_other_motions_have_datasets_and_figures_of_several(tmp_path):
     axes = {"velocity": [0.1, 1], "amplitude": [0, 0.5, 1], "tolerance": 0.01}
-    circle = {**axes, "group": "motions", "model": "rigid", "motion": "elliptic", "title": "round"}
-    cone = {**axes, "group": "static", "motion": "longitudinal", "pressure": "power:exponent=1"}
+    circle = {**axes, "model": "rigid", "motion": "elliptic", "title": "round"}
+    cone = {**axes, "motion": "longitudinal", "pressure": "power:exponent=1"}
     sweeps = {"circle": circle, "cone": cone | {"velocity": [0, 0.1]}}
-    project = made(tmp_path, {"sweeps": PAPER, "extended": sweeps}, "extended")
+    sweeps["pulled"] = {"motion": "bore", "model": "rigid", "amplitude": 1, "force": [0.2, 0.5]}
+    figures = {
+        "motions": {"kind": "map", "sweep": ["circle"]},
+        "static": {"kind": "curves", "sweep": ["cone"]},
+    }
+    project = made(tmp_path, {"sweeps": sweeps, "figures": figures})
     results = project.folder / "results"
-    assert {path.stem for path in results.glob("*.nc")} == {"circle", "cone"}
-    for name in ("extended_motions", "extended_static"):
+    assert {path.stem for path in results.glob("*.nc")} == {"circle", "cone", "pulled"}
+    for name in ("motions", "static"):
         for form in ("png", "pdf"):
             assert (results / f"figures/{name}.{form}").stat().st_size > 0
     with xr.open_dataset(results / "circle.nc") as data:
-        assert (data.motion, data.title, data.group) == ("elliptic", "round", "motions")
+        assert (data.motion, data.title) == ("elliptic", "round")
         assert data.mu_macro.dims == ("amplitude", "velocity")
     with xr.open_dataset(results / "cone.nc") as data:
         assert data.pressure == "power:exponent=1"
         assert data.converged.all()
-    assert len(project.points()) == 12
-    assert "Nothing to be done" in project.run("extended")
-    assert project.planned()["collect"] == 1  # the default target does not include them
+    with xr.open_dataset(results / "pulled.nc") as data:
+        assert data.velocity.dims == ("force",)
+        assert float(data.amplitude) == 1
+    assert len(project.records()) == 14
+    assert "Nothing to be done" in project.run()
 
 
 # Studies
@@ -128,7 +131,8 @@ SMALLER = {
 
 def test_the_claims_are_a_dataset_a_page_and_figures(tmp_path):
     project = Project(tmp_path)
-    project.configure({"sweeps": PAPER, "claims": CLAIMS})
+    figures = {name: {"kind": name} for name in ("claims_static", "claims_patches")}
+    project.configure({"claims": CLAIMS, "figures": figures})
     for name, lines in SMALLER.items():
         path = project.folder / "src" / "microslip" / name
         text = path.read_text()
@@ -136,29 +140,27 @@ def test_the_claims_are_a_dataset_a_page_and_figures(tmp_path):
             assert text.count(line) == 1
             text = text.replace(line, line.partition("=")[0] + numbers)
         path.write_text(text)
-    message = project.run("results/figures/claims_static.png")
+    message = project.run("claims_static")
     results = project.folder / "results"
     with netcdf.whole(results / "claims.nc") as data:
         assert data["claim"].values.tolist() == list(range(1, 11))
         assert {3, 4} <= set(data["claim"].values[data["verdict"].values == 1])
-        stored = {path.stem for path in results.rglob("*/*/??/*.json")}
-        assert set(data["run"].values) <= stored
+        assert set(data["run"].values) <= project.records().keys()
         page = (results / "summaries/claims.html").read_text(encoding="utf-8")
         assert all(str(key) in page for key in data["run"].values)
     assert "claim 9: " in message
-    assert project.planned("claims") == {"draw": 1, "claims": 1}  # the other figure
+    figure = {"draw_figure": 1, "claims_patches": 1}
+    assert project.planned("claims_patches") == figure
     more = {**CLAIMS, "amplitude_bore": [1, 10]}
     before, after = (
-        Plan(load.from_mapping({"sweeps": PAPER, "claims": settings}))
+        Plan(load.from_mapping({"claims": settings})).batches("claims").keys()
         for settings in (CLAIMS, more)
     )
-    groups = before.products["claims"].groups
-    new = {*after.batch_files(*groups)} - {*before.batch_files(*groups)}
-    assert len([name for name in new if name.startswith("batches/claims/")]) == 1
+    assert len(after - before) == 1
 
 
 METHODS = {
-    "sweeps": PAPER,
+    "figures": {name: {"kind": name} for name in ("accuracy_profile", "stability_atlas")},
     "accuracy": {
         "methods": ["shipped", "my-method"],
         "points": {"fast": {"motion": "longitudinal", "velocity": 0.5, "amplitude": 1}},
@@ -172,8 +174,6 @@ METHODS = {
         "tolerance": 0.01,
     },
 }
-TARGETS = ["results/accuracy_cost.nc", "results/figures/accuracy_profile.png"]
-TARGETS += ["results/stability.nc", "results/figures/stability_atlas.png"]
 METHOD = '''
 """Backward Euler under another name."""
 
@@ -194,19 +194,19 @@ def studies(tmp_path_factory):
     project = Project(tmp_path_factory.mktemp("studies"))
     project.configure(METHODS)
     write_method(project, "my_method")
-    project.said = project.run(*TARGETS)
+    project.said = project.run()
     return project
 
 
 def texts(name, path):
     """All texts of a figure drawn from the dataset at `path`."""
     with netcdf.whole(path) as data:
-        return words(drawing.draw(name, {drawing.FIGURES[name][0]: data}))
+        return words(drawing.draw(name, {"study": data}))
 
 
 def test_a_method_in_one_new_file_is_in_the_datasets_and_in_the_figures(studies):
     results = studies.folder / "results"
-    with netcdf.whole(results / "accuracy_cost.nc") as data:
+    with netcdf.whole(results / "accuracy.nc") as data:
         own = data.isel(trial=data.trial_method.values == "my-method")
         assert own.trial_model.values.tolist() == ["radial", "radial"]
         assert own.converged.values.all()
@@ -216,25 +216,24 @@ def test_a_method_in_one_new_file_is_in_the_datasets_and_in_the_figures(studies)
         assert data.method.values.tolist() == ["shipped", "my-method"]
         assert data.method_summary.values[1] == "my own way"
         assert (data.outcome.values > 0).all()
-    assert "my-method" in texts("accuracy_profile", results / "accuracy_cost.nc")
+    assert "my-method" in texts("accuracy_profile", results / "accuracy.nc")
     assert "my-method" in texts("stability_atlas", results / "stability.nc")
     assert "fast: " in studies.said and "my-method: " in studies.said
-    assert "Nothing to be done" in studies.run(*TARGETS)
+    assert "Nothing to be done" in studies.run()
 
 
 def test_a_second_method_computes_its_own_trials_only(studies, tmp_path):
     project = studies.copied(tmp_path / "copy")
 
     def trials():
-        paths = project.folder.glob("results/trials/*/*/*.json")
-        return {path.name: path.read_bytes() for path in paths}
+        records = project.records()
+        return {key: records[key] for key in records if records[key]["request"]["kind"] == "trial"}
 
     before = trials()
     write_method(project, "second_way")
     methods = ["shipped", "second-way", "my-method"]
     project.configure({**METHODS, "accuracy": {**METHODS["accuracy"], "methods": methods}})
-    message = project.run("results/accuracy_cost.nc")
-    assert jobs_in(message) == {"solve": 1, "collect": 1}
+    assert jobs_in(project.run("accuracy")) == {"solve_batch": 1, "make_dataset": 1, "accuracy": 1}
     after = trials()
     assert {name: after[name] for name in before} == before
     assert len(after) == len(before) + 2
@@ -243,6 +242,6 @@ def test_a_second_method_computes_its_own_trials_only(studies, tmp_path):
 def test_editing_a_method_computes_its_trials_again_but_a_comment_does_not(studies, tmp_path):
     project = studies.copied(tmp_path / "copy")
     project.append("src/microslip/solver/methods/my_method.py", "\n# More to read.\n")
-    assert project.planned(*TARGETS) == {}
+    assert project.planned() == {}
     project.append("src/microslip/solver/methods/my_method.py", "\nSPARE = 1\n")
-    assert project.planned("accuracy", "stability")["solve"] == 2
+    assert project.planned("accuracy", "stability")["solve_batch"] == 2

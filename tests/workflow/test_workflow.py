@@ -4,7 +4,7 @@ import shutil
 
 import pytest
 import xarray as xr
-from stubs.workflow_project import ALL_JOBS, AXES, COMPILED, ROOT, RUN, TINY, jobs_in
+from stubs.workflow_project import ALL_JOBS, COMPILED, ROOT, RUN, TINY, jobs_in
 
 pytestmark = pytest.mark.slow
 
@@ -24,34 +24,37 @@ def test_one_run_makes_the_datasets_and_the_figures(finished):
         assert (data.mu_macro.sel(amplitude=0) == 1).all()
     with xr.open_dataset(results / "transverse.nc", group="history") as data:
         assert data.history_force_forward.size == 17
-    assert len(finished.points()) == 10
+    assert len(finished.records()) == 10 + 5
     assert "bore: 4 points, all converged" in finished.said
 
 
 def test_a_new_amplitude_computes_its_points_only(project):
-    before = project.points()
-    axes = {**AXES, "amplitude": [0, 0.5, 1]}
+    before = project.records()
+    axes = TINY["sweeps"]["transverse"] | {"amplitude": [0, 0.5, 1]}
     project.configure({**TINY, "sweeps": {**TINY["sweeps"], "transverse": axes}})
-    assert project.planned() == {"solve": 2, "collect": 1, "draw": 2, "all": 1}
-    project.run("results/transverse.nc")
-    after = project.points()
+    assert project.planned() == {"solve_batch": 2, "make_products": 1, "all": 1}
+    project.run("transverse")
+    after = project.records()
     assert len(after) == len(before) + 2
-    assert {name: after[name] for name in before} == before
+    assert {key: after[key] for key in before} == before
     with xr.open_dataset(project.folder / "results" / "transverse.nc") as data:
         assert list(data.amplitude.values) == [0, 0.5, 1]
 
 
-def test_an_edit_makes_again_what_it_concerns_and_comments_and_dates_do_not_count(project):
+def test_an_edit_makes_again_what_it_concerns_and_messages_and_dates_do_not_count(project):
     """The edits accumulate, and each one concerns more jobs than the one before. Without them there
     is nothing to do."""
     for path in (project.folder / "src").rglob("*.py"):
         path.touch()
     (project.folder / "tiny.yaml").touch()
     project.append("src/microslip/contact/influence.py", "\n# More to read.\n")
+    checks = project.folder / "src/microslip/adaptive/checks.py"
+    assert checks.read_text().count('"allowed is ') > 2
+    checks.write_text(checks.read_text().replace('"allowed is ', '"what is allowed is '))
     project.append("src/microslip/report/figures/field.py", "\nSPARE = 1\n")
-    assert project.planned() == {"draw": 1, "all": 1}
+    assert project.planned() == {"draw_figure": 1, "all": 1}
     project.append("src/microslip/datasets/sweep_dataset.py", "\nSPARE = 1\n")
-    assert project.planned() == {"collect": 3, "draw": 6, "all": 1}
+    assert project.planned() == {"make_products": 1, "all": 1}
     project.append("src/microslip/contact/influence.py", "\nSPARE = 1\n")
     assert project.planned() == ALL_JOBS
     shutil.rmtree(project.folder / "src")
@@ -60,26 +63,15 @@ def test_an_edit_makes_again_what_it_concerns_and_comments_and_dates_do_not_coun
 
 
 @pytest.mark.long
-def test_a_dry_run_says_how_much_there_is_to_solve(project):
-    tolerance = {**AXES, "tolerance": 2e-2}
-    project.configure({**TINY, "sweeps": {"transverse": tolerance, "bore": AXES}})
-    process = project.snakemake("--cores", 2, *RUN[1:], "--dry-run")
-    assert process.returncode == 0
-    (line,) = [line for line in process.stderr.splitlines() if line.startswith("To solve:")]
-    assert line == "To solve: 4 points."
-
-
-@pytest.mark.long
-@pytest.mark.parametrize("target", ["fig2", "fig2_transverse_map"])
-def test_a_figure_is_a_target_by_its_number_and_by_its_name(project, target):
-    for path in (project.folder / "results").glob("figures/fig*.png"):
+def test_datasets_and_figures_are_targets_by_their_names(project):
+    for path in (project.folder / "results").glob("data/fig*.png"):
         path.unlink()
-    assert project.planned(target) == {"draw": 1, target: 1}
-    project.configure({**TINY, "sweeps": {"bore": AXES}})
-    process = project.snakemake(target, *RUN, "--dry-run")
-    line = process.stderr.strip().splitlines()[-1]
+    figure = "fig2_transverse_map"
+    assert project.planned(figure) == {"draw_figure": 1, figure: 1}
+    assert project.planned("bore") == {}
+    assert project.planned() == {"make_products": 1, "all": 1}
+    project.run(figure)
+    assert (project.folder / f"results/figures/{figure}.png").exists()
+    process = project.snakemake("fig7", *RUN, "--dry-run")
     assert process.returncode == 1
-    assert line == (
-        "Error in tiny.yaml: fig2_transverse_map needs the sweep transverse, "
-        "which the configuration does not have"
-    )
+    assert "fig7" in process.stdout

@@ -1,14 +1,11 @@
-# Shared by all rules: the package, the configuration, its plan, and the test for outdated files.
+# Shared by all rules: the package, the configuration, its plan, and what the results folder lacks.
 
-import atexit
-import functools
 import os
+import re
 import signal
 import sys
 from contextlib import contextmanager
 from pathlib import Path
-
-from snakemake.exceptions import WorkflowError
 
 # The package of this tree runs, even if another one is installed.
 ROOT = Path(str(workflow.current_basedir)).parents[1]
@@ -36,14 +33,10 @@ def hang_up(*_):
 if hasattr(signal, "SIGHUP") and signal.getsignal(signal.SIGHUP) == signal.SIG_DFL:
     signal.signal(signal.SIGHUP, hang_up)  # not reached under nohup
 
-from microslip.app import dry_run, figure_targets
-from microslip.app.plan import Plan
+from microslip.app.plan import Plan, Results
 from microslip.config import load
-from microslip.foundation import files, source_digest
-from microslip.foundation.canonical import canonical_json
+from microslip.foundation import files
 from microslip.foundation.errors import CacheError
-from microslip.report.explorer import explorer
-from microslip.sweeps import batches, stamps, store
 
 
 @contextmanager
@@ -84,124 +77,88 @@ ORIGIN = ", ".join(FILES) or "configuration"
 FOLDERS = [os.path.dirname(os.path.abspath(file)) for file in workflow.configfiles]
 
 with refused_in_one_line():
+    config = load.reread(config, FILES)
     CONFIGURATION = load.from_mapping(config, source=ORIGIN, folders=FOLDERS)
-    # Adds default values for captions, and makes file paths absolute for jobs.
-    config = load.with_defaults_and_paths(config, source=ORIGIN, folders=FOLDERS)
-PLAN = Plan(CONFIGURATION)
+    config = load.with_paths(config, folders=FOLDERS)  # jobs find files from any folder
+    PLAN = Plan(CONFIGURATION)
+
 RESULTS = os.path.normpath(CONFIGURATION.results)
-
-# The end of the Snakefile defines PLACE: RESULTS with the prefix of a module.
-HERE = exists(os.devnull)  # False for results in remote storage, where stamps cannot be read
-AGAIN = f"{RESULTS}/{stamps.AGAIN}"
+HERE = exists(os.devnull)  # False for results in remote storage
 in_place = update if HERE else str  # keeps the old file until a job has written the new one
-marked = str if HERE else local
-TO_SOLVE = {}
+IS_JOB = "--target-jobs" in sys.argv  # on another machine
+WHOLE = IS_JOB or not HERE or "--report" in sys.argv
+"""True to apply the rules to all files, and not only to missing ones."""
+AGAIN = ".again"  # newer than each link to another file than that of this configuration
+MARKER = f"{RESULTS}/data/{os.urandom(8).hex()}.made"
+PRODUCT_OF = {}  # name of a product by the stem of its files
 
 
-def made_again(right):
-    """Return the file AGAIN. If all is up to date, it is ancient: Snakemake ignores its date."""
-    return ancient(marked(AGAIN)) if right else marked(AGAIN)
+def look(place):
+    """Return the state of the results folder, and check what is missing with the solver."""
+    with refused_in_one_line():
+        if HERE:
+            folders = [f"{place}/{name}" for name in ("batches", "data", "figures", "summaries")]
+            links = [f"{place}/{link}" for one in PLAN.products.values() for link in one.links]
+            files.refuse_unusable(folders, links)
+        state = Results(PLAN, place, HERE, WHOLE)
+        PRODUCT_OF.update({stem: name for name, stem in state.stems.items()})
+        if not IS_JOB:
+            load.refuse_unsolvable(CONFIGURATION, state.missing, source=ORIGIN)
+        if HERE:
+            state.link()
+            state.date_links(state.folder / "data" / AGAIN)
+    return state
 
 
-@functools.cache
-def is_whole(file):
-    """Return True for a final or missing batch. Any other batch is backdated."""
-    path = f"{PLACE}/{file}"
-    if not (HERE and os.path.exists(path)):
-        return True  # batches in remote storage are trusted
-    right = store.is_final(path)
-    stamps.date([path], right)
-    if not right:
-        print(f"{path} is damaged, or has points that failed: made again", file=sys.stderr)
-    return right
+def any_of(names):
+    """Return a regular expression for these names, or for none."""
+    return "|".join(map(re.escape, names)) or "(?!)"
 
 
-@functools.cache
-def is_right(product):
-    """Return True if a product is up to date. An outdated product is backdated."""
-    if not HERE:
-        return False  # made again, from batches or datasets
-    stamp = f"{PLACE}/{stamps.stamp_of(product)}"
-    paths = [f"{PLACE}/{file}" for file in PLAN.products[product].files]
-    right = stamps.fits(stamp, PLAN.made_of(product), paths)
-    stamps.date([*paths, stamp], right)
-    return right
+def files_of(*names):
+    """Return the paths of products."""
+    return [f"{RESULTS}/{file}" for name in names for file in STATE.files(name)]
 
 
-# Snakemake runs an existing file with its mark of an unfinished job again, and from there it does
-# not follow an ancient input.  So an input is ancient only where the product itself is up to date.
+def inputs_of(*names):
+    """Return an input function: the paths of what products are made from, except each other."""
+
+    def inputs(wildcards):
+        here = {file for name in names if name in STATE.missing for file in STATE.files(name)}
+        paths = [path for name in names for path in STATE.missing.get(name, ())]
+        return [ancient(f"{RESULTS}/{path}") for path in dict.fromkeys(paths) if path not in here]
+
+    return inputs
 
 
-def batches_for(product):
-    """Return the batches of a product. Whole batches of a product that is up to date are ancient,
-    so that they start no job."""
-    names = PLAN.batch_files(*PLAN.products[product].groups)
-    if HERE and not is_right(product):
-        missing = [f for f in names if not (is_whole(f) and os.path.exists(f"{PLACE}/{f}"))]
-        TO_SOLVE.update(dict.fromkeys(missing))
-    dated = ancient if is_right(product) else str
-    return [(dated if is_whole(file) else str)(f"{RESULTS}/{file}") for file in names]
+def inputs_of_stem(stem):
+    """Return the paths of what a product is made from."""
+    return inputs_of(PRODUCT_OF[stem])(None)
 
 
-def datasets_for(product):
-    """Return the datasets of a product. If it and a dataset are up to date, the dataset is
-    ancient."""
-    names = PLAN.products[product].datasets
-    dated = ancient if is_right(product) else str
-    return [(dated if is_right(name) else str)(f"{RESULTS}/{name}.nc") for name in names]
+def everything(wildcards):
+    """Return all products, with one job for the missing ones."""
+    if WHOLE or len(STATE.missing) < 2:
+        return files_of(*PLAN.products)
+    return [MARKER, *files_of(*(name for name in PLAN.products if name not in STATE.missing))]
 
 
-def batch_of(group, name):
-    """Return a batch (the requests of a job) as JSON, or null for a certified map."""
-    if name not in PLAN.batches_in(group):  # in a job on another machine
-        sys.exit(
-            f"Error: the batch {name} of {group} was planned with another solver, or its times on "
-            "another CPU: run again, on one kind of CPU"
-        )
-    batch = PLAN.batches_in(group)[name]
-    return canonical_json(batch and batch._asdict())
+def file_of_link(plain):
+    """Return the file to which a plain name refers.  It is ancient if the link is right, see
+    `look`."""
+    name, file = STATE.plain()[plain]
+    return (str if name in STATE.missing else ancient)(f"{RESULTS}/{file}")
 
 
-def kernels_for(group):
-    """Return the files that mark the compiled kernels of a group."""
-    with_drive = {*CONFIGURATION.drives, *(f"certified_{name}" for name in CONFIGURATION.drives)}
-    return compiled("rings", "angles", *["pulled"] * (group in with_drive))
-
-
-def compiled(*kernels, place=RESULTS):
-    """Return the files that mark compiled kernels. Their names contain the solver's digest."""
-    return [f"{place}/warm_up/{source_digest.of_solver()[:16]}_{name}.txt" for name in kernels]
-
-
-def files_of_target(target):
-    """Return the input function of a target."""
-
-    def files(wildcards):
-        try:
-            products = PLAN.products_of(target)
-        except load.ConfigError as error:
-            sys.exit(f"Error in {ORIGIN}: {error}")
-        return [f"{RESULTS}/{file}" for name in products for file in PLAN.products[name].files]
-
-    return files
-
-
-def report_work():
-    """Write the number of points to solve to standard error."""
-    names = [file.split("/")[1:] for file in TO_SOLVE]
-    work = [PLAN.batches_in(group).get(Path(name).stem) for group, name in names]
-    if work:
-        print(*dry_run.summary(work, PLACE), sep="\n", file=sys.stderr)
-    TO_SOLVE.clear()
+def again_of_link(plain):
+    """Return the file AGAIN, which is ancient if the link is right."""
+    right = STATE.plain()[plain][0] not in STATE.missing
+    return [(ancient if right else str)(f"{RESULTS}/data/{AGAIN}")] * HERE
 
 
 def make_ready():
     """Before the first job, check that results can be written, and remove files of killed runs."""
     with refused_in_one_line():
-        store.Store(PLACE).try_writing()
-    for path in files.clear_abandoned(PLACE):
+        files.refuse_unwritable(STATE.folder)
+    for path in files.clear_abandoned(STATE.folder):
         print(f"{path}: removed, a partial file of a killed run", file=sys.stderr)
-    report_work()
-
-
-atexit.register(report_work)  # for runs without jobs, such as dry runs

@@ -1,40 +1,42 @@
-"""Plan of a configuration: its batches of requests, its products, and the inputs of each product.
+"""Plan of a configuration: its products, their batches of requests, and what a folder lacks.
+
+A product is a dataset with its page, a figure, or a page of the explorer.  Its files are named by
+content, such as data/bore.0123456789abcdef.nc: the name contains a hash of all that the product is
+made of, so that a file that exists is right.  Plain names, such as bore.nc, are links.
 
 The module does not import Snakemake.  It must be fast to import, since every Snakemake process
 parses the workflow.
-
-A product is a dataset with its page ("bore"), a figure ("figures/fig6_bore_map") or a page of the
-explorer ("pages/explorer").  A group of batches is named after its sweep, study or certified map.
-The group "bore_histories" contains the single runs for a dataset, and "bore_periods" contains the
-single runs for the explorer.
 """
 
 from __future__ import annotations
 
-import logging
-from collections.abc import Iterator, Sequence
-from contextlib import contextmanager
-from functools import cache, cached_property
-from typing import Any, NamedTuple
+import os
+from collections.abc import Iterable
+from functools import cache
+from itertools import count
+from pathlib import Path
+from typing import NamedTuple
 
-from microslip.app import figure_targets
-from microslip.app.job_log import job_log
-from microslip.config import load
-from microslip.config.records import ConfigError, Configuration
+from microslip.config.settings import Configuration, Figure
 from microslip.foundation import source_digest
-from microslip.foundation.canonical import fingerprint
+from microslip.foundation.canonical import canonical_json, fingerprint
+from microslip.foundation.files import write_atomically
 from microslip.report.explorer import explorer
 from microslip.report.figures import drawing
 from microslip.studies import registry
-from microslip.sweeps import batches, stamps
-from microslip.sweeps.batches import Batch, SourcesEdited
+from microslip.sweeps import content, request
+from microslip.sweeps.batch import SourcesEdited
+from microslip.sweeps.request import Batch
 
-DATASET_CODE = ("datasets/sweep_dataset.py", "report/dataset_page.py")
-"""Modules that make a sweep's dataset and page.  Modules that they import are not listed."""
-STUDY_CODE = ("datasets/sweep_dataset.py", "report/claims_page.py", "report/claims.html", "studies")
-CERTIFIED_CODE = ("datasets/certified_map.py", "report/dataset_page.py")
-PAGE_CODE = ("report/explorer", "sweeps/period_codec.py")
-REFINEMENT_CODE = ("sweeps/map_refinement.py",)
+BUILDERS = {
+    "sweep": ("datasets/sweep_dataset.py", "report/dataset_page.py"),
+    "certified": ("datasets/certified_map.py", "report/dataset_page.py"),
+    **dict.fromkeys(("accuracy", "stability"), ("studies", "report/dataset_page.py")),
+    "claims": ("studies", "report/claims_page.py", "report/claims.html"),
+    "explorer": ("report/explorer", "sweeps/period_codec.py"),
+}
+"""Modules and folders that make a kind of product, besides those that they import."""
+MAP_CODE = ("sweeps/map_refinement.py", "sweeps/map_cells.py", "sweeps/map_coordinates.py")
 """Modules that choose the points of a certified map."""
 
 
@@ -43,184 +45,241 @@ class Product(NamedTuple):
 
     Attributes
     ----------
-    files : list of str
-        Paths relative to the folder of results.
-    code : tuple of str
-        Modules that make the product.  Modules that they import are not listed.
-    datasets, groups : sequence of str
-        Names of the input datasets and of the input batch groups.
-    settings : dict
-        Settings that influence the product, as JSON values.
+    kind : str
+        Key of BUILDERS, or a kind of figure.
+    stem : str
+        Name of the files without ending: the name of the product and the hash of its content.
+    links : dict of str to str
+        Ending of each file, by the plain name of the link to it.
+    inputs : tuple of str
+        Names of the datasets that the product is made from.
     """
 
-    files: list[str]
-    code: tuple[str, ...]
-    datasets: Sequence[str] = ()
-    groups: Sequence[str] = ()
-    settings: dict | None = None
+    kind: str
+    stem: str
+    links: dict[str, str]
+    inputs: tuple[str, ...] = ()
 
 
 class Plan:
-    """The plan of a checked configuration.  Paths are relative to the folder of results.
+    """The plan of a checked configuration.
 
     Attributes
     ----------
     configuration : Configuration
-    studies : dict of str to str
-        Name of the study that makes each dataset, by dataset name.
-    figures : dict of str to tuple of str
-        Figures for which the configuration has data, each with the names of its datasets.
     products : dict of str to Product
-        All products, by name.
+        All products by name, datasets first.
     """
 
     def __init__(self, configuration: Configuration):
         self.configuration = configuration
-        self.studies = {dataset: study for study, dataset in registry.DATASETS.items()}
-        self.figures = figure_targets.drawable(configuration)
-        self.products = dict(self._products())
-        self.batches_in = cache(self._batches_in)  # not @cache, since it would keep every plan
-        self.made_of = cache(self._made_of)
+        script = script_of_products()
+        self._maker = source_digest.LOADED.digest(["app/products.py"])
+        self._maker += source_digest.of_script(script) if script else ""
+        self.products: dict[str, Product] = {}
+        for name in configuration.datasets:
+            self.products[name] = self._dataset(name)
+        for name, figure in configuration.figures.items():
+            self.products[name] = self._figure(name, figure)
+        self.batches = cache(self._batches)  # not @cache, since it would keep every plan
 
-    # Batches
+    def _stem(self, name: str, kind: str, code: Iterable[str], *parts: object) -> str:
+        digest = source_digest.of_builder(*code), self._maker
+        return f"{name}.{fingerprint(kind, digest, *parts)[: request.CONTENT_NAME]}"
 
-    @cached_property
-    def groups(self) -> list[str]:
-        """Names of all groups of batches except certified maps."""
-        return [
-            *self.configuration.grids,
-            *(f"{name}_histories" for name in self.configuration.sweeps),
-            *(f"{name}_periods" for name in explorer.maps_of(self.configuration)),
-            *self.studies.values(),
-        ]
+    def _dataset(self, name: str) -> Product:
+        configuration = self.configuration
+        if (sweep := configuration.sweeps.get(name)) is not None:
+            kind = "certified" if sweep.is_certified else "sweep"
+            runs = request.runs_of(configuration, name)
+            common = request.settings_of(sweep)
+            solver = source_digest.of_request(common)
+            code = source_digest.of_builder(*MAP_CODE) if sweep.is_certified else ""
+            parts: tuple = (common, sweep.model_dump(mode="json"), runs, solver, code)
+        else:
+            kind = name
+            parts = (list(self._batches(name)), configuration.studies[name].model_dump(mode="json"))
+        links = {f"{name}.nc": ".nc", f"summaries/{name}.html": ".html"}
+        return Product(kind, self._stem(name, kind, BUILDERS[kind], *parts), links)
 
-    def _batches_in(self, group: str) -> dict[str, Batch | None]:
-        """Batches of a group by name, in the order of the requests.
+    def _figure(self, name: str, figure: Figure) -> Product:
+        inputs, is_page = figure.datasets, figure.kind == "explorer"
+        stems = [self.products[dataset].stem for dataset in inputs]
+        code = BUILDERS["explorer"] if is_page else drawing.modules_of(figure.kind)
+        more = list(self._batches(name)) if is_page else []
+        endings = (".html",) if is_page else (".png", ".pdf")
+        folder = "" if is_page else "figures/"
+        links = {f"{folder}{name}{ending}": ending for ending in endings}
+        stem = self._stem(name, figure.kind, code, stems, more)
+        return Product(figure.kind, stem, links, inputs)
+
+    def _batches(self, name: str) -> dict[str, Batch | None]:
+        """Batches of a product by their path without ending, in the order of the requests.
 
         A certified map has one batch with all points.  Its value is None, because its requests
         depend on the results.
         """
         configuration = self.configuration
-        name, _, runs = group.rpartition("_")
-        if group in configuration.grids:
-            points = batches.points_of(configuration.grids[group])
-            blocks = batches.divide(points, configuration.points_per_job[group])
-        elif runs == "histories":
-            histories = batches.history_requests(configuration, name)
-            blocks = [Batch(histories)] if histories else []
-        elif runs == "periods":
-            periods = explorer.period_requests(configuration, name)
-            blocks = [Batch(part) for part in batches.cut(periods, explorer.PERIODS_PER_JOB)]
-        elif group in configuration.certified:
-            map_ = configuration.certified[group]
-            solver = source_digest.of_request(batches.points_of(map_.sweep).rows[0])
-            code = source_digest.of_modules(*REFINEMENT_CODE)
-            return {fingerprint(map_.settings, code, solver)[:20]: None}
+        if (sweep := configuration.sweeps.get(name)) is not None:
+            if sweep.is_certified:
+                folder = request.solver_names(sweep)[0].partition(":")[0]
+                return {f"{folder}/{self.products[name].stem.partition('.')[2]}": None}
+            blocks = request.divide(request.points_of(sweep), configuration.points_per_job)
+            runs = request.runs_of(configuration, name)
+            blocks += [Batch(runs)] if runs else []
+        elif name in configuration.studies:
+            pieces = registry.pieces(name, configuration.studies[name])
+            blocks = [Batch(piece) for piece in pieces]
+        elif configuration.figures[name].kind == "explorer":
+            maps = explorer.maps_of(configuration, configuration.figures[name])
+            periods = [explorer.period_requests(configuration, *maps, name=one) for one in maps]
+            size = explorer.PERIODS_PER_JOB
+            blocks = [Batch(part) for some in periods for part in request.cut(some, size)]
         else:
-            slow, fast = registry.pieces(group, configuration)
-            blocks = [Batch(piece) for piece in (*slow, *fast)]
-        return {batch.name: batch for batch in blocks}
-
-    def batch_files(self, *groups: str) -> list[str]:
-        """Return the paths of all batches in these groups, in the order of the groups."""
-        return [
-            f"batches/{group}/{name}.jsonl" for group in groups for name in self.batches_in(group)
-        ]
-
-    # Products
-
-    def _products(self) -> Iterator[tuple[str, Product]]:
-        configuration = self.configuration
-        for name in self.datasets:
-            files, groups = [f"{name}.nc", f"summaries/{name}.html"], [name]
-            if name in configuration.certified:
-                yield name, Product(files, CERTIFIED_CODE, (), groups)
-            elif name in self.studies:
-                settings = registry.settings(self.studies[name], configuration)
-                yield name, Product(files, STUDY_CODE, (), [self.studies[name]], settings)
-            else:  # single runs come after points
-                groups += [f"{name}_histories"] * (name in configuration.sweeps)
-                yield name, Product(files, DATASET_CODE, (), groups, configuration.of_sweep(name))
-        for name, datasets in self.figures.items():
-            files = [f"figures/{name}.{form}" for form in ("png", "pdf")]
-            yield f"figures/{name}", Product(files, drawing.modules_of(name), datasets)
-        periods = [f"{name}_periods" for name in explorer.maps_of(configuration)]
-        for page in explorer.PAGES:
-            datasets = tuple(explorer.datasets_of(configuration, page))
-            name = page.removesuffix(".html")
-            yield f"pages/{name}", Product([page], PAGE_CODE, datasets, periods)
-
-    @property
-    def datasets(self) -> list[str]:
-        """Names of all datasets."""
-        return [*self.configuration.grids, *self.configuration.certified, *self.studies]
-
-    @property
-    def targets(self) -> list[str]:
-        """Names of all targets: the keys of TARGETS, all figures, and fig1 to fig6."""
-        names = (*figure_targets.TARGETS, *drawing.FIGURES, *self.figures, *drawing.SHORT_NAMES)
-        return list(dict.fromkeys(names))
-
-    def products_of(self, target: str) -> list[str]:
-        """Return the products of a target.  Raises ConfigError if the configuration has no data for
-        it."""
-        configuration = self.configuration
-        datasets = {
-            "all": [*configuration.sweeps],
-            "extended": [*configuration.extended],
-            "drives": [*configuration.drives],
-            "certified": [*configuration.certified],
-        } | {study: [dataset] for dataset, study in self.studies.items()}
-        if target in datasets:
-            inputs, paper = set(datasets[target]), set(configuration.sweeps)
-            figures = [
-                f"figures/{figure}"
-                for figure, names in self.figures.items()
-                if (set(names) - paper or set(names)) <= inputs  # maps of the paper may be added
-            ]
-            return [*datasets[target], *figures]
-        page = f"{target}.html"
-        if page in explorer.PAGES:
-            if problem := explorer.refusal(configuration, page):
-                raise ConfigError(problem)
-            return [f"pages/{target}"]
-        figure = drawing.SHORT_NAMES.get(target, target)
-        if figure not in self.figures:
-            raise ConfigError(figure_targets.why_no_figure(configuration, figure))
-        return [f"figures/{figure}"]
-
-    # Fingerprints of the inputs of products
-
-    def _made_of(self, product: str) -> str:
-        """Fingerprint of a product's code, settings and points.  It does not depend on how points
-        are divided into batches."""
-        _, modules, datasets, groups, settings = self.products[product]
-        inputs = [self.made_of(dataset) for dataset in datasets]
-        grids = self.configuration.grids
-        points = [
-            batches.points_of(grids[group]).name if group in grids else self.batch_files(group)
-            for group in groups
-        ]
-        return fingerprint(product, source_digest.of_modules(*modules), settings, inputs, points)
+            blocks = []
+        return {f"{block.folder}/{block.name}": block for block in blocks}
 
 
-@contextmanager
-def product_job(
-    job: Any, product: str, shown: int = logging.WARNING
-) -> Iterator[tuple[Plan, logging.Logger]]:
-    """Context manager for a job that makes a product.  It yields the plan and a logger.
+def script_of_products() -> Path | None:
+    """Path of the script that makes products: in a source tree, or in the folder `bundle` of an
+    installed package."""
+    package = source_digest.PACKAGE
+    paths = [top / "workflow/scripts/make.py" for top in (package / "bundle", package.parents[1])]
+    return next(filter(Path.is_file, paths), None)
 
-    It first renames damaged files of the product, and finally writes the stamp.  Raises
-    SourcesEdited if the product's fingerprint has changed since the job was planned.
 
-    job: the script's variable `snakemake`; its last output is the stamp.  shown: lowest level of
-    messages on standard error.
+class Results:
+    """Folder of results of a plan.
+
+    A file that is damaged, or in which points have failed, is not replaced: the new file gets
+    another name with a number, such as data/bore.0123456789abcdef-1.nc.
+
+    Attributes
+    ----------
+    stems : dict of str to str
+        Name of the files of each product without ending, by the name of the product.
+    missing : dict of str to list of str
+        Paths of the inputs of each product that the folder lacks, by the name of the product:
+        datasets first, then batches.
     """
-    outputs, made_of = job.output[:-1], job.params.made_of
-    with job_log(job.log[0], shown) as log:
-        plan = Plan(load.from_mapping(job.config, ask_solver=False))
-        if made_of != plan.made_of(product):
-            raise SourcesEdited("the code that makes it")
-        stamps.set_aside(job.output.stamp, outputs)
-        yield plan, log
-        stamps.write(job.output.stamp, made_of, outputs)
+
+    def __init__(self, plan: Plan, folder: str | Path, here: bool = True, whole: bool = False):
+        """here: False for a folder in remote storage, which counts as empty.  whole: True to list
+        the inputs of all products."""
+        self.plan, self.folder, self.here = plan, Path(folder), here
+        self._listed = cache(self._list)
+        self.stems: dict[str, str] = {}
+        self.missing: dict[str, list[str]] = {}
+        self._is_there: dict[str, bool] = {}
+        for name, product in plan.products.items():
+            endings = tuple(product.links.values())
+            self.stems[name], is_there = self._chosen("data", product.stem, endings)
+            is_there &= all(self._is_there[dataset] for dataset in product.inputs)
+            self._is_there[name] = is_there
+        for name, product in plan.products.items():
+            if whole or not self._is_there[name]:
+                datasets = [f"data/{self.stems[dataset]}.nc" for dataset in product.inputs]
+                self.missing[name] = datasets + self.batch_files(name)
+
+    def files(self, name: str) -> list[str]:
+        """Paths of the files of a product."""
+        return [f"data/{self.stems[name]}{end}" for end in self.plan.products[name].links.values()]
+
+    def batch_files(self, name: str) -> list[str]:
+        """Paths of the batch files of a product."""
+        paths = []
+        for path in self.plan.batches(name):
+            folder, _, stem = f"batches/{path}".rpartition("/")
+            paths.append(f"{folder}/{self._chosen(folder, stem, ('.jsonl',))[0]}.jsonl")
+        return paths
+
+    def link(self, names: Iterable[str] | None = None) -> None:
+        """Let the plain names of products refer to their files, if these exist."""
+        for name in self.plan.products if names is None else names:
+            for plain, ending in self.plan.products[name].links.items():
+                file = self.folder / "data" / f"{self.stems[name]}{ending}"
+                if file.exists():
+                    content.link(file, self.folder / plain)
+
+    def stems_of(self, kind: str) -> list[str]:
+        """Names without ending of the missing files of all datasets, figures or explorer pages.
+
+        kind: "dataset", "figure" or "explorer".
+        """
+        figures = self.plan.configuration.figures
+        kinds = dict.fromkeys(figures, "figure") | {
+            name: "explorer" for name, figure in figures.items() if figure.kind == "explorer"
+        }
+        return [self.stems[n] for n in self.missing if kinds.get(n, "dataset") == kind]
+
+    def batches(self, certified: bool) -> dict[str, Batch | None]:
+        """Batches of all missing products that the folder lacks, by the name of their file without
+        ending; either those of certified maps, or all others."""
+        found = {}
+        for name in self.missing:
+            paths = self.batch_files(name)
+            for path, batch in zip(paths, self.plan.batches(name).values(), strict=True):
+                if (batch is None) == certified and not (self.folder / path).exists():
+                    found[path.rpartition("/")[2].removesuffix(".jsonl")] = batch
+        return found
+
+    def order_of_batch(self, folder: str, name: str) -> str:
+        """JSON text of a batch for its job, or of the name of a certified map."""
+        for product in self.missing:
+            batch = self.plan.batches(product).get(f"{folder}/{name.partition('-')[0]}", "")
+            if batch is None:
+                return canonical_json(product)
+            if isinstance(batch, Batch):
+                return canonical_json(batch._asdict())
+        raise SourcesEdited("the solver")
+
+    def orders(self, *names: str) -> str:
+        """JSON text of the products that a job makes, see products.make_products."""
+        return canonical_json([[name, self.stems[name], self.missing[name]] for name in names])
+
+    def date_links(self, again: Path) -> None:
+        """Make the links of missing products older than the file `again`, which gets new content.
+
+        Snakemake runs the job of an existing link only if an input is newer, and differs from the
+        input of the last run.
+        """
+        names = (plain for name in self.missing for plain in self.plan.products[name].links)
+        old = [link for plain in names if os.path.lexists(link := self.folder / plain)]
+        for link in old:
+            if link.exists():
+                os.utime(link, (1, 1), follow_symlinks=False)
+            else:
+                link.unlink()  # its file is gone, for which Snakemake fails
+        if old or not again.exists():
+            write_atomically(again, os.urandom(16).hex().encode())
+
+    def plain(self) -> dict[str, tuple[str, str]]:
+        """Names of products and paths of their files, by the plain name of the file."""
+        return {
+            plain: (name, f"data/{self.stems[name]}{ending}")
+            for name, product in self.plan.products.items()
+            for plain, ending in product.links.items()
+        }
+
+    def _chosen(self, folder: str, stem: str, endings: tuple[str, ...]) -> tuple[str, bool]:
+        """Return the name of files that are whole, or a name that is free; and whether they are
+        whole."""
+        others = self._listed(folder)
+        number = others.get(stem, {})
+        for variant in sorted(number):
+            if content.GAPS not in number[variant] and number[variant].issuperset(endings):
+                paths = [self.folder / folder / f"{variant}{ending}" for ending in endings]
+                if all(map(content.is_whole, paths)):
+                    return variant, True
+        names = (f"{stem}-{i}" if i else stem for i in count())
+        return next(name for name in names if name not in number), False
+
+    def _list(self, folder: str) -> dict[str, dict[str, set[str]]]:
+        """Endings of the files in a folder, by their name, by this name without number."""
+        listed: dict[str, dict[str, set[str]]] = {}
+        path = self.folder / folder
+        for file in os.listdir(path) if self.here and path.is_dir() else ():
+            name, dot, ending = file.rpartition(".")
+            numbers = listed.setdefault(name.partition("-")[0], {})
+            numbers.setdefault(name, set()).add(f"{dot}{ending}")
+        return listed

@@ -19,32 +19,29 @@ from contextlib import redirect_stderr, redirect_stdout
 from importlib import import_module
 from pathlib import Path
 
-from microslip.app.figure_targets import TARGETS
 from microslip.app.terminal import complain
 from microslip.config import load
-from microslip.config.records import CERTIFIED
+from microslip.config.settings import RULES, Configuration
 from microslip.foundation import extras, files
 from microslip.foundation.errors import CacheError, InputError
 from microslip.foundation.spec import near_miss
-from microslip.report.figures import drawing
 
 PACKAGE = Path(__file__).parents[1]
 SETS_CORES = re.compile(r"-[cje]|--(cores|jobs|executor|profile|workflow-profile)(=|$)")
 """Pattern of arguments that set the number of parallel jobs, directly or by a profile."""
 KEY_AND_VALUE = re.compile(r"[A-Za-z_][\w-]*\w=")
 
-_LISTED = "\n".join(f"    {name:<14}{text}" for name, text in TARGETS.items())
-HELP = f"""\
-usage: microslip sweep [TARGET ...] [--configfile FILE] [options of Snakemake]
+HELP = """\
+usage: microslip sweep [CONFIGURATION | TARGET ...] [--configfile FILE] [options of Snakemake]
 
 Run the workflow in the current folder: maps of friction over velocity and amplitude, as datasets in
 results/ and figures in results/figures/. Existing results are not computed again. The sweeps of
 the paper are transverse, bore (spin: rotation about the contact normal) and continuous_bore.
 
-  TARGET             name of a target, or a file such as results/bore.nc:
-{_LISTED}
-    fig1 ... fig6   one figure of the paper with its datasets; other figures by their names, such as
-                    stability_atlas
+  CONFIGURATION      name of a configuration in the folder config, here or in the package:
+                     {configurations}
+  TARGET             name of a dataset or a figure of the configuration, such as bore, or a file,
+                     such as results/bore.nc; default: all datasets and figures
   --configfile FILE  the configuration; default: config/config.yaml if it exists, else the sweeps of
                      the paper. Put targets before it: all names after it are files
   --cores N          number of jobs at the same time, at least 1; default: all cores
@@ -56,6 +53,7 @@ All other options are those of Snakemake, see snakemake --help. The exit code is
 and 2 for bad input. Default options are in profiles/default, here or in the package.
 
   microslip sweep --cores 2
+  microslip sweep extended --cores 2
   microslip sweep --cores 2 --configfile mine.yaml --config points_per_job=10
 """
 
@@ -66,7 +64,7 @@ def main(arguments: list[str]) -> int:
     Returns exit code 2 for bad input.  Otherwise Snakemake raises SystemExit with its exit code.
     """
     if {"-h", "--help"} & set(arguments):
-        print(HELP, end="")
+        print(HELP.format(configurations=", ".join(configurations())), end="")
         return 0
     with redirect_stdout(sys.__stdout__):  # also for the jobs of Snakemake
         return _run(arguments)
@@ -78,7 +76,7 @@ def _run(arguments: list[str]) -> int:
         return 2
     try:
         os.getcwd()
-        words = ["--snakefile", str(snakefile()), *arguments]
+        words = ["--snakefile", str(snakefile()), *_named(arguments)]
         if "SNAKEMAKE_PROFILE" not in os.environ and not any(map(SETS_CORES.match, arguments)):
             words = ["--cores", "all", *words]
         _check(words)
@@ -95,6 +93,20 @@ def _run(arguments: list[str]) -> int:
         complain("microslip sweep: interrupted")
         return 130
     return 0
+
+
+def configurations() -> dict[str, Path]:
+    """Return the configurations in the folder config of the package and of the current folder."""
+    folders = (snakefile().parent / "config", Path("config"))
+    return {file.stem: file for folder in folders for file in sorted(folder.glob("*.yaml"))}
+
+
+def _named(arguments: list[str]) -> list[str]:
+    """Replace the name of a configuration in front by the option --configfile."""
+    name = next(iter(arguments), "")
+    if name not in configurations() or "--configfile" in arguments:
+        return arguments
+    return [*arguments[1:], "--configfile", os.path.relpath(configurations()[name])]
 
 
 def snakefile() -> Path:
@@ -141,14 +153,6 @@ def _check(arguments: list[str]) -> None:
         count = getattr(options, name)
         if isinstance(count, int) and count < 1:
             raise InputError(f"--{name}", count, "allowed is a whole number of at least 1, or all")
-    known = [*TARGETS, *drawing.SHORT_NAMES, *drawing.FIGURES]
-    of_configuration = drawing.figure_of(""), CERTIFIED  # prefixes of further names
-    for target in options.targets:
-        is_file = bool({".", "/"} & set(target))
-        if not (is_file or target in known or target.startswith(of_configuration)):
-            hint = near_miss(target, known)
-            allowed = f"allowed is one of {', '.join(TARGETS)}, a figure such as fig2, or a file"
-            raise InputError("TARGET", target, hint + allowed)
     for entry in options.config or ():
         if not KEY_AND_VALUE.match(entry):
             raise InputError("--config", entry, "allowed is KEY=VALUE")
@@ -156,11 +160,17 @@ def _check(arguments: list[str]) -> None:
         raise InputError(
             "--configfile", "twice", "Snakemake would ignore the first; allowed is --configfile A B"
         )
-    _check_configuration(options)
+    configuration = _configuration(options)
+    known = [*RULES, *configuration.datasets, *configuration.figures]
+    for target in options.targets:
+        if not ({".", "/"} & set(target) or target in known):
+            names = ", ".join([*known[: len(RULES[:1])], *known[len(RULES) :]])
+            hint = near_miss(target, [*known, *configurations()])
+            raise InputError("TARGET", target, f"{hint}allowed is one of {names}, or a file")
 
 
-def _check_configuration(options: argparse.Namespace) -> None:
-    """Raise ConfigError for a configuration that the Snakefile would refuse."""
+def _configuration(options: argparse.Namespace) -> Configuration:
+    """Return the configuration.  Raises ConfigError if the Snakefile would refuse it."""
     from snakemake.cli import parse_config
     from snakemake.utils import update_config
 
@@ -182,11 +192,13 @@ def _check_configuration(options: argparse.Namespace) -> None:
     source = ", ".join([*paths, *(["--config"] if options.config else [])])
     folders = [os.path.dirname(os.path.abspath(file)) for file in paths]
     configuration = load.from_mapping(mapping, source=source, folders=folders)
+    load.refuse_unsolvable(configuration, source=source)
     results = Path(options.directory or ".", configuration.results)
     try:
         files.refuse_unusable([results], [])
     except CacheError as error:
         raise load.ConfigError(f"{source}: results: {error}") from None
+    return configuration
 
 
 def _parsed(arguments: list[str]) -> argparse.Namespace | None:

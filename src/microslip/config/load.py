@@ -1,56 +1,105 @@
-"""Read a YAML file and convert it to the checked records of a configuration.
+"""Read a YAML file and convert it to a checked configuration."""
 
-`settings` contains the types, ranges and defaults of all keys.  This module checks combinations of
-keys and expands axes.
-"""
-
-import codecs
-import io
-import math
 import os
+import re
 from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
+from itertools import product
 from pathlib import Path
-from typing import Any
+from typing import Any, get_args
 
 import yaml
+from pydantic import BaseModel, ValidationError
+from pydantic_core import ErrorDetails
 
-from microslip.config import certified, extended, schema
-from microslip.config.axes import DRIVES, MOST_POINTS, refuse_crowd
-from microslip.config.records import (
-    CERTIFIED,
-    MODELS_OF_MOTION,
-    MOTION_OF_SWEEP,
-    RESERVED,
-    ConfigError,
-    Configuration,
-    Refusal,
-    Sweep,
-)
-from microslip.config.settings import Root, SteadySweep
-from microslip.config.strict_yaml import StrictLoader
+from microslip.config.settings import DRIVES, Configuration, Refusal, Sweep, short_json
 from microslip.foundation import named_files
-from microslip.foundation.canonical import number
 from microslip.foundation.errors import InputError
-from microslip.foundation.named_files import NamedFile
+from microslip.foundation.spec import near_miss
 
 MOST_BYTES = 1_000_000
 """Largest size of a configuration in bytes.  PyYAML reads about 100 kB per second."""
-MOST_PANELS, MOST_LINES = 12, 8
-"""Largest number of sweeps in a figure of maps, and in a figure of lines.  A sweep counts once for
-each Poisson's ratio."""
+MOST_VALUES = 100_000
+"""Largest number of keys and values in a file after expansion of aliases."""
+ROLES = ("motion", "pressure")
+"""Keys of a sweep whose values can name files."""
 
 
-# Files
+class ConfigError(ValueError):
+    """Error for an invalid configuration.  The message is one line with the file, the key, the
+    value and the allowed values."""
+
+    def __init__(self, message: object):
+        super().__init__(" ".join(str(message).split()))
 
 
-def load(path: str | os.PathLike) -> Configuration:
-    """Read and check a YAML file; return a Configuration or raise ConfigError.
+# YAML
 
-    Motion and pressure files are searched for in the folder of the YAML file, then in the working
-    directory.
+
+class Loader(yaml.SafeLoader):
+    """Loader for the numbers of YAML 1.2, in which 1e-3 is a number and 010 is 10.
+
+    It refuses keys that occur twice, and files with too many values.
     """
-    return from_mapping(read_yaml(path), source=str(path), folders=[Path(path).parent])
+
+    yaml_implicit_resolvers = {
+        first: [(tag, rule) for tag, rule in rules if tag.rpartition(":")[2] not in REPLACED]
+        for REPLACED in [("int", "float", "timestamp")]
+        for first, rules in yaml.SafeLoader.yaml_implicit_resolvers.items()
+    }
+
+    def get_single_node(self) -> yaml.Node | None:
+        """Parse the document.  Its size is checked before any value is constructed."""
+        node = super().get_single_node()
+        if node is not None and _size(node, {}) > MOST_VALUES:
+            raise yaml.MarkedYAMLError(None, None, f"more than {MOST_VALUES} values with aliases")
+        return node
+
+    def flatten_mapping(self, node: yaml.MappingNode) -> None:
+        """Refuse a key that occurs twice, before merged mappings add their keys."""
+        keys = [key.value for key, _ in node.value if key.tag != "tag:yaml.org,2002:merge"]
+        twice = next((key for i, key in enumerate(keys) if key in keys[:i]), None)
+        if twice is not None and not getattr(node, "merged", False):
+            mark = [key.start_mark for key, _ in node.value if key.value == twice][1]
+            raise yaml.MarkedYAMLError(None, None, f"the key {twice} occurs twice", mark)
+        node.merged = True
+        super().flatten_mapping(node)
+
+    def construct_number(self, node: yaml.ScalarNode) -> int | float:
+        """Construct a number in base 10."""
+        text = node.value.lower()
+        if re.fullmatch("[-+]?[0-9]+", text):
+            return int(text)
+        value = float(re.sub(r"\.(inf|nan)$", r"\1", text))
+        if value == 0.0 and re.search("[1-9]", text.partition("e")[0]):
+            raise ValueError(f"{node.value} is nearer 0 than a float; write 0")
+        return value
+
+    def construct_object(self, node: yaml.Node, deep: bool = False) -> object:
+        """Construct a value.  An error of a constructor gets a line number."""
+        try:
+            return super().construct_object(node, deep)
+        except (ValueError, TypeError, KeyError) as error:
+            kind = node.tag.rpartition(":")[2]
+            raise yaml.MarkedYAMLError(None, None, f"{kind}: {error}", node.start_mark) from None
+
+
+NUMBER = r"[-+]?(\.[0-9]+|[0-9]+(\.[0-9]*)?)([eE][-+]?[0-9]+)?|[-+]?\.(inf|Inf|INF)|\.(nan|NaN)"
+Loader.add_implicit_resolver("tag:number", re.compile(f"^(?:{NUMBER})$"), list("-+.0123456789"))
+for _tag in ("tag:number", "tag:yaml.org,2002:int", "tag:yaml.org,2002:float"):
+    Loader.add_constructor(_tag, Loader.construct_number)
+
+
+def _size(node: yaml.Node, sizes: dict[int, int]) -> int:
+    """Number of nodes in a tree after expansion of aliases.  sizes: sizes of nodes by id."""
+    if sizes.get(id(node)) == 0:
+        raise yaml.MarkedYAMLError(None, None, "a value contains itself", node.start_mark)
+    if id(node) not in sizes:
+        sizes[id(node)] = 0  # until the children are counted
+        children = node.value if isinstance(node.value, list) else []
+        flat = [child for one in children for child in (one if isinstance(one, tuple) else [one])]
+        sizes[id(node)] = 1 + sum(_size(child, sizes) for child in flat)
+    return sizes[id(node)]
 
 
 def read_yaml(path: str | os.PathLike) -> dict:
@@ -59,129 +108,193 @@ def read_yaml(path: str | os.PathLike) -> dict:
     Raises ConfigError if the file cannot be read, if the YAML is invalid, or if a key occurs
     twice.  The message is one line with the file and the line number.
     """
-    if "\0" in str(path):
-        raise ConfigError(f"{str(path)!r}: cannot be read: not the name of a file")
     try:
         content = named_files.content_of(path, MOST_BYTES)
+        text = content.decode("utf-8-sig")
+        mapping = yaml.load(text, Loader)
     except OSError as error:
         raise ConfigError(f"{path}: cannot be read: {error.strerror}") from None
-    except ValueError as error:
-        raise ConfigError(f"{path}: {error}") from None
-    try:
-        mapping = yaml.load(_as_text(content, path), StrictLoader)
-    except RecursionError:
-        raise ConfigError(f"{path}: not valid YAML: too many levels") from None
-    except yaml.reader.ReaderError as error:
-        line = content.decode(errors="replace")[: error.position].count("\n") + 1
+    except UnicodeDecodeError as error:
+        line = content.count(b"\n", 0, error.start) + 1
+        byte = content[error.start]
         raise ConfigError(
-            f"{path}: not valid YAML: line {line}: the character {chr(error.character)!a} is not "
-            "allowed; allowed: text"
+            f"{path}: line {line}: not text: byte 0x{byte:02x}; allowed: UTF-8"
         ) from None
     except yaml.YAMLError as error:
+        position = getattr(error, "position", None)  # of a character that is not allowed
+        line_ = "" if position is None else f"line {text[:position].count(chr(10)) + 1}: "
         hint = "; allowed: spaces, no tabs" if "'\\t'" in str(error) else ""
-        raise ConfigError(f"{path}: not valid YAML: {error}{hint}") from None
-    if mapping is None:
-        raise ConfigError(f"{path}: is empty; allowed: keys and values, sweeps at least")
+        raise ConfigError(f"{path}: not valid YAML: {line_}{error}{hint}") from None
+    except RecursionError:
+        raise ConfigError(f"{path}: not valid YAML: too many levels") from None
+    except ValueError as error:  # the file is too large, or its name is no name
+        raise ConfigError(f"{path!s}: {error}") from None
     if not isinstance(mapping, dict):
-        message = f"{schema.short_json(mapping)} is not a mapping; allowed: keys and values"
-        raise ConfigError(f"{path}: {message}")
+        found = "is empty" if mapping is None else f"{short_json(mapping)} is not a mapping"
+        raise ConfigError(f"{path}: {found}; allowed: keys and values, sweeps at least")
     return mapping
 
 
-def _as_text(content: bytes, path: str | os.PathLike) -> io.StringIO:
-    """Decode a file to a text stream; raises ConfigError if it is not UTF-8."""
-    try:
-        text = io.StringIO(content.decode("utf-8-sig"))
-    except UnicodeDecodeError as error:
-        line = content.count(b"\n", 0, error.start) + 1
-        utf_16 = content[:2] in (codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)
-        hint = ", and this seems to be UTF-16" if utf_16 else ""
-        byte = content[error.start]
-        raise ConfigError(
-            f"{path}: line {line}: not text: byte 0x{byte:02x}; allowed: UTF-8{hint}"
-        ) from None
-    text.name = str(path)  # for messages of the parser
-    return text
+def reread(config: dict, paths: Iterable[str | os.PathLike]) -> dict:
+    """Return a copy of a configuration in which values from files are those of `read_yaml`.
+
+    Snakemake reads files as YAML 1.1, in which 1e-3 is a text and 010 is 8.
+
+    config: configuration as Snakemake has merged it from these files and from --config.
+    """
+    old: dict = {}
+    new: dict = {}
+    for path in paths:
+        with open(path, encoding="utf-8-sig") as file:
+            _update(old, yaml.safe_load(file))
+        _update(new, read_yaml(path))
+    return _replaced(config, old, new)
 
 
-# Settings
+def _update(mapping: dict, other: dict) -> None:
+    for key, value in other.items():
+        if isinstance(value, dict) and isinstance(mapping.get(key), dict):
+            _update(mapping[key], value)
+        else:
+            mapping[key] = value
 
 
-def with_defaults_and_paths(
+def _replaced(value: Any, old: Any, new: Any) -> Any:
+    if value == old:
+        return new
+    if not (isinstance(value, dict) and isinstance(old, dict) and isinstance(new, dict)):
+        return value
+    return {
+        k: _replaced(v, old[k], new[k]) if k in old and k in new else v for k, v in value.items()
+    }
+
+
+# Configurations
+
+
+def load(path: str | os.PathLike) -> Configuration:
+    """Read and check a YAML file; return a Configuration or raise ConfigError.
+
+    Motion and pressure files are searched for in the folder of the YAML file, then in the working
+    directory.
+    """
+    source = str(path)
+    configuration = from_mapping(read_yaml(path), source=source, folders=[Path(path).parent])
+    refuse_unsolvable(configuration, source=source)
+    return configuration
+
+
+def from_mapping(
     mapping: dict, source: str = "configuration", folders: Iterable = ()
-) -> dict:
-    """Fill in the defaults and the file paths of a parsed configuration.
-
-    A job can use the result in any working directory.
+) -> Configuration:
+    """Check a parsed configuration.
 
     Parameters
     ----------
-    mapping, source, folders
-        As for `from_mapping`.
+    mapping : dict
+        Parsed YAML.
+    source : str
+        Name of the configuration in messages, usually the file.
+    folders : iterable of paths
+        Folders in which motion and pressure files are searched for, before the working directory.
+
+    Returns
+    -------
+    Configuration
+        Files of motions and pressures are named by their content.  The solver has not been asked,
+        see `refuse_unsolvable`.
 
     Raises
     ------
     ConfigError
+        If the configuration is invalid.
     """
-    filled = _settings(mapping, source).model_dump(warnings=False)
-    for key, entries in entries_with_files(filled).items():
-        for name, entry in entries.items():
-            with _errors_at(f"{source}: {key}.{name}"):
-                for role in filter(entry.__contains__, ROLES):
-                    if file := _file_in(entry[role], role, folders, strict=True):
-                        entry[role] = file.placed
-    return filled
-
-
-ROLES = ("motion", "pressure")
-"""Keys whose values can name files."""
-
-
-def entries_with_files(filled: dict) -> dict[str, dict[str, dict]]:
-    """Return all entries that can name files, as key -> name -> entry.
-
-    filled: configuration with all defaults.
-    """
-    return {key: filled[key] for key in ("extended", "drives")}
-
-
-def remember_files(filled: dict) -> None:
-    """Store the paths of all files named in a configuration from `with_defaults_and_paths`.
-
-    A request identifies a file by its content.
-    """
-    entries = [one for place in entries_with_files(filled).values() for one in place.values()]
-    named_files.remember(entry[role] for entry in entries for role in ROLES if role in entry)
-
-
-def _settings(mapping: dict, source: str) -> Root:
-    from pydantic import ValidationError
-
     try:
-        return Root.model_validate(mapping)
+        configuration = Configuration.model_validate(mapping)
     except ValidationError as error:
-        line = schema.error_line(error.errors(include_url=False))
-        raise ConfigError(f"{source}: {line}") from None
+        raise ConfigError(f"{source}: {_line(error.errors(include_url=False))}") from None
+    sweeps = dict(configuration.sweeps)
+    for name, sweep in sweeps.items():
+        with _errors_at(f"{source}: sweeps.{name}"):
+            files = {role: _file_in(getattr(sweep, role), role, folders) for role in ROLES}
+        names = {role: file.name for role, file in files.items() if file is not None}
+        if names:
+            sweeps[name] = sweep.model_copy(update=names)
+    return configuration.model_copy(update={"sweeps": sweeps})
 
 
-def _file_in(name: str, role: str, folders: Iterable, strict: bool) -> NamedFile | None:
-    """Return the file in the name of a motion or a pressure, with its path and digest.
+def with_paths(mapping: dict, folders: Iterable = ()) -> dict:
+    """Return a checked mapping in which the files of sweeps have absolute paths and digests.
 
-    Returns None for a name without a file.  For a missing file, raises InputError if `strict` is
-    True, and otherwise returns None.
+    A job can use the result in any working directory.
+    """
+    sweeps = {name: dict(sweep) for name, sweep in mapping.get("sweeps", {}).items()}
+    for sweep in sweeps.values():
+        for role in ROLES:
+            if (file := _file_in(sweep.get(role, ""), role, folders)) is not None:
+                sweep[role] = file.placed
+    return mapping | ({"sweeps": sweeps} if sweeps else {})
+
+
+def refuse_unsolvable(
+    configuration: Configuration,
+    names: Iterable[str] | None = None,
+    source: str = "configuration",
+) -> None:
+    """Raise ConfigError for a sweep that the solver refuses.
+
+    Motions, pressures, models and drives are checked at the ends of all axes.  The solver is
+    imported, which takes half a second.
+
+    names: names of the sweeps to check; the default is all sweeps.
+    """
+    for name in configuration.sweeps if names is None else names:
+        if name in configuration.sweeps:
+            with _errors_at(f"{source}: sweeps.{name}"):
+                _refuse_corners(configuration.sweeps[name])
+
+
+def _refuse_corners(sweep: Sweep) -> None:
+    from microslip.adaptive.checks import checked_driven_problem
+    from microslip.adaptive.choice import choose_model
+    from microslip.adaptive.under_force import refuse_drive
+    from microslip.motions.by_name import motion_named
+    from microslip.pressures.by_name import pressure_named
+
+    motion = motion_named(sweep.motion)
+    pressure_named(sweep.pressure)
+    if motion.periodic and not sweep.amplitude:
+        raise Refusal(f"missing; required for {motion.name}", "amplitude")
+    if sweep.amplitude and not motion.periodic:
+        message = f"{list(sweep.amplitude)} is not allowed; {motion.name} has no amplitude"
+        raise Refusal(message, "amplitude")
+    names = ("velocity", "amplitude", "poisson", *DRIVES)
+    ends = [dict.fromkeys((v[0], v[-1]) if (v := getattr(sweep, n)) else (None,)) for n in names]
+    for place in product(*ends):
+        at: dict[str, Any] = dict(zip(names, place, strict=True))
+        problem = checked_driven_problem(sweep.motion, pressure=sweep.pressure, **at)
+        moves = at["velocity"] != 0.0 or sweep.drives
+        model = choose_model(problem, sweep.model) if moves or sweep.model != "auto" else None
+        if sweep.drives:
+            assert model is not None
+            refuse_drive(problem, model)
+
+
+def _file_in(name: Any, role: str, folders: Iterable) -> named_files.NamedFile | None:
+    """Return the file in the name of a motion or a pressure, with its path and digest, or None.
+
+    Raises InputError if the file is missing.
     """
     if not named_files.speaks_of_file(name):
         return None
-    try:
-        file = named_files.parse(name, role)
-        if not (file.digest and file.path):
-            return named_files.read(name, role, folders)[0]
-        named_files.remember([name])  # an earlier call found the file
+    file = named_files.parse(name, role)
+    if file.digest and file.path:  # an earlier call found the file
+        named_files.remember([name])
         return file
-    except InputError:
-        if strict:
-            raise
-        return None
+    return named_files.read(name, role, folders)[0]
+
+
+# Messages
 
 
 @contextmanager
@@ -189,8 +302,6 @@ def _errors_at(where: str) -> Iterator[None]:
     """Context manager that converts errors to ConfigError.  The message begins with `where`."""
     try:
         yield
-    except ConfigError:
-        raise
     except Refusal as error:
         key = f".{error.key}" if error.key else ""
         raise ConfigError(f"{where}{key}: {error}") from None
@@ -201,138 +312,39 @@ def _errors_at(where: str) -> Iterator[None]:
         raise ConfigError(f"{where}: {error}") from None
 
 
-def from_mapping(
-    mapping: dict, source: str = "configuration", ask_solver: bool = True, folders: Iterable = ()
-) -> Configuration:
-    """Check a parsed configuration and return it as a Configuration.
+def _line(errors: list[ErrorDetails]) -> str:
+    """Message for one of the errors of pydantic, with the key, the value and the allowed values.
 
-    Parameters
-    ----------
-    mapping : dict
-        Parsed YAML.
-    source : str
-        Name of the configuration in messages, usually the file.
-    ask_solver : bool
-        True to check motions, pressures and drives with the solver, and to refuse missing files.
-        Importing the solver takes half a second.  The result does not depend on this argument.
-    folders : iterable of paths
-        Folders in which motion and pressure files are searched for, before the working directory.
-
-    Raises
-    ------
-    ConfigError
-        If the configuration is invalid.  The message is one line with the source, the key, the
-        value and the allowed values.
+    Unknown keys come first, since a mistyped key is also missing.
     """
-    settings = _settings(mapping, source)
-    entries: dict[str, SteadySweep] = {}
-    families: dict[str, dict[str, Sweep]] = {}
-    maps = {}
-    for family in ("sweeps", "extended", "drives"):
-        members = getattr(settings, family)
-        order = MOTION_OF_SWEEP if family == "sweeps" else members
-        families[family] = {}
-        for name in (name for name in order if name in members):
-            with _errors_at(f"{source}: {family}.{name}"):
-                if family != "sweeps":
-                    _refuse_taken(name, {*entries} | ({*members} - {name}))
-                sweep = _sweep(name, members[name], folders, ask_solver)
-                families[family][name] = sweep
-                if ask_solver and family != "sweeps":
-                    extended.refuse_unsolvable(sweep)
-                if (adaptive := getattr(members[name], "adaptive", None)) is not None:
-                    map_ = certified.map_of(sweep, adaptive)
-                    maps[map_.name] = map_
-        entries |= members
-    with _errors_at(f"{source}: extended"):
-        _refuse_mixtures(list(families["extended"].values()))
-    return Configuration(
-        results=settings.results,
-        **families,
-        points_per_job={
-            name: sweep.points_per_job or settings.points_per_job for name, sweep in entries.items()
-        },
-        histories={name: dict(run) for name, run in settings.histories},
-        accuracy=settings.accuracy,
-        stability=settings.stability,
-        claims=settings.claims,
-        certified=maps,
-    )
+    error = min(errors, key=lambda e: e["type"] != "extra_forbidden")
+    *outer, last = keys = [key for key in error["loc"] if key != "[key]"] or [""]
+    where = ".".join(map(str, keys))
+    refusal = error.get("ctx", {}).get("error")
+    if isinstance(refusal, Refusal):
+        dot = "." if where and refusal.key and not refusal.key.startswith((".", "[")) else ""
+        return f"{where}{dot}{refusal.key}: {refusal}"
+    if error["type"] == "extra_forbidden":
+        names = list(_model_at(outer).model_fields)
+        hint = near_miss(last, names)
+        return f"{where}: unknown key; {hint}allowed: {', '.join(names)}"
+    if error["type"] == "missing":
+        fields = _model_at(outer).model_fields.items()
+        return f"{where}: missing; required: {', '.join(n for n, f in fields if f.is_required())}"
+    is_model = error["type"].startswith("model")
+    names = list(_model_at(keys).model_fields) if is_model else []
+    allowed = f"a mapping with the keys {', '.join(names)}" if names else "a mapping of names"
+    return f"{where}: {short_json(error['input'])} is not allowed; allowed: {allowed}"
 
 
-# Sweeps
-
-
-def _sweep(name: str, entry: Any, folders: Iterable, strict: bool) -> Sweep:
-    """Convert the settings of a sweep to a Sweep.  Raises Refusal for combinations that are not
-    allowed."""
-    drives = tuple(
-        (drive, tuple(axis), isinstance(axis.raw, list | dict))
-        for drive in DRIVES
-        if (axis := getattr(entry, drive, None)) is not None
-    )
-    of_paper, amplitude = name in MOTION_OF_SWEEP, getattr(entry, "amplitude", None)
-    more: dict[str, Any] = {"motion": MOTION_OF_SWEEP.get(name)}
-    if not of_paper:
-        if not drives and not hasattr(entry, "group"):
-            raise Refusal("missing; required: force or stiffness")
-        names = {role: _by_content(getattr(entry, role), role, folders, strict) for role in ROLES}
-        more = {"title": entry.title or name, "drives": drives} | names
-        more |= {"group": entry.group} if hasattr(entry, "group") else {}
-    sweep = Sweep(
-        name=name,
-        velocity=tuple(entry.velocity or ()),
-        amplitude=None if amplitude is None else tuple(amplitude),
-        poisson=tuple(entry.poisson),
-        poisson_is_axis=isinstance(entry.poisson.raw, list),
-        model=entry.model,
-        tolerance=None if entry.tolerance is None else float(number(entry.tolerance)),
-        cells=entry.cells,
-        steps=entry.steps,
-        **more,
-    )
-    axes = [sweep.velocity or (None,), sweep.amplitude or (None,), sweep.poisson]
-    refuse_crowd(math.prod(map(len, axes + [values for _, values, _ in drives])), MOST_POINTS)
-    models = MODELS_OF_MOTION[sweep.motion] if of_paper else (sweep.model,)
-    if sweep.model not in models:
-        message = f'"{sweep.model}" does not apply to {sweep.motion}; allowed: {", ".join(models)}'
-        raise Refusal(message, "model")
-    if of_paper and sweep.model == "radial" and sweep.poisson[-1] > 0:
-        message = f"{sweep.poisson[-1]:g} does not go with model radial; allowed: 0"
-        raise Refusal(message, "poisson")
-    return sweep
-
-
-def _refuse_taken(name: str, others: Iterable[str]) -> None:
-    """Raise Refusal if a sweep has the name of another result."""
-    if name in RESERVED or name in others or name.removeprefix(CERTIFIED) in others:
-        raise Refusal("another result has this name; allowed: a new one")
-
-
-def _by_content(name: str, role: str, folders: Iterable, strict: bool) -> str:
-    """Name of a motion or a pressure.  The path of a file in the name is replaced by the file's
-    digest."""
-    file = _file_in(name, role, folders, strict)
-    return name if file is None else file.name
-
-
-def _refuse_mixtures(sweeps: list[Sweep]) -> None:
-    """Raise Refusal for a group of sweeps that does not fit in one figure."""
-    for group in dict.fromkeys(sweep.group for sweep in sweeps):
-        together = [sweep for sweep in sweeps if sweep.group == group]
-        first, last = together[0], together[-1]
-        for sweep in together:
-            if sweep.drawn_over != first.drawn_over:
-                raise Refusal(
-                    f"{group} is drawn over {first.drawn_over} for {first.name}, and this sweep "
-                    f"over {sweep.drawn_over}; allowed: another group",
-                    f"{sweep.name}.group",
-                )
-        most = MOST_PANELS if first.spans_a_map else MOST_LINES
-        drawn = sum(len(sweep.poisson) for sweep in together)
-        if drawn > most:
-            ratios = " at their Poisson's ratios" if drawn > len(together) else ""
-            raise Refusal(
-                f"{group} has {drawn} sweeps{ratios}; allowed: up to {most}, or another group",
-                f"{last.name}.group",
-            )
+def _model_at(keys: list) -> type[BaseModel]:
+    """Return the model of the settings at these keys, such as ["sweeps", "bore"]."""
+    model: type[BaseModel] = Configuration
+    rest = [key for key in keys if key != ""]
+    while rest:
+        annotation = model.model_fields[rest.pop(0)].annotation
+        if getattr(annotation, "__origin__", None) is dict:
+            rest = rest[1:]  # the name of an entry
+        models = [annotation, *get_args(annotation)]
+        model = next(m for m in models if isinstance(m, type) and issubclass(m, BaseModel))
+    return model

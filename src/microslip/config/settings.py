@@ -1,473 +1,553 @@
-"""Keys of a configuration: types, defaults, ranges and descriptions.
+"""Keys of a configuration: types, ranges, defaults and descriptions.
 
-Validation, the JSON schema and the tables in config/README.md follow from these models.  Axes are
-serialised as they were written, so that the output is a valid configuration.
+The tables in config/README.md are written from these models.  All quantities are dimensionless.
 """
 
 import json
+import math
+import re
 from collections.abc import Callable
-from pathlib import Path
-from typing import Annotated, Any, ClassVar, Literal, Self
+from dataclasses import dataclass
+from itertools import pairwise
+from typing import Annotated, Any, NamedTuple, Self
 
-from pydantic import (
-    AfterValidator,
-    BaseModel,
-    BeforeValidator,
-    ConfigDict,
-    Discriminator,
-    Field,
-    GetCoreSchemaHandler,
-    Tag,
-    model_serializer,
-    model_validator,
-    with_config,
-)
-from pydantic_core import core_schema
-from typing_extensions import TypedDict
+from pydantic import BaseModel, ConfigDict, GetCoreSchemaHandler, model_validator
+from pydantic_core import CoreSchema, core_schema
 
-from microslip.config.axes import MOST_MAP_POINTS, coordinates, refuse_crowd
-from microslip.config.records import LOOSEST_POINTS, STATIC_AMPLITUDES, Refusal
 from microslip.foundation.arguments import LARGEST
+from microslip.foundation.canonical import number
 from microslip.foundation.errors import InputError
+from microslip.foundation.spec import near_miss
 from microslip.solver import method_names
 
-CONFIG = ConfigDict(
-    extra="forbid",
-    strict=True,
-    frozen=True,
-    allow_inf_nan=False,
-    regex_engine="python-re",  # the patterns have lookaheads
-    use_attribute_docstrings=True,
-    validate_default=True,
-    defer_build=True,  # only the validator of Root is built
+MOST_POINTS = 1_000_000
+"""Largest number of points in a sweep.  With more points, planning takes more than a minute."""
+MOST_MAP_POINTS = 10_000
+"""Largest number of points in a map of a study.  Every model computes all of these points."""
+MOST_ON_PAGE = 20_000
+"""Largest number of points on a page of the explorer.  A point takes about 80 bytes."""
+LOOSEST_POINTS = 1e-2
+"""Largest tolerance of the points in a certified map.  The refinement would mistake larger errors
+for curvature, and halve cells without need."""
+SHARE_OF_POINTS = 0.3
+"""Default tolerance of the points in a certified map, divided by its error."""
+STATIC_AMPLITUDES = {"transverse": 1.0, "bore": 5.0}
+"""Largest amplitude with static friction in the maps of the paper, for each motion."""
+DRIVES = ("mass", "damping", "stiffness", "force")
+"""Parameters of a drive, in the order of dataset dimensions."""
+AXES = ("mass", "damping", "stiffness", "poisson", "amplitude", "velocity", "force")
+"""Axes of a sweep, in the order of dataset dimensions."""
+RULES = (
+    "all",
+    "make_products",
+    "solve_batch",
+    "solve_map",
+    "make_dataset",
+    "draw_figure",
+    "make_page",
+    "link_file",
 )
-PLAIN = CONFIG | ConfigDict(use_attribute_docstrings=False)
-"""Pydantic configuration of typed dicts. Extracting their docstrings would be slow."""
-STUDIES: dict[str, dict] = json.loads(
-    Path(__file__).with_name("study_defaults.json").read_text(encoding="utf-8")
-)
-POINTS = STUDIES["accuracy"]
-"""Default points of the accuracy study, by name."""
+"""Names of the rules of the workflow, which datasets and figures must not have."""
 
 
-class Settings(BaseModel):
-    """Settings by key. Unknown keys are refused."""
-
-    model_config = CONFIG
-
-    @model_serializer(mode="wrap")
-    def _without_unset(self, handler: Callable) -> dict[str, Any]:
-        """Omit optional keys that are not set, so that the output is a valid configuration."""
-        values = handler(self).items()
-        return {k: v for k, v in values if v is not None or k in self.model_fields_set}
+EXPONENT = re.compile(r"[-+]?[0-9]+(\.[0-9]*)?[eE][-+]?[0-9]+")
 
 
-# Values
-
-
-def _whole(value: Any) -> Any:
-    return int(value) if isinstance(value, float) and value.is_integer() else value
-
-
-def _kind(value: object) -> str | None:
-    """Tag of the union member for a value. Pydantic adds the tag to the location of an error."""
-    if isinstance(value, list | dict):
-        return "(list)" if isinstance(value, list) else "(spacing)"
-    return "(number)" if isinstance(value, int | float) else None
-
-
-def _no_default(rule: dict[str, Any]) -> None:
-    del rule["default"]
-
-
-def _optional() -> Any:
-    """A key that may be omitted, but must not be null."""
-    return Field(default=None, validate_default=False, json_schema_extra=_no_default)
-
-
-def _raw(value: Any) -> Any:
-    """A default value as written in YAML. Pydantic validates it."""
-    return Field(default=value)
-
-
-WHOLE = BeforeValidator(_whole)
-NonNegative = Annotated[float, Field(ge=0, le=LARGEST["velocity"])]
-Positive = Annotated[float, Field(gt=0, le=LARGEST["velocity"])]
-Ratio = Annotated[float, Field(ge=0, le=0.5)]
-Tolerance = Annotated[float, Field(ge=1e-6, le=0.1)]
-Count = Annotated[int, Field(ge=2, le=100_000), WHOLE]
-Cells = Annotated[int, Field(ge=4, le=LARGEST["cells"], multiple_of=2), WHOLE]
-Steps = Annotated[int, Field(ge=8, le=LARGEST["steps"], multiple_of=2), WHOLE]
-Points = Annotated[int, Field(ge=1, le=100_000), WHOLE]
-
-# At least one character other than spaces; no control characters, line breaks and surrogates.
-WRITABLE = r"^(?=.*\S)[^\x00-\x1f\x7f-\x9f\u2028\u2029\ud800-\udfff\ufffe\uffff]+$(?!\n)"
-# A folder without wildcards and without ~, $NAME and ://, which other programs expand.
-FOLDER = (
-    r"^(?!~)(?!.*://)(?!.*\$[A-Za-z_])(?=.*\S)"
-    r"[^{}*?\x00-\x1f\x7f\x85\u2028\u2029\ud800-\udfff]+$(?!\n)"
-)
-ONE_LINE = "text on one line, of up to 100 characters that can be written"
-Text = Annotated[str, Field(min_length=1)]
-Title = Annotated[str, Field(max_length=100, pattern=WRITABLE, title=ONE_LINE)]
-PointName = Annotated[
-    Title, BeforeValidator(lambda name: str(name) if type(name) in (int, float) else name)
-]
-PlainName = Annotated[
-    str,
-    Field(
-        max_length=100,
-        pattern=r"^[a-z][a-z0-9_]*$(?!\n)",
-        title="a name of up to 100 small letters, digits and _ that begins with a letter",
-    ),
-]
-Model = Literal["auto", "rigid", "slider", "dahl", "mdr", "radial", "polar", "cartesian"]
-
-
-# Axes
-
-
-@with_config(PLAIN)
-class Range(TypedDict):
-    """Coordinates from start to stop, including both, rounded to six significant digits."""
-
-    start: Annotated[NonNegative, Field(description="First; above 0 for equal ratios.")]
-    stop: Annotated[NonNegative, Field(description="Last, above start.")]
-    count: Annotated[Count, Field(description="Number of coordinates.")]
-
-
-@with_config(PLAIN | ConfigDict(title="linear or log spacing"))
-class Spacing(TypedDict, total=False):
-    """Evenly spaced coordinates."""
-
-    linear: Annotated[Range, Field(description="Equal distances.")]
-    log: Annotated[Range, Field(description="Equal ratios.")]
-
-
-def _one(spacing: Spacing) -> Spacing:
-    if len(spacing) != 1:
-        raise ValueError("allowed: linear or log")
-    return spacing
-
-
-_Number = Annotated[NonNegative, Tag("(number)")]
-_List = Annotated[list[NonNegative], Field(min_length=1), Tag("(list)")]
-_Spacing = Annotated[Spacing, AfterValidator(_one), Tag("(spacing)")]
-_Ratios = Annotated[list[Ratio], Field(min_length=1), Tag("(list)")]
-
-
-class Axis(tuple[float, ...]):
-    """Coordinates in ascending order.
+class Refusal(ValueError):
+    """A value that is not allowed.  The message is one line.
 
     Attributes
     ----------
-    raw : list, dict or number
-        The axis as in YAML.
+    key : str
+        Key of the value, relative to the settings that are checked.
     """
 
-    raw: Any
-    form: ClassVar[Any] = Annotated[_List | _Spacing, Discriminator(_kind)]
+    def __init__(self, message: str, key: str = ""):
+        super().__init__(message)
+        self.key = key
 
-    @classmethod
-    def of(cls, raw: Any) -> Self:
-        """Convert an axis from YAML; raises Refusal."""
-        axis = cls(coordinates(raw))
-        axis.raw = raw
-        return axis
 
-    @classmethod
+# Types of values
+
+
+@dataclass(frozen=True)
+class Allowed:
+    """Type of a value, as metadata of pydantic.
+
+    Attributes
+    ----------
+    text : str
+        The allowed values, for messages and for config/README.md.
+    convert : callable
+        Function that converts a value from YAML.  It raises ValueError or TypeError for a value
+        that is not allowed, or Refusal with a message of its own.
+    """
+
+    text: str
+    convert: Callable[[Any], Any]
+
+    def __call__(self, value: Any) -> Any:
+        try:
+            return self.convert(value)
+        except Refusal:
+            raise
+        except (ValueError, TypeError, OverflowError):
+            raise Refusal(f"{short_json(value)} is not allowed; allowed: {self.text}") from None
+
     def __get_pydantic_core_schema__(
-        cls, source: Any, handler: GetCoreSchemaHandler
-    ) -> core_schema.CoreSchema:
-        as_written = core_schema.plain_serializer_function_ser_schema(
-            lambda axis: axis and axis.raw
+        self, source: Any, handler: GetCoreSchemaHandler
+    ) -> CoreSchema:
+        return core_schema.no_info_plain_validator_function(self)
+
+
+def short_json(value: object) -> str:
+    """Format a value as JSON, truncated to 60 characters."""
+    try:
+        text = json.dumps(value, default=str, ensure_ascii=False)
+    except (ValueError, RecursionError):  # an integer of thousands of digits
+        text = f"a value of type {type(value).__name__}"
+    text = text.encode("utf-8", "backslashreplace").decode()  # escapes lone surrogates
+    return text if len(text) <= 60 else f"{text[:57]}..."
+
+
+def _number(low: float, high: float, step: int = 0, above: bool = False) -> Allowed:
+    """Number between two bounds.
+
+    step: 1 for whole numbers, 2 for even numbers.  above: True if `low` itself is not allowed.
+    """
+    word = ("a number", "a whole number", "an even number")[step]
+
+    def convert(value: Any) -> float:
+        if isinstance(value, str) and EXPONENT.fullmatch(value):
+            value = float(value)  # YAML 1.1 reads 1e-3 as text
+        if isinstance(value, str):
+            raise Refusal(f"{short_json(value)} is text; allowed: a number without quotes")
+        if isinstance(value, bool) or not isinstance(value, int | float):
+            raise TypeError
+        if not math.isfinite(value):
+            raise Refusal(f"{value} is not allowed; allowed: a finite number")
+        if not low <= value <= high or (above and value == low) or (step and value % step):
+            raise ValueError
+        return int(value) if step else float(number(value))
+
+    return Allowed(f"{word} {'>' if above else '>='} {low:g} and <= {high:g}", convert)
+
+
+def _or_null(kind: Allowed) -> Allowed:
+    return Allowed(f"{kind.text}, or null", lambda v: None if v is None else kind(v))
+
+
+def _text(text: str, fits: Callable[[str], bool]) -> Allowed:
+    def convert(value: Any) -> str:
+        if not (isinstance(value, str) and fits(value)):
+            raise ValueError
+        return value
+
+    return Allowed(text, convert)
+
+
+def _one_of(*names: str) -> Allowed:
+    allowed = ", ".join(names)
+
+    def convert(value: Any) -> str:
+        if value not in names:
+            hint = near_miss(value, names) if isinstance(value, str) else ""
+            raise Refusal(f"{short_json(value)} is not allowed; {hint}allowed: {allowed}")
+        return value
+
+    return Allowed(allowed, convert)
+
+
+def _list(kind: Allowed, text: str) -> Allowed:
+    """List of at least one value of a kind, without repetition; it is converted to a tuple."""
+
+    def convert(values: Any) -> tuple:
+        if not isinstance(values, list | tuple) or not values:
+            raise TypeError
+        result = tuple(_at(f"[{i}]", kind, value) for i, value in enumerate(values))
+        twice = next((value for i, value in enumerate(result) if value in result[:i]), None)
+        if twice is not None:
+            raise Refusal(f"{twice} occurs twice; allowed: different values")
+        return result
+
+    return Allowed(text, convert)
+
+
+def _at(key: str, kind: Allowed, value: Any) -> Any:
+    """Convert a value.  A Refusal gets a key."""
+    try:
+        return kind(value)
+    except Refusal as error:
+        raise Refusal(str(error), f"{key}{error.key}") from None
+
+
+def _axis(low: float = 0.0, high: float = LARGEST["velocity"], above: bool = False) -> Allowed:
+    """Axis: a number, or a list of numbers and ranges; it is converted to an ascending tuple."""
+    one = _number(low, high, above=above)
+
+    def convert(raw: Any) -> tuple[float, ...]:
+        items = list(raw) if isinstance(raw, list | tuple) else [raw]
+        if not items:
+            raise ValueError
+        values: set[float] = set()
+        for i, item in enumerate(items):
+            key = f"[{i}]" if isinstance(raw, list | tuple) else ""
+            if isinstance(item, dict):
+                values.update(_at(key, _RANGE, item))
+            elif item is None or isinstance(item, list):
+                raise TypeError
+            else:
+                values.add(_at(key, one, item))
+        for value in values:
+            one(value)  # values of a range
+        ordered = tuple(sorted(values))
+        for left, right in pairwise(ordered):
+            if right - left <= 1e-9 * right:
+                raise Refusal(f"{right:.12g} occurs twice; allowed: different values")
+        return ordered
+
+    return Allowed(f"{one.text}, or a list of numbers and ranges", convert)
+
+
+def _spaced(value: Any) -> list[float]:
+    """Values of a range such as {"log": [0.001, 10, 25]}, rounded to six significant digits."""
+    keys = list(value)
+    if len(keys) != 1 or keys[0] not in ("log", "linear"):
+        hint = near_miss(keys[0], ("log", "linear")) if len(keys) == 1 else ""
+        example = "{log: [first, last, count]} or {linear: [first, last, count]}"
+        raise Refusal(f"{short_json(value)} is not allowed; {hint}allowed: {example}")
+    ((spacing, ends),) = value.items()
+    if not isinstance(ends, list | tuple) or len(ends) != 3:
+        raise Refusal(
+            f"{short_json(ends)} is not allowed; allowed: [first, last, count]", f".{spacing}"
         )
-        form = handler.generate_schema(cls.form)
-        return core_schema.no_info_after_validator_function(cls.of, form, serialization=as_written)
+    kinds = (_number(0.0, LARGEST["velocity"], above=spacing == "log"),) * 2 + (_number(2, 1e5, 1),)
+    first, last, count = (
+        _at(f".{spacing}[{i}]", kind, end)
+        for i, (kind, end) in enumerate(zip(kinds, ends, strict=True))
+    )
+    if last <= first or math.isinf(last / first if spacing == "log" else 1.0):
+        raise Refusal(
+            f"{short_json(ends)} is not allowed; allowed: last above first", f".{spacing}"
+        )
+    shares = (i / (count - 1) for i in range(count))
+    if spacing == "linear":
+        values = (first + (last - first) * share for share in shares)
+    else:
+        values = (first * math.exp(math.log(last / first) * share) for share in shares)
+    # Coordinates with six digits are readable and do not depend on the machine.
+    return [float(f"{value:.6g}") for value in values]
 
 
-class NumberOrAxis(Axis):
-    """A number, or an axis, which becomes a dimension of the dataset."""
-
-    form = Annotated[_Number | _List | _Spacing, Discriminator(_kind)]
+_RANGE = Allowed("a range", _spaced)
 
 
-class Poisson(Axis):
-    """A Poisson's ratio, or a list of them."""
-
-    form = Annotated[Annotated[Ratio, Tag("(number)")] | _Ratios, Discriminator(_kind)]
+def _is_title(text: str) -> bool:
+    return text.isprintable() and text.strip() != "" and len(text) <= 100
 
 
-class Tolerances(Axis):
-    """A list of tolerances."""
-
-    form = Annotated[list[Tolerance], Field(min_length=1)]
-
-
-def _above_zero(axis: Axis) -> Axis:
-    if axis[0] <= 0:
-        raise Refusal(f"{axis[0]:g} is not allowed; allowed: numbers > 0")
-    return axis
+def _is_name(text: str) -> bool:
+    plain = text.isascii() and text == text.lower() and text.isidentifier()
+    return plain and not text.startswith("_") and len(text) <= 100
 
 
-def _two(axis: Axis) -> Axis:
-    if len(axis) < 2:
-        raise Refusal(f"{list(axis)} is not allowed; allowed: two numbers or more")
-    return axis
+def _is_folder(text: str) -> bool:
+    parts = ("://", "{", "}", "*", "?", "$")
+    is_plain = text.isprintable() and not any(part in text for part in parts)
+    return is_plain and text.strip() != "" and not text.startswith("~")
 
 
-PositiveAxis = Annotated[Axis, AfterValidator(_above_zero)]
-MapAxis = Annotated[PositiveAxis, AfterValidator(_two)]
+def _checked_method(text: Any) -> str:
+    try:
+        method_names.check(text)
+    except InputError as error:
+        raise Refusal(f"{error.value!r}: {error.allowed}") from None
+    return text
+
+
+_METHOD = Allowed("the name of a method, such as projected-gradient:step=0.5", _checked_method)
+_MODEL = _one_of("auto", "rigid", "slider", "dahl", "mdr", "radial", "polar", "cartesian")
+Positive = Annotated[float, _number(0, LARGEST["velocity"], above=True)]
+NonNegative = Annotated[float, _number(0, LARGEST["velocity"])]
+Ratio = Annotated[float, _number(0, 0.5)]
+Tolerance = Annotated[float, _number(1e-6, 0.1)]
+Cells = Annotated[int | None, _or_null(_number(4, LARGEST["cells"], 2))]
+Steps = Annotated[int | None, _or_null(_number(8, LARGEST["steps"], 2))]
+Text = Annotated[str, _text("text", bool)]
+Title = Annotated[str | None, _or_null(_text("text on one line, up to 100 characters", _is_title))]
+Name = Annotated[
+    str, _text("a name of small letters, digits and _ that begins with a letter", _is_name)
+]
+Axis = Annotated[tuple[float, ...], _axis()]
+PositiveAxis = Annotated[tuple[float, ...], _axis(above=True)]
+Methods = Annotated[
+    tuple[str, ...],
+    Allowed(
+        "a list of methods, or null for all",
+        lambda v: method_names.names() if v is None else _list(_METHOD, "a list of methods")(v),
+    ),
+]
+
+
+class Settings(BaseModel):
+    """Settings by key.  Unknown keys are refused."""
+
+    model_config = ConfigDict(extra="forbid", frozen=True, use_attribute_docstrings=True)
 
 
 # Sweeps
 
 
-class Adaptive(Settings):
-    """A certified map over the ranges of the sweep. `snakemake certified` makes
-    certified_NAME.nc."""
+class Sweep(Settings):
+    """A grid of points.  Every axis with more than one value is a dimension of the dataset.
 
-    error: Annotated[float, Field(ge=1e-5, le=0.1)]
-    """Largest absolute error of mu_macro anywhere in the ranges. Under a force, it is the largest
-    error of the velocity v, divided by sqrt(1 + v^2)."""
-    tolerance: Annotated[float, Field(ge=1e-6, le=LOOSEST_POINTS)] | None = None
-    """Largest error of mu_macro at the points. It must be smaller than `error`. The default null
-    means three tenths of `error`, at most 0.01."""
+    A sweep with `error` is a certified map over the ranges of its axes.
+    """
 
-    @model_validator(mode="after")
-    def _refuse_loose_points(self) -> Self:
-        if self.tolerance is not None and self.tolerance >= self.error:
-            message = f"{self.tolerance:g} is not allowed; allowed: less than the error"
-            raise Refusal(f"{message}, which is {self.error:g}", "tolerance")
-        return self
-
-
-class SteadySweep(Settings):
-    """Keys of every sweep."""
-
-    velocity: Axis
-    """Forward velocity in the unit of the motion, which is v0/(omega u_lim) (Eq 4), v0/(Omega phi0
-    a) (Eq 28) or v0/(omega a) (Eq 13). The value 0 requests the static limit."""
-    poisson: Poisson = _raw(0.0)
-    """Poisson's ratio of the half-space. A list makes it a dimension of the dataset."""
-    model: Model = "auto"
-    """Contact model. The value auto selects the cheapest model that is exact for the motion."""
-    tolerance: Tolerance | None = 1e-3
-    """Largest accepted absolute error of mu_macro. With null, cells and steps are prescribed, and a
-    point has converged if its runs have reached the periodic state."""
-    cells: Cells | None = None
-    """Number of rings, or of squares across the contact. It must be even. By default, it follows
-    from the tolerance."""
-    steps: Steps | None = None
-    """Number of time steps in a period. It must be even. By default, it follows from the
-    tolerance."""
-    points_per_job: Points | None = None
-    """Number of points that one job of this sweep computes. The default is the top-level value."""
-
-    @model_validator(mode="after")
-    def _refuse_no_tolerance(self) -> Self:
-        steady = getattr(self, "amplitude", None) is None  # without time steps
-        free = [name for name in ("cells", "steps") if getattr(self, name) is None]
-        free = [name for name in free if not (steady and name == "steps")]
-        if self.tolerance is None and free:
-            imposed = f"{' and '.join(free)} imposed"
-            raise Refusal(f"null is not allowed; allowed: a number, or {imposed}", "tolerance")
-        return self
-
-
-class Sweep(SteadySweep):
-    """Keys of a sweep for transverse oscillations (Eq 1) or oscillating rotations (Eq 23)."""
-
-    amplitude: Axis
-    """Amplitude, which is y0/u_lim (Eq 2) or phi0/phi_lk(a/2) (Eq 27)."""
-    adaptive: Adaptive | None = None
-    """Settings of a certified map over the same ranges (see below). By default, no map is made."""
-
-
-class _NamedSweep(SteadySweep):
     motion: Text
     """Motion, with parameters as in "elliptic:forward=0.5,phase=30", or file:FILE."""
     pressure: Text = "hertz"
     """Normal pressure, with parameters as in "power:exponent=1", or file:FILE."""
-    title: Title | None = None
+    title: Title = None
     """Title of the dataset, also used in figures. It is plain text: $ and \\ have no special
-    meaning. The default is the name."""
-    amplitude: Axis = _optional()
+    meaning."""
+    velocity: Axis = ()
+    """Forward velocity in the unit of the motion. The value 0 requests the static limit. With a
+    stiffness, it is the velocity of the far end of the spring."""
+    force: Axis = ()
+    """Prescribed force P divided by mu times the mean normal load. It replaces the velocity."""
+    amplitude: Axis = ()
     """Amplitude in the unit of the motion. It is required unless the motion is steady."""
-    tolerance: Tolerance = 1e-3
-    """Largest accepted absolute error of mu_macro."""
+    poisson: Annotated[tuple[float, ...], _axis(0, 0.5)] = (0.0,)
+    """Poisson's ratio of the half-space."""
+    stiffness: Axis = ()
+    """Stiffness of a spring divided by mu F_z / u_lim, above 0."""
+    mass: Axis = ()
+    """Mass of the body divided by mu F_z / (u_lim omega^2)."""
+    damping: Axis = ()
+    """Damping parallel to the spring, divided by mu F_z / (u_lim omega)."""
+    model: Annotated[str, _MODEL] = "auto"
+    """Contact model. The value auto selects the cheapest model that is exact for the motion."""
+    method: Annotated[str | None, _or_null(_METHOD)] = None
+    """Method to compare with that of microslip.solve, which is the default."""
+    tolerance: Annotated[float | None, _or_null(_number(1e-6, 0.1))] = 1e-3
+    """Largest accepted absolute error of mu_macro. With null, cells and steps are prescribed, and a
+    point has converged if its runs have reached the periodic state. The default for a certified map
+    is three tenths of `error`, at most 0.01."""
+    cells: Cells = None
+    """Number of rings, or of squares across the contact. By default, it follows from the
+    tolerance."""
+    steps: Steps = None
+    """Number of time steps in a period. By default, it follows from the tolerance."""
+    error: Annotated[float | None, _or_null(_number(1e-5, 0.1))] = None
+    """Largest absolute error of mu_macro anywhere between the ends of the axes of a certified
+    map."""
+
+    @property
+    def axes(self) -> dict[str, tuple[float, ...]]:
+        """Values by axis, in the order of AXES.  An axis that is not given is left out."""
+        return {name: getattr(self, name) for name in AXES if getattr(self, name)}
+
+    @property
+    def dims(self) -> tuple[str, ...]:
+        """Dimensions of the dataset: the names of the axes with more than one value."""
+        return tuple(name for name, values in self.axes.items() if len(values) > 1)
+
+    @property
+    def drives(self) -> dict[str, tuple[float, ...]]:
+        """Values by parameter of the drive, for the parameters that are given."""
+        return {name: getattr(self, name) for name in DRIVES if getattr(self, name)}
+
+    @property
+    def is_certified(self) -> bool:
+        """True for a certified map."""
+        return self.error is not None
+
+    @property
+    def spans_a_map(self) -> bool:
+        """True if there are at least two amplitudes and two velocities above 0."""
+        return len(self.amplitude) > 1 and sum(v > 0 for v in self.velocity) > 1
+
+    @model_validator(mode="before")
+    @classmethod
+    def _tolerance_of_a_map(cls, values: Any) -> Any:
+        if not isinstance(values, dict) or "tolerance" in values:
+            return values
+        error = values.get("error")
+        if isinstance(error, int | float) and not isinstance(error, bool):
+            loosest = min(SHARE_OF_POINTS * error, LOOSEST_POINTS)
+            return values | {"tolerance": max(loosest, 1e-6)}
+        return values
+
+    @model_validator(mode="after")
+    def _refuse_mismatch(self) -> Self:
+        if not (self.velocity or self.force):
+            raise Refusal("missing; required: velocity, or force in its place", "velocity")
+        if self.velocity and self.force:
+            raise Refusal("is not allowed beside velocity; allowed: one of them", "force")
+        free = [name for name in ("cells", "steps") if getattr(self, name) is None]
+        free = [name for name in free if self.amplitude or name != "steps"]
+        if self.tolerance is None and (free or self.is_certified):
+            imposed = "a number" + (f", or {' and '.join(free)} imposed" if free else "")
+            raise Refusal(f"null is not allowed; allowed: {imposed}", "tolerance")
+        points = math.prod(map(len, self.axes.values()))
+        if points > MOST_POINTS:
+            raise Refusal(f"{points} points are not allowed; allowed: at most {MOST_POINTS}")
+        if self.is_certified:
+            self._refuse_uncertifiable()
+        return self
+
+    def _refuse_uncertifiable(self) -> None:
+        assert self.error is not None and self.tolerance is not None
+        if self.tolerance >= self.error or self.tolerance > LOOSEST_POINTS:
+            bound = f"less than the error, {self.error:g}, and at most {LOOSEST_POINTS:g}"
+            raise Refusal(f"{self.tolerance:g} is not allowed; allowed: {bound}", "tolerance")
+        imposed = [
+            name for name in ("cells", "steps", "method", *self.drives) if getattr(self, name)
+        ]
+        if imposed:
+            raise Refusal(
+                f"is not allowed with {', '.join(imposed)}; allowed: a tolerance", "error"
+            )
+        static = len(self.amplitude) > 1 and 0.0 in self.velocity
+        if not (self.spans_a_map or static):
+            ranges = "two amplitudes and two velocities above 0, or two amplitudes and velocity 0"
+            raise Refusal(f"is not allowed for these axes; allowed: {ranges}", "error")
 
 
-class ExtendedSweep(_NamedSweep):
-    """A sweep of any motion under any pressure. A group of sweeps with at least two amplitudes and
-    two positive velocities is drawn as maps. Other groups are drawn as lines. A figure has at most
-    12 maps or 8 lines."""
-
-    group: PlainName
-    """Group of the sweep. The figure extended_GROUP shows all sweeps of the group, either as maps
-    or as lines."""
-    adaptive: Adaptive | None = None
-    """Settings of a certified map over the same ranges (see below). By default, no map is made."""
+# Figures
 
 
-class DriveSweep(_NamedSweep):
-    """A sweep of a contact driven by a force or a spring. Each axis is a dimension of the
-    dataset."""
+class Kind(NamedTuple):
+    """A kind of figure.
 
-    velocity: Axis = _optional()
-    """Velocity of the far end of the spring, in the unit of the motion. It is not allowed together
-    with a force."""
-    force: NumberOrAxis = _optional()
-    """Prescribed force P divided by mu times the mean normal load. It replaces the velocity. A
-    number or an axis."""
-    stiffness: NumberOrAxis = _optional()
-    """Stiffness of the spring divided by mu F_z / u_lim, above 0. A number or an axis."""
-    mass: NumberOrAxis = _optional()
-    """Mass of the body divided by mu F_z / (u_lim omega^2). A number or an axis."""
-    damping: NumberOrAxis = _optional()
-    """Damping parallel to the spring, divided by mu F_z / (u_lim omega). A number or an axis."""
+    Attributes
+    ----------
+    study : str
+        Study whose dataset is drawn; empty for figures of sweeps.
+    run : dict
+        Default settings of the single run that is drawn; empty if sweeps or studies are drawn.
+    motion : str
+        Motion that the sweep must have; empty if every motion is allowed.
+    """
 
-
-@with_config(PLAIN)
-class Sweeps(TypedDict, total=False):
-    """Sweeps of the paper. A sweep that is left out is not run."""
-
-    transverse: Annotated[Sweep, Field(description="Oscillation across the motion (Eq 1).")]
-    bore: Annotated[Sweep, Field(description="Oscillating rotation (Eq 23).")]
-    continuous_bore: Annotated[SteadySweep, Field(description="Steady rotation (Eq 12).")]
+    study: str = ""
+    run: dict[str, Any] = {}
+    motion: str = ""
 
 
-# Single runs
+_SIZES = {"cells": None, "steps": None}
+KINDS = {
+    "history": Kind(run={"velocity": 0.1, "amplitude": 1.0, "periods": 4, **_SIZES}),
+    "map": Kind(),
+    "field": Kind(run={"velocity": 0.5, "cells": None}, motion="continuous-bore"),
+    "curves": Kind(),
+    "transients": Kind(run={"velocity": 0.8, "travel": 5.0, **_SIZES}, motion="continuous-bore"),
+    "drives": Kind(),
+    "explorer": Kind(),
+    **{f"accuracy_{kind}": Kind("accuracy") for kind in ("profile", "vs_cost", "vs_work")},
+    "model_map": Kind("accuracy"),
+    "stability_atlas": Kind("stability"),
+    **{f"claims_{kind}": Kind("claims") for kind in ("static", "patches")},
+}
+"""Kinds of figures by name."""
 
 
-class ForceHistory(Settings):
-    """Forces during the first periods of a transverse oscillation (Figure 1)."""
-
-    velocity: Positive = 0.1
-    """Forward velocity v0/(omega u_lim)."""
-    amplitude: NonNegative = 1.0
-    """Amplitude of the oscillation y0/u_lim."""
-    periods: Annotated[int, Field(ge=1, le=1000), WHOLE] = 4
-    """Number of periods. The tractions are zero at the start."""
-    cells: Cells | None = None
-    """Number of rings. It must be even. The default is the same as in microslip.history."""
-    steps: Steps | None = None
-    """Number of time steps in a period. It must be even. The default is the same as in
-    microslip.history."""
+def _names(value: Any) -> tuple[str, ...]:
+    names = _list(Allowed("the name of a sweep", str), "the name of a sweep, or a list of names")
+    return names([value] if isinstance(value, str) else value)
 
 
-class TractionField(Settings):
-    """Traction field of the steady continuous bore (Figure 3)."""
+class Figure(Settings):
+    """A figure.  Its kind determines what is drawn."""
 
-    velocity: Positive = 0.5
-    """Forward velocity v0/(a omega). The centre of rotation is at the coordinate -velocity."""
-    cells: Cells | None = None
-    """Number of rings. It must be even. The default is the same as in microslip.history."""
+    kind: Annotated[str, _one_of(*KINDS)]
+    """Kind of figure. map draws friction over two axes, and curves over one axis, with a panel for
+    each sweep. history, field and transients draw a single run. explorer is an interactive page."""
+    sweep: Annotated[
+        tuple[str, ...], Allowed("the name of a sweep, or a list of names", _names)
+    ] = ()
+    """Sweeps to draw. Figures of a study have none."""
+    velocity: Annotated[float | None, _number(0, LARGEST["velocity"], above=True)] = None
+    """Velocity of the single run."""
+    amplitude: Annotated[float | None, _number(0, LARGEST["amplitude"])] = None
+    """Amplitude of the single run (history)."""
+    periods: Annotated[int | None, _number(1, 1000, 1)] = None
+    """Number of periods, which begin without tractions (history)."""
+    travel: Annotated[float | None, _number(0, LARGEST["velocity"], above=True)] = None
+    """Forward displacement of each run, in units of u_lim (transients)."""
+    cells: Cells = None
+    """Number of rings of the single run."""
+    steps: Steps = None
+    """Number of time steps in a period, or in a run (transients)."""
 
+    @property
+    def run(self) -> dict[str, Any]:
+        """Settings of the single run; empty if there is none."""
+        values = {name: getattr(self, name) for name in KINDS[self.kind].run}
+        defaults = KINDS[self.kind].run
+        return {k: defaults[k] if v is None else v for k, v in values.items()}
 
-class Transients(Settings):
-    """Approach of a continuous bore to its steady state, from three initial states (Figure 5)."""
+    @property
+    def datasets(self) -> tuple[str, ...]:
+        """Names of the datasets that are drawn."""
+        study = KINDS[self.kind].study
+        return (study,) if study else self.sweep
 
-    velocity: Positive = 0.8
-    """Forward velocity v0/(a omega)."""
-    travel: Positive = 5.0
-    """Forward displacement of each run, in units of u_lim."""
-    cells: Cells | None = None
-    """Number of rings. It must be even. The default is the same as in microslip.history."""
-    steps: Steps | None = None
-    """Number of time steps in a run. It must be even. The default is the same as in
-    microslip.history."""
-
-
-class Histories(Settings):
-    """Single runs for Figures 1, 3 and 5, stored in the dataset of their motion."""
-
-    transverse: ForceHistory = _raw({})
-    """Forces during the first periods of a transverse oscillation (Figure 1)."""
-    field: TractionField = _raw({})
-    """Traction field of the steady continuous bore (Figure 3)."""
-    transients: Transients = _raw({})
-    """Approach of a continuous bore to its steady state, from three initial states (Figure 5)."""
+    @model_validator(mode="after")
+    def _refuse_mismatch(self) -> Self:
+        kind = KINDS[self.kind]
+        options = {"kind", "sweep", *kind.run} - ({"sweep"} if kind.study else set())
+        for name in self.model_fields_set - options:
+            allowed = ", ".join(key for key in Figure.model_fields if key in options)
+            raise Refusal(f"is not allowed for the kind {self.kind}; allowed: {allowed}", name)
+        if not (self.sweep or kind.study):
+            raise Refusal("missing; required: the name of a sweep", "sweep")
+        if kind.run and len(self.sweep) > 1:
+            raise Refusal(f"{', '.join(self.sweep)} is not allowed; allowed: one sweep", "sweep")
+        return self
 
 
 # Studies
 
 
-def _refuse_repeats(values: list[str] | None) -> list[str] | None:
-    names = values or []
-    twice = next((name for i, name in enumerate(names) if name in names[:i]), None)
-    if twice is not None:
-        raise Refusal(f"{twice} occurs twice; allowed: different values")
-    return values
-
-
-def _refuse_unknown(methods: list[str]) -> list[str]:
-    for i, text in enumerate(methods):
-        try:
-            method_names.check(text)
-        except InputError as error:
-            raise Refusal(f"{error.value!r}: {error.allowed}", f"[{i}]") from None
-    return methods
-
-
-def _all_methods(methods: Any) -> Any:
-    return list(method_names.names()) if methods is None else methods
-
-
-_Names = Annotated[list[str], Field(min_length=1)]
-Methods = Annotated[
-    _Names,
-    BeforeValidator(_all_methods, json_schema_input_type=_Names | None),
-    AfterValidator(_refuse_repeats),
-    AfterValidator(_refuse_unknown),
-]
-Block = Literal[
-    "steps",
-    "slow-transverse",
-    "slow-bore",
-    "critical-amplitude",
-    "tiny-amplitude",
-    "poisson",
-    "edge",
-    "centre",
-    "rotation-centre",
-    "reversal",
-    "step-length",
-]
-
-
 class StudyPoint(Settings):
     """A point at which methods are compared."""
 
-    motion: Literal["transverse", "longitudinal", "bore", "continuous-bore", "zigzag"]
+    motion: Annotated[
+        str, _one_of("transverse", "longitudinal", "bore", "continuous-bore", "zigzag")
+    ]
     """Name of the motion."""
     velocity: Positive
-    """Forward velocity in the unit of the motion, above 0."""
-    amplitude: Positive | None = None
-    """Amplitude in the unit of the motion, above 0. The motion continuous-bore has no amplitude."""
+    """Forward velocity in the unit of the motion."""
+    amplitude: Annotated[float | None, _number(0, LARGEST["amplitude"], above=True)] = None
+    """Amplitude in the unit of the motion. The motion continuous-bore has no amplitude."""
     poisson: Ratio = 0.0
     """Poisson's ratio of the half-space."""
-    title: Title | None = None
-    """Title of the panel, as plain text. The default is the name of the point."""
+    title: Title = None
+    """Title of the panel. The default is the name of the point."""
 
     @model_validator(mode="after")
     def _refuse_mismatch(self) -> Self:
-        steady, amplitude = self.motion == "continuous-bore", self.amplitude
-        if steady and amplitude is not None:
-            message = f"{amplitude:g} is not allowed; {self.motion} has no amplitude"
+        steady = self.motion == "continuous-bore"
+        if steady and self.amplitude is not None:
+            message = f"{self.amplitude:g} is not allowed; {self.motion} has no amplitude"
             raise Refusal(message, "amplitude")
-        if not steady and amplitude is None:
+        if not steady and self.amplitude is None:
             raise Refusal(f"missing; required for {self.motion}", "amplitude")
         return self
 
 
 class _Grid(Settings):
-    velocity: Axis
-    amplitude_transverse: Axis
-    amplitude_bore: Axis
+    velocity: PositiveAxis
+    """Forward velocities of both motions."""
+    amplitude_transverse: PositiveAxis
+    """Amplitudes of the transverse oscillation, y0/u_lim."""
+    amplitude_bore: PositiveAxis
+    """Amplitudes of the oscillating rotation, phi0/phi_lk(a/2)."""
 
     @property
-    def amplitude(self) -> dict[str, Axis]:
+    def amplitude(self) -> dict[str, tuple[float, ...]]:
         """Amplitudes by motion."""
         return {"transverse": self.amplitude_transverse, "bore": self.amplitude_bore}
 
@@ -475,69 +555,72 @@ class _Grid(Settings):
     def _refuse_crowd(self) -> Self:
         for motion, amplitudes in self.amplitude.items():
             points = len(self.velocity) * len(amplitudes)
-            refuse_crowd(points, MOST_MAP_POINTS, f"velocity x amplitude_{motion}")
+            if points > MOST_MAP_POINTS:
+                message = f"{points} points are not allowed; allowed: at most {MOST_MAP_POINTS}"
+                raise Refusal(message, f"velocity x amplitude_{motion}")
         return self
 
 
 class ModelMap(_Grid):
     """Grid for maps of the cheapest model for each tolerance, at Poisson's ratio 0."""
 
-    velocity: MapAxis = _raw({"log": {"start": 0.001, "stop": 10, "count": 13}})
-    """Forward velocities of both motions, above 0."""
-    amplitude_transverse: MapAxis = _raw({"log": {"start": 0.1, "stop": 3, "count": 9}})
-    """Amplitudes of the oscillation y0/u_lim, above 0."""
-    amplitude_bore: MapAxis = _raw({"log": {"start": 0.1, "stop": 5, "count": 9}})
-    """Amplitudes of the rotation phi0/phi_lk(a/2), above 0."""
-    tolerance: Tolerances = _raw([0.01, 0.001])
+    tolerance: Annotated[tuple[float, ...], _axis(1e-6, 0.1)] = (1e-3, 1e-2)
     """Absolute tolerances of mu_macro. Each one has a map."""
+
+    @model_validator(mode="after")
+    def _refuse_a_line(self) -> Self:
+        for name in ("velocity", "amplitude_transverse", "amplitude_bore"):
+            values = getattr(self, name)
+            if len(values) < 2:
+                message = f"{list(values)} is not allowed; allowed: two numbers or more"
+                raise Refusal(message, name)
+        return self
 
 
 class Accuracy(Settings):
-    """Study of the cost of accuracy. `snakemake accuracy` makes accuracy_cost.nc and its
-    figures."""
+    """Study of the cost of accuracy, with the dataset accuracy.nc."""
 
-    methods: Methods = _raw(None)
+    methods: Methods = method_names.names()
     """Methods to compare, with parameters as in "projected-gradient:step=0.5". A method has the
-    name of its file in src/microslip/solver/methods, with hyphens. The name "shipped" means the
-    method used by microslip.solve. The default is all methods."""
-    points: Annotated[dict[PointName, StudyPoint], Field(min_length=1)] = _raw(POINTS)
+    name of its file in src/microslip/solver/methods, with hyphens; "shipped" is the method of
+    microslip.solve. The default is all methods."""
+    points: dict[Text, StudyPoint]
     """Points at which all methods and models run, by name. Each point has a panel."""
-    levels: Annotated[int, Field(ge=1, le=6), WHOLE] = 6
+    levels: Annotated[int, _number(1, 6, 1)] = 6
     """Number of resolutions of each method, starting at the coarsest one."""
-    repeats: Annotated[int, Field(ge=1, le=100), WHOLE] = 5
+    repeats: Annotated[int, _number(1, 100, 1)] = 5
     """Number of measurements of each computing time. The result is their median."""
-    map: ModelMap = _raw({})
+    map: ModelMap
     """Grid for maps of the cheapest model for each tolerance."""
 
 
-class Stability(Settings):
-    """Study of method failures. `snakemake stability` makes stability.nc and its figure."""
+_BLOCK = _one_of(
+    *("steps", "slow-transverse", "slow-bore", "critical-amplitude", "tiny-amplitude", "poisson"),
+    *("edge", "centre", "rotation-centre", "reversal", "step-length"),
+)
 
-    methods: Methods = _raw(None)
+
+class Stability(Settings):
+    """Study of the failures of methods, with the dataset stability.nc."""
+
+    methods: Methods = method_names.names()
     """Methods to compare, named as under `accuracy`."""
     tolerance: Tolerance = 1e-3
     """Largest accepted absolute error of mu_macro."""
-    axes: Annotated[
-        Annotated[list[Block], Field(min_length=1)] | None, AfterValidator(_refuse_repeats)
-    ] = None
+    axes: Annotated[tuple[str, ...] | None, _or_null(_list(_BLOCK, f"a list of {_BLOCK.text}"))] = (
+        None
+    )
     """Blocks of the atlas. Each block varies one quantity. The default is all blocks."""
 
 
 class Claims(_Grid):
-    """Test of the paper's statements: `snakemake claims` makes claims.nc and its figures."""
+    """Test of the statements of the paper, with the dataset claims.nc."""
 
     tolerance: Tolerance = 5e-4
     """Largest accepted absolute error of mu_macro."""
-    velocity: PositiveAxis = _raw([1e-4, 1e-3, 0.005, 0.02, 0.1, 0.3, 1, 3])
-    """Forward velocities of both motions, above 0. The smallest velocity of the paper, 0.005, is
-    added if a statement needs it."""
-    amplitude_transverse: PositiveAxis = _raw([0.25, 0.5, 0.75, 1, 2, 3])
-    """Amplitudes of the oscillation y0/u_lim, above 0. At least one must not exceed 1."""
-    amplitude_bore: PositiveAxis = _raw([0.5, 1, 2, 3, 5, 10])
-    """Amplitudes of the rotation phi0/phi_lk(a/2), above 0. At least one must not exceed 5."""
-    cells: Annotated[int, Field(ge=8, le=64, multiple_of=2), WHOLE] = 32
+    cells: Annotated[int, _number(8, 64, 2)] = 32
     """Number of rings, and number of angular points on half the disc, in the runs whose tractions
-    are evaluated. It must be even. A run with half this number gives the error estimate."""
+    are evaluated. A run with half this number gives the error estimate."""
 
     @model_validator(mode="after")
     def _refuse_mismatch(self) -> Self:
@@ -550,33 +633,81 @@ class Claims(_Grid):
         return self
 
 
-class Root(Settings):
-    """Points to compute, accuracy of the points, and folder of results. All quantities are
-    dimensionless."""
+class Configuration(Settings):
+    """A configuration: points to compute, figures to draw, and the folder of results."""
 
     results: Annotated[
-        str,
-        Field(
-            pattern=FOLDER,
-            title="text for a folder, without braces, *, ?, line breaks, ~ in front, $NAME and ://",
-        ),
+        str, _text("text for a folder, without braces, *, ?, ~ in front, $ and ://", _is_folder)
     ] = "results"
     """Folder for all results, relative to the working directory of the workflow."""
-    points_per_job: Points = 50
+    points_per_job: Annotated[int, _number(1, 100_000, 1)] = 320
     """Mean number of points that one job computes in sequence. A job takes about a second to start.
-    Large jobs leave cores idle at the end. A sweep can have its own value."""
-    sweeps: Annotated[Sweeps, Field(min_length=1)]
-    """Sweeps of the paper. At least one is required."""
-    extended: dict[PlainName, ExtendedSweep] = {}
-    """Sweeps of other motions and pressures, by name. `snakemake extended` makes a dataset for each
-    sweep and a figure for each group."""
-    drives: dict[PlainName, DriveSweep] = {}
-    """Sweeps of contacts driven by a force or a spring, by name (see `snakemake drives`)."""
-    histories: Histories = _raw({})
-    """Single runs for Figures 1, 3 and 5."""
-    accuracy: Accuracy = _raw({})
-    """Study of the cost of accuracy (see `snakemake accuracy`)."""
-    stability: Stability = _raw({})
-    """Study of method failures (see `snakemake stability`)."""
-    claims: Claims = _raw({})
-    """Test of the paper's statements (see `snakemake claims`)."""
+    Large jobs leave cores idle at the end."""
+    sweeps: dict[Name, Sweep] = {}
+    """Sweeps by name. Each has a dataset with this name."""
+    figures: dict[Name, Figure] = {}
+    """Figures by name."""
+    accuracy: Accuracy | None = None
+    """Study of the cost of accuracy."""
+    stability: Stability | None = None
+    """Study of the failures of methods."""
+    claims: Claims | None = None
+    """Test of the statements of the paper."""
+
+    @property
+    def studies(self) -> dict[str, Accuracy | Stability | Claims]:
+        """Studies of the configuration by name."""
+        every = {name: getattr(self, name) for name in ("accuracy", "stability", "claims")}
+        return {name: study for name, study in every.items() if study is not None}
+
+    @property
+    def datasets(self) -> dict[str, Sweep | Accuracy | Stability | Claims]:
+        """Sweeps and studies by the name of their dataset."""
+        return self.sweeps | self.studies
+
+    @model_validator(mode="after")
+    def _refuse_mismatch(self) -> Self:
+        taken = {*RULES, "accuracy", "stability", "claims"}
+        for key, names in (("sweeps", self.sweeps), ("figures", self.figures)):
+            for name in names:
+                if name in taken:
+                    message = "another result or rule has this name; allowed: a new one"
+                    raise Refusal(message, f"{key}.{name}")
+            taken |= names.keys()
+        if not self.datasets:
+            allowed = "sweeps, accuracy, stability or claims"
+            raise Refusal(f"nothing is not allowed; required: {allowed}", "sweeps")
+        runs: set[tuple[str, ...]] = set()
+        for name, figure in self.figures.items():
+            self._refuse_figure(f"figures.{name}", figure)
+            if figure.run and (figure.kind, figure.sweep[0]) in runs:
+                message = f"{figure.sweep[0]} has another figure of this kind; allowed: one"
+                raise Refusal(message, f"figures.{name}.kind")
+            runs.add((figure.kind, *figure.sweep[:1]))
+        return self
+
+    def _refuse_figure(self, key: str, figure: Figure) -> None:
+        kind = KINDS[figure.kind]
+        if kind.study and kind.study not in self.studies:
+            message = f"{figure.kind} needs the key {kind.study}, which is missing"
+            raise Refusal(f"{message}; allowed: a kind of another key", f"{key}.kind")
+        for name in figure.sweep:
+            if name not in self.sweeps:
+                hint, allowed = near_miss(name, self.sweeps), ", ".join(self.sweeps) or "none"
+                raise Refusal(
+                    f"{short_json(name)} is no sweep; {hint}allowed: {allowed}", f"{key}.sweep"
+                )
+            motion = self.sweeps[name].motion
+            if kind.motion and motion != kind.motion:
+                message = f"{name} has the motion {motion}; allowed: {kind.motion}"
+                raise Refusal(message, f"{key}.sweep")
+        if figure.kind == "explorer":
+            grids = [self.sweeps[name] for name in figure.sweep]
+            grids = [sweep for sweep in grids if not sweep.is_certified]
+            points = sum(math.prod(map(len, sweep.axes.values())) for sweep in grids)
+            if points > MOST_ON_PAGE:
+                message = f"{points} points are not allowed; allowed: at most {MOST_ON_PAGE}"
+                raise Refusal(message, f"{key}.sweep")
+            if not any(sweep.spans_a_map and sweep.motion in STATIC_AMPLITUDES for sweep in grids):
+                allowed = "transverse or bore with two amplitudes and two velocities above 0"
+                raise Refusal(f"has no map; required: {allowed}", f"{key}.sweep")

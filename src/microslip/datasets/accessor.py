@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from decimal import Decimal
 from functools import partial
+from numbers import Real
 from typing import Any
 
 import numpy as np
@@ -199,6 +201,8 @@ def _coordinate(name: str, value: Any) -> xr.DataArray:
         raise InputError(name, value, f"{ALLOWED}, none of them masked")
     try:
         array = np.asarray(value)
+        if array.dtype.kind == "O" and all(isinstance(one, Real | Decimal) for one in array.flat):
+            array = array.astype(float)
         good = array.dtype.kind in "iuf" and bool(np.isfinite(array).all())
     except (TypeError, ValueError):
         good = False

@@ -1,11 +1,12 @@
 """The dataset of a certified map, with its points and the cells used for interpolation.
 
-    certified_transverse.nc     dims point, cell and node
+    transverse.nc     dims point, cell and node
 
 A cell is a box in the scaled coordinates of sweeps.map_coordinates.  Friction in a cell is
 interpolated by the polynomial through its points: 5 along the velocity and 5 along the amplitude.
 If Poisson's ratio is a direction of the map, there are 3 points along it.  cell_error is an error
-bound for the cell.  Equal records give equal bytes.
+bound for the cell.  Equal records give equal
+bytes.
 """
 
 from __future__ import annotations
@@ -15,16 +16,16 @@ from collections.abc import Iterable, Iterator, Sequence
 import numpy as np
 import xarray as xr
 
-from microslip.config.extended import solver_names
 from microslip.config.quantities import MU_MACRO
-from microslip.config.records import CertifiedMap
+from microslip.config.settings import Configuration
 from microslip.datasets import sweep_dataset
 from microslip.datasets.variables import variable
 from microslip.foundation.canonical import canonical_json
 from microslip.sweeps import map_refinement
-from microslip.sweeps.batches import lookup
+from microslip.sweeps.batch import lookup
 from microslip.sweeps.map_cells import Cell
 from microslip.sweeps.map_coordinates import MapCoordinates
+from microslip.sweeps.request import solver_names
 
 COORDINATES = "map_coordinates"
 """Attribute that contains the map's coordinates as JSON."""
@@ -36,13 +37,17 @@ BORDERS = {
 """For each direction: the variables that contain the lower and upper ends of the cells."""
 
 
-def build(map_: CertifiedMap, records: Iterable[dict]) -> xr.Dataset:
-    """Build the dataset of a certified map.
+def build(
+    configuration: Configuration, name: str, records: Iterable[dict]
+) -> tuple[xr.Dataset, dict[str, xr.Dataset]]:
+    """Build the dataset of a certified map; it has no groups.
 
     Parameters
     ----------
-    map_ : CertifiedMap
-        The map of the configuration.
+    configuration : Configuration
+        The configuration.
+    name : str
+        Name of the map.
     records : iterable of dict
         Records of all points, in any order.
 
@@ -51,9 +56,10 @@ def build(map_: CertifiedMap, records: Iterable[dict]) -> xr.Dataset:
     KeyError
         If a point has no record.
     """
+    sweep = configuration.sweeps[name]
     record_of = lookup(records := list(records))
-    answers, cells = map_refinement.refine(map_, lambda requests: map(record_of, requests))
-    coordinates = map_refinement.coordinates_of(map_)
+    answers, cells = map_refinement.refine(sweep, lambda requests: map(record_of, requests))
+    coordinates = map_refinement.coordinates_of(sweep)
     nodes = sorted(answers)
     index = {node: i for i, node in enumerate(nodes)}
     degrees, places = coordinates.degrees, [coordinates.place(node) for node in nodes]
@@ -64,7 +70,7 @@ def build(map_: CertifiedMap, records: Iterable[dict]) -> xr.Dataset:
         for name, axis in zip(coordinates.directions, zip(*places, strict=True), strict=True)
     }
     # Poisson's ratio and velocity are scalars, unless they are directions of the map.
-    axes = {"velocity": ((), 0.0), "poisson": ((), map_.sweep.poisson[0])} | axes
+    axes = {"velocity": ((), 0.0), "poisson": ((), sweep.poisson[0])} | axes
     dataset = xr.Dataset(
         {
             "mu_macro": variable("point", values, MU_MACRO.description),
@@ -79,28 +85,28 @@ def build(map_: CertifiedMap, records: Iterable[dict]) -> xr.Dataset:
         },
         coords=axes,
     )
-    sweep_dataset.describe_axes(dataset, map_.sweep)
-    motion, pressure = solver_names(map_.sweep)
-    versions = {canonical_json(record["versions"]) for record in records}
+    sweep_dataset.describe_axes(dataset, sweep)
+    motion, pressure = solver_names(sweep)
     about = sweep_dataset.provenance(
-        f"Certified friction of a vibrated contact, motion {motion}",
-        map_.settings,
-        versions,
+        sweep.title or f"Certified friction of a vibrated contact, motion {motion}",
+        {"sweep": sweep.model_dump(mode="json")},
+        {canonical_json(record["versions"]) for record in records},
         motion=motion,
         pressure=pressure,
-        tolerance=map_.tolerance,
-        error=map_.error,
+        tolerance=sweep.tolerance,
+        error=sweep.error,
         points=len(set(places)),  # a point between slow and fast cells can occur twice
         directions=" ".join(coordinates.directions),
         degrees=np.array(degrees, np.int32),
     )
-    return dataset.assign_attrs(about | {COORDINATES: coordinates.to_json()})
+    return dataset.assign_attrs(about | {COORDINATES: coordinates.to_json()}), {}
 
 
 def report(dataset: xr.Dataset, name: str) -> Iterator[str]:
     """Yield lines of text: the number of points, the error bound of the map, and the number of
     cells with a larger error."""
-    failed, errors = int(dataset["mu_macro"].isnull().sum()), dataset["cell_error"].values
+    errors = dataset["cell_error"].values
+    failed = int(dataset["mu_macro"].isnull().sum())
     converged = f"{failed} not converged" if failed else "all converged"
     yield f"{name}: {dataset.points} points, {converged}; within {errors.max():.1e} everywhere"
     over = int((errors > dataset.error).sum())

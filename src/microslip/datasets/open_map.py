@@ -16,13 +16,14 @@ from typing import Any
 
 import xarray as xr
 
-from microslip.config.records import CERTIFIED, MOTION_OF_SWEEP
 from microslip.datasets.netcdf import group_names, refuse_oversized
 from microslip.foundation.errors import CacheError, InputError
 from microslip.foundation.files import refuse_no_folder
 from microslip.foundation.spec import near_miss
-from microslip.sweeps.stamps import is_damaged
+from microslip.sweeps.content import is_whole
 
+PAPER = ("transverse", "bore", "continuous_bore")
+"""Names of the sweeps of the paper."""
 SOLVED = {"mu_macro", "velocity_error"}
 """Variables that identify the dataset of a sweep.  Such a dataset contains at least one of them."""
 
@@ -86,19 +87,15 @@ def _dataset(
     path = Path(name)
     if path.suffix != ".nc":
         path = Path(results, f"{name}.nc")
-        of_workflow = str(name) in MOTION_OF_SWEEP or str(name).startswith(CERTIFIED)
-        if not of_workflow and not path.is_file():
-            allowed = (
-                f"{near_miss(name, MOTION_OF_SWEEP)}allowed is {', '.join(MOTION_OF_SWEEP)}, "
-                f"another sweep with a dataset in {results}, or a path that ends in .nc"
-            )
+        if not path.is_file() and str(name) not in PAPER:
+            others = sorted(file.stem for file in Path(results).glob("*.nc"))
+            names = ", ".join(dict.fromkeys([*others, *PAPER]))
+            hint = near_miss(name, [*others, *PAPER])
+            allowed = f"{hint}allowed is {names}, or a path that ends in .nc"
             raise InputError("name", name, allowed)
     if not path.is_file():
-        target = " (snakemake certified)" if path.stem.startswith(CERTIFIED) else ""
-        raise CacheError(
-            f"{path} is not there: run the workflow first{target}, or name its results folder"
-        )
-    if is_damaged(path):
+        raise CacheError(f"{path} is not there: run the workflow first, or name its results folder")
+    if not is_whole(path):
         raise CacheError(f"{path} is damaged: run the workflow again, which makes it anew")
     refuse_oversized(path)
     dataset = _opened(path, chunks=chunks)
@@ -107,8 +104,8 @@ def _dataset(
         raise CacheError(f"{path} is not the dataset of a sweep")
     if group is None:
         return dataset
-    if group not in (names := group_names(path)):
-        raise InputError("group", group, f"allowed is one of {', '.join(names) or 'none'}")
+    if group not in (groups := group_names(path)):
+        raise InputError("group", group, f"allowed is one of {', '.join(groups) or 'none'}")
     part = _opened(path, chunks=chunks, group=group)
     return part.assign_attrs(dataset.attrs | part.attrs)
 

@@ -8,7 +8,7 @@ import numpy as np
 
 from microslip.config.quantities import MU_MACRO
 from microslip.config.quantities import TORQUE as TORQUE_OF
-from microslip.config.records import Sweep
+from microslip.config.settings import Sweep
 from microslip.datasets.variables import variable
 from microslip.foundation.canonical import canonical_json
 
@@ -88,7 +88,7 @@ def variables(
 
     Parameters
     ----------
-    sweep : records.Sweep
+    sweep : Sweep
         The sweep.
     axes : dict
         Coordinates by dimension, in the order of the dimensions of the variables.
@@ -107,7 +107,7 @@ def variables(
     ValueError
         If the number of records differs from the number of points.
     """
-    table = POINT_VARIABLES | (TORQUE_VARIABLES if sweep.amplitude is None else ENERGY_VARIABLES)
+    table = POINT_VARIABLES | (TORQUE_VARIABLES if not sweep.amplitude else ENERGY_VARIABLES)
     if not sweep.velocity:
         table = VELOCITY_VARIABLES | table
     shape = tuple(len(values) for values in axes.values())
@@ -124,7 +124,7 @@ def variables(
             if (value := record["result"].get(name)) is not None:
                 column.flat[count - 1] = _shortened(value) if isinstance(value, str) else value
     if count != size:
-        raise ValueError(f"{sweep.name}: {count} results for {size} points")
+        raise ValueError(f"{count} results for {size} points")
     if len(axes.get("poisson", ())) > 1:
         for name, (source, sign, long_name) in CHANGES.items():
             table[name] = float, long_name

@@ -1,4 +1,4 @@
-"""Write the dataset of a sweep to a netCDF file.
+"""The dataset of a sweep.
 
 Every dataset follows the CF conventions.  Limits from theory are variables, and attributes record
 the provenance.  The root of a file contains the map.  Groups contain fine curves and single runs
@@ -6,76 +6,75 @@ the provenance.  The root of a file contains the map.  Groups contain fine curve
 depend on the time, the computer or the number of jobs.
 """
 
-import os
+import math
 from collections.abc import Iterable, Iterator, Sequence
+from itertools import islice
 
 import numpy as np
 import xarray as xr
 
 import microslip
-from microslip.config.extended import solver_names
 from microslip.config.quantities import AMPLITUDE, DRIVES, VELOCITY
-from microslip.config.records import Sweep
+from microslip.config.settings import Configuration, Sweep
 from microslip.datasets import netcdf, point_variables, theory_limits
 from microslip.datasets.catalogue import FORMS
 from microslip.datasets.variables import variable
 from microslip.foundation import named_files, source_digest
 from microslip.foundation.canonical import canonical_json
 from microslip.motions.by_name import motion_named
+from microslip.sweeps.request import runs_of, solver_names
 
 CONVENTIONS = "CF-1.11"
 METHOD = "boundary element method, elastic half-space with local Coulomb friction"
 PAPER = "R. Pohrt, Front. Mech. Eng. 6:566440 (2020), doi:10.3389/fmech.2020.566440"
 
 
-def write_sweep(
-    path: str | os.PathLike, sweep: Sweep, points: Iterable, histories: list, settings: dict
-) -> None:
-    """Write the dataset of a sweep to a netCDF-4 file, atomically.
+def build(
+    configuration: Configuration, name: str, records: Iterable[dict]
+) -> tuple[xr.Dataset, dict[str, xr.Dataset]]:
+    """Build the dataset of a sweep, and the datasets of its groups by name (see GROUPS).
 
-    The root has the dimensions (poisson, amplitude, velocity).  A steady motion has no dimension
-    `amplitude`, and a sweep at one Poisson's ratio has no dimension `poisson`.  Variables with
-    other axes are in GROUPS.
+    The dataset has the dimensions of the sweep.  Variables with other axes are in groups.
 
     Parameters
     ----------
-    path : str or path
-        Path of the file.
-    sweep : records.Sweep
-        The sweep.
-    points : iterable of dict
-        Records of the points in the order of batches.points_of.
-    histories : list of dict
-        Records of single runs in the order of batches.history_requests.
-    settings : dict
-        Settings of the configuration, stored as provenance.
+    configuration : Configuration
+        The configuration.
+    name : str
+        Name of the sweep.
+    records : iterable of dict
+        Records of the points in the order of request.points_of, then of the single runs in the
+        order of request.runs_of.
 
     Raises
     ------
     ValueError
-        If the number of records differs from the number of points.
-    CacheError
-        If the file cannot be written.
+        If the number of records differs from the number of requests.
     """
+    sweep, rest = configuration.sweeps[name], iter(records)
     motion, pressure = solver_names(sweep)
     title = sweep.title or f"Friction of a vibrated Hertz contact, motion {motion}"
     tolerance = np.nan if sweep.tolerance is None else sweep.tolerance
     about = {"motion": motion, "pressure": pressure, "tolerance": tolerance}
-    for role, name in (("motion", motion), ("pressure", pressure)):
-        if file := named_files.base_name(name):
+    for role, text in (("motion", motion), ("pressure", pressure)):
+        if file := named_files.base_name(text):
             about[f"{role}_file"] = file
-    if sweep.group is not None:
-        about["group"] = sweep.group
+    axes = {dim: sweep.axes[dim] for dim in sweep.dims}
+    points = islice(rest, math.prod(map(len, axes.values())))
+    of_points, versions = point_variables.variables(sweep, axes, points)
+    histories = list(rest)
+    if len(histories) != len(runs_of(configuration, name)):
+        raise ValueError(f"{name}: {len(histories)} single runs")
     failed = [record for record in histories if record["result"].get("crashed")]
     if failed:
         reasons = (f"{r['request']['kind']}: {r['result']['reason']}" for r in failed)
         about["single_runs_failed"] = "; ".join(reasons)
     if sweep.drives:
-        about["drive"] = ", ".join(name for name, _, _ in sweep.drives)
-    of_points, versions = point_variables.variables(sweep, _axes(sweep), points)
+        about["drive"] = ", ".join(sweep.drives)
     versions |= {canonical_json(record["versions"]) for record in histories}
+    settings = {"sweep": sweep.model_dump(mode="json"), "runs": runs_of(configuration, name)}
     root = _root(sweep, of_points).assign_attrs(provenance(title, settings, versions, **about))
-    netcdf.write(path, root, _parts(sweep, histories))
+    return root, _parts(sweep, histories)
 
 
 GROUPS = {
@@ -91,11 +90,9 @@ GROUPS = {
 def _root(sweep: Sweep, of_points: dict) -> xr.Dataset:
     """Return a dataset with the axes, the limits from theory and the variables of the points."""
     coords: dict[str, tuple] = {
-        name: (name, np.array(values)) for name, values in _axes(sweep).items()
+        name: (name, np.array(values)) if name in sweep.dims else ((), values[0])
+        for name, values in sweep.axes.items()
     }
-    if not sweep.poisson_is_axis:
-        coords["poisson"] = ((), sweep.poisson[0])
-    coords |= {name: ((), values[0]) for name, values, _ in sweep.drives if name not in coords}
     dataset = xr.Dataset(theory_limits.variables(sweep) | of_points, coords)
     describe_axes(dataset, sweep)
     return dataset
@@ -139,17 +136,15 @@ def provenance(title: str, settings: dict, versions: set, **more: object) -> dic
     } | more
 
 
-def report(dataset: xr.Dataset, name: str | None = None) -> Iterator[str]:
-    """Yield lines of text: the number of points, and one line for each point that did not converge.
-
-    name: name of the sweep.  Default: the name of the motion.
-    """
+def report(dataset: xr.Dataset, name: str) -> Iterator[str]:
+    """Yield lines of text: the number of points, and one line for each point that did not
+    converge."""
     converged, reason = dataset["converged"], dataset["reason"]
     if netcdf.TEXTS in reason.attrs:
         reason = netcdf.texts(reason)
     bad = np.argwhere(~converged.values)
     failed = f"{len(bad)} not converged" if len(bad) else "all converged"
-    yield f"{name or dataset.motion}: {converged.size} points, {failed}"
+    yield f"{name}: {converged.size} points, {failed}"
     for index in bad:
         point = reason.isel(dict(zip(converged.dims, index, strict=True)))
         where = ", ".join(f"{dim} {float(point[dim]):g}" for dim in converged.dims)
@@ -158,20 +153,11 @@ def report(dataset: xr.Dataset, name: str | None = None) -> Iterator[str]:
         yield f"  single runs left out: {dataset.single_runs_failed}"
 
 
-def _axes(sweep: Sweep) -> dict[str, tuple[float, ...]]:
-    drives = {name: values for name, values, is_axis in sweep.drives if is_axis}
-    force = drives.pop("force", None)
-    axes = drives | ({"poisson": sweep.poisson} if sweep.poisson_is_axis else {})
-    if sweep.amplitude is not None:
-        axes["amplitude"] = sweep.amplitude
-    return axes | ({"velocity": sweep.velocity} if sweep.velocity else {"force": force})
-
-
 def describe_axes(dataset: xr.Dataset, sweep: Sweep) -> None:
     """Set the attributes of the axes.  The attribute `formula` defines the coordinate."""
     motion = motion_named(sweep.motion)
     axes = [("velocity", VELOCITY, motion.velocity_label)] if sweep.velocity else []
-    if sweep.amplitude is not None:
+    if sweep.amplitude:
         axes.append(("amplitude", AMPLITUDE, motion.amplitude_label))
     for name, of_paper, formula in axes:
         text = of_paper["transverse"].text  # the same for all motions
@@ -179,7 +165,7 @@ def describe_axes(dataset: xr.Dataset, sweep: Sweep) -> None:
         if motion.name in of_paper:
             about["description"] = of_paper[motion.name].description
         dataset[name].attrs = about
-    for name, _, _ in sweep.drives:
+    for name in sweep.drives:
         quantity = DRIVES[name]
         about = {"long_name": f"{quantity.text}, {quantity.unit}", "units": "1"}
         about |= {"formula": quantity.unit, "description": quantity.description}
@@ -194,11 +180,12 @@ def _single_runs(sweep: Sweep, records: Sequence[dict]) -> dict[str, dict]:
     """For each group of single runs, by name: return a dict of variables."""
     if not records or any(record["result"].get("crashed") for record in records):
         return {}  # `report` lists failed runs
-    if sweep.motion == "transverse":
-        return {"history": _force_history(records[0])}
     fields = [record for record in records if record["request"]["kind"] == "field"]
-    transients = [record for record in records if record not in fields]
-    return {"field": _traction_field(fields[0]), "transients": _transients(transients)}
+    transients = [record for record in records if "travel" in record["request"]]
+    histories = [record for record in records if "periods" in record["request"]]
+    groups = {"history": _force_history(histories[0])} if histories else {}
+    groups |= {"field": _traction_field(fields[0])} if fields else {}
+    return groups | ({"transients": _transients(transients)} if transients else {})
 
 
 def _force_history(record: dict) -> dict[str, tuple]:

@@ -6,11 +6,11 @@ and on a fine axis, for drawing.
 
 import numpy as np
 
-from microslip.config.extended import solver_names
-from microslip.config.records import Sweep
+from microslip.config.settings import Sweep
 from microslip.datasets import catalogue
 from microslip.datasets.catalogue import ClosedForm
 from microslip.datasets.variables import variable
+from microslip.sweeps.request import solver_names
 
 CURVE_POINTS = 241
 
@@ -40,26 +40,23 @@ def _drift_forms(sweep: Sweep) -> dict[str, ClosedForm]:
     """Return the closed forms of the drift velocity, for a sweep over forces."""
     motion, pressure = solver_names(sweep)
     form = catalogue.DRIFT_FORMS.get(motion)
-    is_map = [(name, is_axis) for name, _, is_axis in sweep.drives] == [("force", True)]
+    is_map = [*sweep.drives] == ["force"] and len(sweep.force) > 1
     if form is None or not is_map or not (form.any_pressure or pressure == "hertz"):
         return {}
     return {form.name: form}
-
-
-def _axis(sweep: Sweep, dim: str) -> np.ndarray:
-    drives = {name: values for name, values, _ in sweep.drives}
-    return np.array(drives[dim] if dim in drives else getattr(sweep, dim))
 
 
 def variables(sweep: Sweep) -> dict:
     """Evaluate the closed forms at the points of a sweep: name -> (dims, values, attributes)."""
     limits = {}
     for name, form in (_forms(sweep) | _drift_forms(sweep)).items():
-        axes = [_axis(sweep, dim) for dim in form.arguments]
+        axes = [np.array(sweep.axes[dim]) for dim in form.arguments]
         # In meshgrid and in the datasets, the first argument is the last dimension.
         values = form.function(*np.meshgrid(*axes))
+        dims = tuple(dim for dim in form.arguments[::-1] if dim in sweep.dims)
+        values = np.reshape(values, [len(sweep.axes[dim]) for dim in dims])
         about: dict = {"description": form.description} if form.description else {}
-        limits[name] = variable(form.arguments[::-1], values, form.long_name, **about)
+        limits[name] = variable(dims, values, form.long_name, **about)
     return limits
 
 

@@ -146,6 +146,15 @@ def check_room(folder: Path) -> None:
             trial.unlink()
 
 
+def refuse_unwritable(folder: Path) -> None:
+    """Create a folder, and raise CacheError if it cannot be written to."""
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        check_room(folder)
+    except OSError as error:
+        raise CacheError(advice("write to", folder, error)) from error
+
+
 def clear_abandoned(folder: Path) -> list[Path]:
     """Remove partial files of killed processes.  Returns their paths.
 

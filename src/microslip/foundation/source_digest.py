@@ -1,10 +1,10 @@
 """Digests of the code that computes results and makes products.
 
-The name of a result contains the digest of the physics.  The physics is every package of microslip
-except those in `OUTER`.  In the folders of motions, pressures and methods, a file counts only if
-the physics imports it or the request names it.  So a new file in these folders does not change
-other results.  The stamp of a dataset, page or figure contains the digest of the modules that make
-it, including all modules imported by them.  Comments, docstrings and layout do not count.
+The name of a result contains the digest of the physics: the code of all rooms that make numbers.
+In the folders of motions, pressures and methods, a file counts only if the physics imports it or
+the request names it, so that a new file in these folders does not change other results.  The name
+of a dataset, page or figure contains the digest of its builder: its module, and what it imports
+from the outer rooms.  Comments, docstrings, layout and messages do not count.
 
 All modules are read once, when the package is imported, so that a digest belongs to the running
 code.
@@ -26,21 +26,12 @@ from microslip.foundation.errors import CacheError
 from microslip.foundation.files import write_atomically
 
 PACKAGE = Path(__file__).parents[1]
-OUTER = {"app", "bundle", "config", "datasets", "report", "si", "studies", "sweeps"}
-"""Folders of the package that do not influence results, except through the files in ANSWERING."""
-ANSWERING = {"sweeps/evaluate.py", "sweeps/period_codec.py"}
-"""Files in OUTER that convert solver output to results."""
-NAMING = {
-    "foundation/accessor.py",
-    "foundation/files.py",
-    "foundation/kernel_cache.py",
-    "foundation/kernel_store.py",
-    "foundation/source_digest.py",
-}
-"""Files that name and write results, but do not influence the values in them."""
+OUTER = {"app", "bundle", "config", "datasets", "foundation", "report", "si", "studies", "sweeps"}
+"""Rooms that do not make numbers, except for the files in NUMBERS."""
+NUMBERS = {"foundation/compiled.py", "sweeps/evaluate.py", "sweeps/period_codec.py"}
+"""Files in OUTER on which results depend: compilation, and conversion of the solver's output."""
 ENDINGS = {"py", "html", "css", "js"}
-"""File name extensions of modules and of parts of pages.  Files with other extensions do not
-count."""
+"""File name extensions of modules and of parts of pages."""
 FAMILIES = {"solver/methods": "method", "motions": "motion", "pressures": "pressure"}
 """Folder -> key of a request.  The value at this key contains the name of a file in the folder."""
 
@@ -53,26 +44,11 @@ class Sources:
     """
 
     def __init__(self, package: str | Path = PACKAGE):
-        self.package, self._is_written = Path(package), True
+        self.package = Path(package)
         files = dict(_modules(self.package))
         self._dates = {name: os.stat(path).st_mtime_ns for name, path in files.items()}
         self.contents = {name: Path(path).read_bytes() for name, path in files.items()}
-        self._parsed, self._imports = cache(self._read_parsed), cache(self._read_imports)
-
-    def closure(
-        self, names: Iterable[str], inside: Callable[[str], bool] = lambda name: True
-    ) -> frozenset[str]:
-        """Paths of modules and of all modules that they import, directly or indirectly.
-
-        inside: function that returns False for the path of an imported module to be omitted.
-        """
-        closure, queue = set(), [*names]
-        while queue:
-            name = queue.pop()
-            if name not in closure:
-                closure.add(name)
-                queue += filter(inside, self._imports(name))
-        return frozenset(closure)
+        self._parsed = cache(self._read_parsed)
 
     def digest(self, names: Iterable[str]) -> str:
         """SHA-256 of the paths and the code of files, in hexadecimal."""
@@ -80,17 +56,38 @@ class Sources:
         self._write_parsed()
         return _sha256(json.dumps(code).encode())
 
+    def closure(self, names: Iterable[str], inside: Callable[[str], bool]) -> frozenset[str]:
+        """Paths of modules, and of all modules that they import directly or indirectly.
+
+        inside: function that returns False for the path of an imported module to be omitted.
+        """
+        closure: set[str] = set()
+        queue = [*names]
+        while queue:
+            name = queue.pop()
+            if name not in closure:
+                closure.add(name)
+                queue += filter(inside, self._imports(self._parsed(name)[1]))
+        return frozenset(closure)
+
     def of_request(self, request: dict) -> frozenset[str]:
         """Paths of the modules that influence the result of a request."""
         texts = {folder: request.get(key) or "" for folder, key in FAMILIES.items()}
-        bare = {folder: text.partition(":")[0].replace("-", "_") for folder, text in texts.items()}
-        names = {folder: "from_file" if n == "file" else n for folder, n in bare.items()}
-        files = {f"{folder}/{name}.py" for folder, name in names.items() if name}
-        if not bare["motions"]:  # the result may depend on any motion
+        names = {folder: text.partition(":")[0].replace("-", "_") for folder, text in texts.items()}
+        files = {f"{f}/{'from_file' if n == 'file' else n}.py" for f, n in names.items() if n}
+        if not names["motions"]:  # the result may depend on any motion
             files |= {name for name in self.contents if name.startswith("motions/")}
         files = {name for name in files if name in self.contents or _in_a_users_folder(name)}
         files |= {n for n in self.contents if is_physics(n) and os.path.dirname(n) not in FAMILIES}
-        return self.closure(files, inside=is_physics)
+        return self.closure(files, is_physics)
+
+    def of_builder(self, *files: str) -> frozenset[str]:
+        """Paths of the modules that make a product, besides the physics and the foundation.
+
+        files: modules and folders of the package.
+        """
+        starts = {n for n in self.contents for f in files if n == f or n.startswith(f"{f}/")}
+        return self.closure(starts, lambda n: not is_physics(n) and not n.startswith("foundation/"))
 
     @cached_property
     def kernels_digest(self) -> str:
@@ -99,8 +96,8 @@ class Sources:
         The layout counts, because Numba identifies a function's code by its line number.
         """
         compiled = {n for n, c in self.contents.items() if b"microslip.foundation.compiled" in c}
-        content = [(n, _sha256(self.contents[n])) for n in sorted(self.closure(compiled))]
-        return _sha256(json.dumps(content).encode())
+        files = self.closure(compiled, lambda n: is_physics(n) and n != "sweeps/evaluate.py")
+        return _sha256(json.dumps([(n, _sha256(self.contents[n])) for n in sorted(files)]).encode())
 
     def edited(self) -> str | None:
         """Path of a physics file whose code on disk has changed since it was read; None if no file
@@ -112,17 +109,17 @@ class Sources:
                 now = then if same_date else path.read_bytes()
             except OSError:
                 return name
-            if now != then and _parse(now)[0] != _parse(then)[0]:
+            if now != then and _parse(now, False)[0] != _parse(then, False)[0]:
                 return name
         return None
 
-    def _read_imports(self, name: str) -> list[str]:
-        """Paths of the modules that a module imports, and of the packages that contain them."""
+    def _imports(self, modules: Iterable[str]) -> list[str]:
+        """Paths of the modules with these names, and of the packages that contain them."""
         inside = f"{self.package.name}."
-        modules = [m.split(".")[1:] for m in self._parsed(name)[1] if m.startswith(inside)]
-        paths = ["/".join(parts[:end]) for parts in modules for end in range(1, len(parts) + 1)]
-        files = [file for path in paths for file in (f"{path}.py", f"{path}/__init__.py")]
-        return [file for file in files if file in self.contents and file not in NAMING]
+        parts = [name.split(".")[1:] for name in modules if name.startswith(inside)]
+        paths = {"/".join(one[:end]) for one in parts for end in range(1, len(one) + 1)}
+        files = (file for path in paths for file in (f"{path}.py", f"{path}/__init__.py"))
+        return [file for file in files if file in self.contents]
 
     # Parsing takes a second, so the results are stored in __pycache__.
 
@@ -133,26 +130,27 @@ class Sources:
         key = _sha256(self.contents[name])
         if not name.endswith(".py"):
             return key, []
-        if key not in self._parse_results:
-            self._parse_results[key] = _parse(self.contents[name])
-            self._is_written = False
-        return self._parse_results[key]
+        physics = is_physics(name)
+        key = f"{key}{'' if physics else ' with messages'}"
+        if key not in self._results:
+            self._results[key] = _parse(self.contents[name], not physics)
+            self._is_new = True
+        return self._results[key]
+
+    _is_new = False
 
     @cached_property
-    def _parse_results(self) -> dict[str, tuple[str, list[str]]]:
+    def _results(self) -> dict[str, tuple[str, list[str]]]:
         with contextlib.suppress(OSError, ValueError):
             reader, results = json.loads(self._file.read_bytes())
             return results if reader == _READER else {}
         return {}
 
     def _write_parsed(self) -> None:
-        """Store the parse results.  If they cannot be stored, the next process parses the modules
-        again."""
-        if not self._is_written:
-            self._is_written = True
-            with contextlib.suppress(CacheError):
-                content = json.dumps([_READER, self._parse_results])
-                write_atomically(self._file, content.encode())
+        if self._is_new:
+            self._is_new = False
+            with contextlib.suppress(CacheError):  # the next process parses the modules again
+                write_atomically(self._file, json.dumps([_READER, self._results]).encode())
 
     @property
     def _file(self) -> Path:
@@ -162,7 +160,7 @@ class Sources:
 def is_physics(name: str) -> bool:
     """True for files that influence results.  name: path inside the package."""
     room, slash, _ = name.partition("/")
-    return name in ANSWERING or bool(slash) and room not in OUTER and name not in NAMING
+    return name in NUMBERS or bool(slash) and room not in OUTER
 
 
 def _modules(folder: str | Path, prefix: str = "") -> Iterator[tuple[str, str]]:
@@ -194,8 +192,11 @@ _READER = _sha256(Path(__file__).read_bytes())
 file."""
 
 
-def _parse(content: bytes) -> tuple[str, list[str]]:
-    """Digest of the code of a module, and the names of all modules that it imports."""
+def _parse(content: bytes, messages: bool) -> tuple[str, list[str]]:
+    """Digest of the code of a module, and the names of all modules that it imports.
+
+    messages: True if messages count, see `_text`.
+    """
     try:
         tree = ast.parse(content)
     except (SyntaxError, ValueError):  # in a broken file only the bytes count
@@ -206,26 +207,38 @@ def _parse(content: bytes) -> tuple[str, list[str]]:
             names |= {alias.name for alias in node.names}
         elif isinstance(node, ast.ImportFrom):
             names |= {f"{node.module}.{alias.name}" for alias in node.names}
-    return _sha256(_text(tree).encode()), sorted(names)
+    return _sha256(_text(tree, messages).encode()), sorted(names)
 
 
-def _text(node: object) -> str:
+def _text(node: object, messages: bool) -> str:
     """Text of a syntax tree, without docstrings, line numbers and empty fields.
 
-    All versions of Python give the same text.  The output of ast.dump for empty fields differs
-    between versions.
+    messages: False to leave out messages as well.  A string with a blank is a message, unless an
+    attribute of it is used, as in "a b".split().  All versions of Python give the same text.  The
+    output of ast.dump for empty fields differs between versions.
     """
     if isinstance(node, list):
-        return f"[{''.join(map(_text, node))}]"
+        items = (item for item in node if not _is_docstring(item))
+        return (
+            f"[{''.join('-' if _is_message(i, messages) else _text(i, messages) for i in items)}]"
+        )
     if not isinstance(node, ast.AST):
         return f"{node!r},"
     fields = []
     for name, value in ast.iter_fields(node):
-        if isinstance(value, list):
-            value = [item for item in value if not _is_docstring(item)]
-        if value is not None and value != []:
-            fields.append(f"{name}={_text(value)}")
+        if _is_message(value, messages) and not isinstance(node, ast.Attribute):
+            fields.append(f"{name}=-")
+        elif value is not None and (text := _text(value, messages)) != "[]":
+            fields.append(f"{name}={text}")
     return f"{type(node).__name__}({''.join(fields)})"
+
+
+def _is_message(node: object, messages: bool) -> bool:
+    if messages:
+        return False
+    if isinstance(node, ast.JoinedStr):
+        return any(_is_message(part, messages) for part in node.values)
+    return isinstance(node, ast.Constant) and isinstance(node.value, str) and " " in node.value
 
 
 def _is_docstring(node: object) -> bool:
@@ -259,7 +272,12 @@ def of_solver() -> str:
     return of_request({"motion": "none"})
 
 
-def of_modules(*names: str) -> str:
-    """Digest of files and folders of the package, including all modules imported by them."""
-    files = [f for f in LOADED.contents for n in names if f == n or f.startswith(f"{n}/")]
-    return LOADED.digest(LOADED.closure(files))
+@cache
+def of_builder(*files: str) -> str:
+    """Digest of the modules and folders that make a product, see Sources.of_builder."""
+    return LOADED.digest(LOADED.of_builder(*files))
+
+
+def of_script(path: Path) -> str:
+    """Digest of a script outside of the package."""
+    return _parse(path.read_bytes(), messages=True)[0]

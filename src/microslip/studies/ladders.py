@@ -6,8 +6,16 @@ file can prescribe the model and the resolution for that method.
 
 from typing import NamedTuple
 
-from microslip.config.records import MODELS_OF_MOTION
 from microslip.solver.method_names import SHIPPED, declared, missing, split
+
+_TRANSLATED = ("auto", "rigid", "slider", "dahl", "mdr", "radial", "polar", "cartesian")
+_ROTATED = ("auto", "rigid", "polar", "cartesian")
+MODELS_OF_MOTION = {
+    **dict.fromkeys(("transverse", "longitudinal", "zigzag"), _TRANSLATED),
+    **dict.fromkeys(("bore", "continuous-bore"), _ROTATED),
+}
+"""Models that apply to each motion.  The table is copied from models.registry, because that module
+is slow to import."""
 
 
 class Level(NamedTuple):

@@ -1,58 +1,60 @@
-"""All studies: cost of accuracy, failures of methods, and the paper's claims.
+"""All studies: cost of accuracy, failures of methods, and check of the paper.
 
-Each study is a package with two main modules. The first one (`accuracy_cost`, `stability`, `claims`
-or `propulsion`) makes the requests. It imports only light modules, because the workflow reads it at
-every start. The second one, `dataset`, builds a dataset from the results. The modules `ladders`
+Each study is a package with two main modules. The first one (`accuracy_cost`, `stability` or
+`claims`) makes the requests. It imports only light modules, because the workflow reads it at every
+start. The second one, `dataset`, builds a dataset from the results. The modules `ladders`
 (resolutions of the models) and `requests` (forms of the requests) are common to the studies.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from importlib import import_module
 from types import ModuleType
 from typing import TYPE_CHECKING
 
-from microslip.config.records import Configuration
+from microslip.sweeps.batch import lookup
 
 if TYPE_CHECKING:
     import xarray as xr
 
-DATASETS = {
-    "accuracy": "accuracy_cost",
-    "stability": "stability",
-    "claims": "claims",
-}
-"""Name of each study's dataset and request module. The keys are names in the configuration."""
+    from microslip.config.settings import Configuration, Settings
+
+MODULES = {"accuracy": "accuracy_cost", "stability": "stability", "claims": "claims"}
+"""Name of each study's request module. The keys are names in the configuration."""
 
 
-def pieces(study: str, configuration: Configuration) -> tuple[list, list]:
-    """Return the slow jobs and the fast jobs as two lists. A job is a list of requests."""
-    return _module(study, DATASETS[study]).pieces(getattr(configuration, study))
+def pieces(study: str, settings: Settings) -> list[list[dict]]:
+    """Return the jobs of a study, slow ones first. A job is a list of requests."""
+    slow, fast = _module(study, MODULES[study]).pieces(settings)
+    return [*slow, *fast]
 
 
-def settings(study: str, configuration: Configuration) -> dict:
-    """Return all settings that affect the dataset of a study, as a dict for JSON."""
-    return getattr(configuration, study).model_dump()
+def build(
+    configuration: Configuration, study: str, records: Iterable[dict]
+) -> tuple[xr.Dataset, dict[str, xr.Dataset]]:
+    """Build the dataset of a study, and the datasets of its groups by name."""
+    return divided(undivided(configuration, study, lookup(records)), study)
 
 
-def build(study: str, configuration: Configuration, answer: Callable) -> object:
-    """Build the xarray.Dataset of a study.
+def divided(dataset: xr.Dataset, study: str) -> tuple[xr.Dataset, dict[str, xr.Dataset]]:
+    """Divide the dataset of a study into its root and the datasets of its groups."""
+    from microslip.datasets import netcdf
 
-    configuration: records.Configuration; answer: function that returns the record of a request, see
-    microslip.sweeps.batches.
+    return netcdf.divide(dataset, _module(study, "dataset").GROUPS)
+
+
+def undivided(configuration: Configuration, study: str, answer: Callable) -> xr.Dataset:
+    """Build the dataset of a study with the variables of all groups.
+
+    answer: function that returns the record of a request.
     """
-    return _module(study, "dataset").build(getattr(configuration, study), answer)
+    return _module(study, "dataset").build(configuration.studies[study], answer)
 
 
-def groups(study: str) -> dict:
-    """Return each group's title and dimensions by group name, as for netcdf.divide."""
-    return _module(study, "dataset").GROUPS
-
-
-def report(study: str, dataset: xr.Dataset) -> Iterator[str]:
+def report(dataset: xr.Dataset, study: str) -> Iterator[str]:
     """Yield lines of text that summarise the dataset of a study."""
-    return _module(study, "dataset").report(dataset)
+    yield from _module(study, "dataset").report(dataset)
 
 
 def _module(study: str, name: str) -> ModuleType:

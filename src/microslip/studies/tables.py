@@ -22,7 +22,7 @@ class Answers:
     The object also collects the keys of the results, the library versions, and the computers on
     which times were measured (`machines`, a list of dicts).
 
-    answer: function that returns the record of a request, see microslip.sweeps.batches.
+    answer: function that returns the record of a request, see microslip.sweeps.batch.
     """
 
     def __init__(self, answer: Callable):

@@ -1,6 +1,6 @@
 """Compute the result of a request as plain values for JSON.
 
-Requests are defined in microslip.sweeps.batches.  The functions in this module import the solver
+Requests are defined in microslip.sweeps.request.  The functions in this module import the solver
 only when needed.
 """
 
@@ -13,7 +13,7 @@ from statistics import median
 from typing import Any, TypeVar
 
 import microslip
-from microslip.config.axes import DRIVES
+from microslip.config.quantities import DRIVES
 from microslip.foundation import machine
 from microslip.foundation.canonical import number
 from microslip.foundation.errors import InputError, SolverError

@@ -4,39 +4,40 @@ from __future__ import annotations
 
 import math
 import os
-from collections.abc import Callable, Iterable, Iterator
-from concurrent.futures import ProcessPoolExecutor
-from dataclasses import replace
-from functools import partial
+from collections.abc import Callable, Iterable
+from concurrent.futures import ProcessPoolExecutor, as_completed
 from multiprocessing import parent_process
 from pathlib import Path
 from threading import Thread
 
-from microslip.config.extended import solver_names
-from microslip.config.records import CertifiedMap
-from microslip.foundation import named_files
-from microslip.sweeps.batches import answer, gather, points_of
+from microslip.config.settings import Sweep
+from microslip.foundation import files, named_files
+from microslip.sweeps import batch, evaluate
 from microslip.sweeps.map_cells import Answers, Node, Refinement, refine_cells
 from microslip.sweeps.map_coordinates import MapCoordinates
-from microslip.sweeps.store import Store
+from microslip.sweeps.request import key_of, points_of, solver_names
 from microslip.theory.kinks import kinks_of
 
 
-def coordinates_of(map_: CertifiedMap) -> MapCoordinates:
-    """Scaled coordinates of a certified map."""
-    motion, pressure = solver_names(map_.sweep)
-    kinks = kinks_of(motion, pressure)
-    return MapCoordinates(map_.velocity, map_.amplitude, kinks, map_.poisson)
+def coordinates_of(sweep: Sweep) -> MapCoordinates:
+    """Scaled coordinates of a certified map over the ranges of a sweep.
+
+    Velocities reach from the smallest one above 0 to the largest.  A map of the static limit has
+    no velocity.
+    """
+    positive = [velocity for velocity in sweep.velocity if velocity > 0]
+    velocity = (positive[0], positive[-1]) if sweep.spans_a_map else ()
+    poisson = (sweep.poisson[0], sweep.poisson[-1]) if len(sweep.poisson) > 1 else ()
+    amplitude = sweep.amplitude[0], sweep.amplitude[-1]
+    return MapCoordinates(velocity, amplitude, kinks_of(*solver_names(sweep)), poisson)
 
 
-def refine(
-    map_: CertifiedMap, ask: Callable[[list[dict]], Iterable[dict]]
-) -> tuple[Answers, Refinement]:
+def refine(sweep: Sweep, ask: Callable[[list[dict]], Iterable[dict]]) -> tuple[Answers, Refinement]:
     """Solve all nodes of a certified map, round by round.
 
     Parameters
     ----------
-    map_ : CertifiedMap
+    sweep : Sweep
         The map.
     ask : callable
         Function that returns the records for a list of requests, in the same order.
@@ -44,55 +45,66 @@ def refine(
     Returns
     -------
     answers : dict of tuple to (float, float)
-        Friction and its error at each node.  They depend only on the records.  If the point did
-        not converge, the value is NaN and the error is infinite.
+        Friction and its error at each node.  They depend only on the records.  If the point did not
+        converge, the friction is NaN and the error is infinite.
     refinement : Refinement
         The cells.
     """
-    coordinates = coordinates_of(map_)
+    assert sweep.error is not None
+    coordinates = coordinates_of(sweep)
     answers: dict[Node, tuple[float, float]] = {}
-    while nodes := (state := refine_cells(coordinates, answers, map_.error)).missing:
-        requests = [_request(map_, coordinates, node) for node in nodes]
+    while nodes := (state := refine_cells(coordinates, answers, sweep.error)).missing:
+        requests = [_request(sweep, coordinates, node) for node in nodes]
         for node, record in zip(nodes, ask(requests), strict=True):
-            answers[node] = _answer(record["result"])
+            result = record["result"]
+            is_good = result.get("converged", False)
+            value = (result["mu_macro"], result["mu_macro_error"]) if is_good else None
+            answers[node] = value or (math.nan, math.inf)
     return answers, state
 
 
-def _request(map_: CertifiedMap, coordinates: MapCoordinates, node: tuple[float, ...]) -> dict:
+def _request(sweep: Sweep, coordinates: MapCoordinates, node: tuple[float, ...]) -> dict:
     """Request for a node.  It equals a sweep's request for the same point."""
     place = dict(zip(coordinates.directions, coordinates.place(node), strict=True))
-    point: dict = {"velocity": (0.0,)} | {name: (value,) for name, value in place.items()}
-    (request,) = points_of(replace(map_.sweep, tolerance=map_.tolerance, **point)).requests
+    point = {"velocity": (0.0,)} | {name: (value,) for name, value in place.items()}
+    (request,) = points_of(sweep.model_copy(update=point)).requests
     return request
 
 
-def _answer(result: dict) -> tuple[float, float]:
-    if not result.get("converged", False):
-        return math.nan, math.inf
-    return result["mu_macro"], result["mu_macro_error"]
+def solve_points(sweep: Sweep, path: str | Path, processes: int) -> dict:
+    """Solve all points of a map in several processes, and write its batch file.
 
-
-def solve_points(map_: CertifiedMap, store: Store, processes: int) -> tuple[list[dict], dict]:
-    """Solve all points of a map in several processes.  Progress is printed on standard error.
-
-    Each point is stored as soon as it is solved.  Returns the records and their statistics, see
-    batches.gather.
+    Progress is printed on standard error.  Each point is appended to a journal as soon as it is
+    solved.  Returns the statistics of batch.finish.
     """
     from tqdm import tqdm
 
-    answers: dict[str, tuple[dict, float]] = {}
+    files.refuse_unwritable(Path(path).parent)
+    cache, journal = batch.Cache(path), batch.Journal(path)
+    seconds: list[float] = []
+    records: dict[str, dict] = {}
 
-    def ask(requests: list[dict]) -> Iterator[dict]:
-        results = pool.map(partial(answer, store=store), requests)
-        for record, seconds in tqdm(
-            results, map_.name, len(requests), unit="point", mininterval=1.0
-        ):
-            answers[record["key"]] = record, seconds
-            yield record
+    def ask(requests: list[dict]) -> list[dict]:
+        cache.find(requests)
+        keys = [key_of(request) for request in requests]
+        missing = dict(zip(keys, requests, strict=True))  # two nodes can be the same point
+        missing = {key: r for key, r in missing.items() if key not in cache.records}
+        jobs = [pool.submit(batch.computed, request) for request in missing.values()]
+        for job in tqdm(as_completed(jobs), None, len(jobs), unit="point", mininterval=1.0):
+            record, took = job.result()
+            seconds.append(took)
+            if evaluate.is_final(record["result"]):
+                journal.append(record)
+            records[record["key"]] = record
+        records.update((key, cache.records[key]) for key in keys if key in cache.records)
+        return [records[key] for key in keys]
 
-    with ProcessPoolExecutor(processes, None, _begin, (named_files.PLACES,)) as pool:
-        refine(map_, ask)
-    return gather(answers.values())
+    try:
+        with ProcessPoolExecutor(processes, None, _begin, (named_files.PLACES,)) as pool:
+            refine(sweep, ask)
+    finally:
+        journal.close()
+    return batch.finish(cache, [records[key] for key in sorted(records)], seconds)
 
 
 def _begin(places: dict[str, Path]) -> None:

@@ -109,7 +109,8 @@ def _torque(shown: xr.Dataset, along: str) -> list[dict]:
 def about(name: str, dataset: xr.Dataset) -> dict:
     """Return the description of a map or of lines. The paper's sweeps have the group None."""
     poisson = float(dataset["poisson"])
-    group = dataset.attrs.get("group", "drives" if DRIVE in dataset.attrs else None)
+    of_paper = name in ("transverse", "bore", "continuous_bore")
+    group = None if of_paper else "drives" if DRIVE in dataset.attrs else "sweeps"
     return {
         "name": name,
         "id": f"{name} {number(poisson)}",

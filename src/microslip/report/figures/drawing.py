@@ -4,7 +4,7 @@ Figures show stored numbers only: every curve, including those from theory, is a
 dataset. Each kind of figure has a module. The module `style` defines colours and fonts, and `data`
 selects parts of datasets.
 
-    figure = draw("fig2_transverse_map", {"transverse": data.loaded("results/transverse.nc")})
+    figure = draw("map", {"transverse": data.loaded("results/transverse.nc")})
     save(figure, "results/figures/fig2_transverse_map.pdf")
 
 Matplotlib is imported by the first call of `draw` or `save`.
@@ -16,54 +16,39 @@ import importlib
 import json
 import os
 import sys
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from contextlib import suppress
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from microslip.config.records import CERTIFIED
 from microslip.foundation.files import writing_beside
 
 if TYPE_CHECKING:
     import xarray as xr
     from matplotlib.figure import Figure
 
-_DRAWN: dict[str, tuple[str, ...]] = {
-    "fig1_force_history": ("history.draw", "transverse"),
-    "fig2_transverse_map": ("maps.draw", "transverse"),
-    "fig3_traction_field": ("field.draw", "continuous_bore"),
-    "fig4_continuous_bore": ("steady.curves", "continuous_bore"),
-    "fig5_transients": ("steady.transients", "continuous_bore"),
-    "fig6_bore_map": ("maps.draw", "bore"),
-    "poisson": ("poisson.draw", "transverse", "bore"),
-    "drift_maps": ("drift.draw", "drift_transverse", "drift_bore"),
-    "drives": ("drives.drives", "transverse", "drive_force", "drive_spring", "drive_body"),
-    "accuracy_profile": ("accuracy.profile", "accuracy_cost"),
-    "accuracy_vs_cost": ("work_precision.draw", "accuracy_cost"),
-    "accuracy_vs_work": ("work_precision.draw", "accuracy_cost"),
-    "model_map": ("model_map.draw", "accuracy_cost"),
-    "stability_atlas": ("atlas.draw", "stability"),
-    "claims_static": ("claims.static", "claims"),
-    "claims_patches": ("claims.patches", "claims"),
-    "fit": ("fit.draw", "fit"),
-    "curve": ("curve.draw", "curve"),
+DRAWN = {
+    "history": ("history.draw",),
+    "map": ("maps.draw", "groups.draw", "certified.draw", "drift.draw"),
+    "field": ("field.draw",),
+    "curves": ("steady.curves", "groups.draw"),
+    "transients": ("steady.transients",),
+    "drives": ("drives.drives",),
+    "accuracy_profile": ("accuracy.profile",),
+    "accuracy_vs_cost": ("work_precision.draw",),
+    "accuracy_vs_work": ("work_precision.draw",),
+    "model_map": ("model_map.draw",),
+    "stability_atlas": ("atlas.draw",),
+    "claims_static": ("claims.static",),
+    "claims_patches": ("claims.patches",),
+    "fit": ("fit.draw",),
+    "curve": ("curve.draw",),
 }
-"""For each figure, the module and function that draw it, and the names of its datasets."""
+"""For each kind of figure, the modules and functions that draw it.
 
-ON_DEMAND = ("fit", "curve")
-"""Figures that commands draw from their own results."""
-FIGURES = {name: tuple(keys) for name, (_, *keys) in _DRAWN.items() if name not in ON_DEMAND}
-"""Figures of the workflow, with the names of the datasets.
-
-Figures whose names depend on the configuration are not included. These are the figures for
-certified maps and for groups in `extended`, see `figure_of`.
+The kinds fit and curve are drawn by commands, from their own results.  All other kinds are those of
+config.settings.KINDS.
 """
-
-SHORT_NAMES = {name.partition("_")[0]: name for name in FIGURES if name.startswith("fig")}
-"""Full names of the paper's figures, keyed by their short names fig1 to fig6."""
-
-MOST_POISSONS = 4
-"""Maximum number of Poisson's ratios in the figure `poisson`."""
 
 FORMATS: dict[str, tuple[dict[str, None], str]] = {
     "png": ({"Software": None}, "Description"),
@@ -75,40 +60,41 @@ PROVENANCE = ["title", "references", "microslip_version", "source_digest", "resu
 PROVENANCE += ["configuration", "library_versions"]
 """Attributes of a dataset that describe its provenance."""
 
-__all__ = ["FIGURES", "FORMATS", "draw", "save"]
 
-
-def figure_of(group: str) -> str:
-    """Return the name of the figure for a group of sweeps in `extended`."""
-    return f"extended_{group}"
-
-
-def modules_of(name: str) -> tuple[str, ...]:
-    """Return the paths of the modules that draw a figure, relative to the package.
+def modules_of(kind: str) -> tuple[str, ...]:
+    """Return the paths of the modules that draw a kind of figure, relative to the package.
 
     Modules that these modules import are not included.
     """
-    folder = "report/figures"
-    return f"{folder}/drawing.py", f"{folder}/{_function_of(name)[0]}.py"
+    names = dict.fromkeys(function.partition(".")[0] for function in DRAWN[kind])
+    return ("report/figures/drawing.py", *(f"report/figures/{name}.py" for name in names))
 
 
-def _function_of(name: str) -> tuple[str, str]:
-    """Return the names of the module and the function that draw a figure."""
-    other = "certified.draw" if name.startswith(CERTIFIED) else "groups.draw"
-    module, _, function = _DRAWN.get(name, (other,))[0].partition(".")
-    return module, function
+def _function_of(kind: str, shown: Sequence[xr.Dataset]) -> str:
+    """Return the module and the function that draw these datasets."""
+    first, attributes = DRAWN[kind][0], shown[0].attrs
+    if kind == "curves" and (len(shown) > 1 or attributes.get("motion") != "continuous-bore"):
+        return "groups.draw"
+    if kind == "map":
+        if "map_coordinates" in attributes:
+            return "certified.draw"
+        if "force" in shown[0].dims:
+            return "drift.draw"
+        paper = attributes.get("motion") in ("transverse", "bore")
+        if len(shown) > 1 or not paper or attributes.get("pressure", "hertz") != "hertz":
+            return "groups.draw"
+    return first
 
 
-def draw(name: str, datasets: Mapping[str, xr.Dataset]) -> Figure:
+def draw(kind: str, datasets: Mapping[str, xr.Dataset]) -> Figure:
     """Draw one figure.
 
     Parameters
     ----------
-    name : str
-        Name of the figure: a key of `FIGURES`, an entry of `ON_DEMAND`, a value that `figure_of`
-        returns, or the name of a certified map.
+    kind : str
+        Kind of figure, a key of `DRAWN`.
     datasets : dict of xarray.Dataset
-        The datasets of the figure by name, or all datasets of the group.
+        The datasets of the figure by name, each with its groups.
 
     Returns
     -------
@@ -118,12 +104,11 @@ def draw(name: str, datasets: Mapping[str, xr.Dataset]) -> Figure:
     import_matplotlib()
     from microslip.report.figures.style import style
 
-    keys = _DRAWN[name][1:] if name in _DRAWN else datasets
-    shown = [datasets[key] for key in keys]
-    module, function = _function_of(name)
+    shown = list(datasets.values())
+    module, _, function = _function_of(kind, shown).partition(".")
     draw_panels = getattr(importlib.import_module(f"microslip.report.figures.{module}"), function)
     with style():
-        figure = draw_panels(name, *shown)
+        figure = draw_panels(kind, *shown)
         for _ in range(2):  # the second pass converges; the layout is then fixed
             figure.get_layout_engine().execute(figure)
         figure.set_layout_engine("none")

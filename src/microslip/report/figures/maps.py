@@ -18,8 +18,6 @@ from microslip.report.figures import style as look
 from microslip.report.figures.data import at_each_poisson, columns, curve, limit
 from microslip.report.figures.map_panel import fill
 
-MOTIONS = {"fig2_transverse_map": "transverse", "fig6_bore_map": "bore"}
-"""Motion that each figure shows."""
 LARGE = "mu_large_amplitude"
 CURVES: dict[str, dict[str, tuple[str, Any]]] = {
     "transverse": {
@@ -62,7 +60,7 @@ def draw(name: str, dataset: xr.Dataset) -> Figure:
     more ratios than `POISSONS` has entries, an evenly spaced selection is drawn, and the title
     states this.
     """
-    motion, every = MOTIONS[name], at_each_poisson(dataset)
+    motion, every = dataset.attrs["motion"], at_each_poisson(dataset)
     indices = np.unique(np.linspace(0, len(every) - 1, len(POISSONS)).round().astype(int))
     parts = [every[k] for k in indices]
     figure, maps, static_cut, large_cut = _page(len(parts))

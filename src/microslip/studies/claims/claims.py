@@ -5,8 +5,7 @@ requests are points at the tolerance of the study. The others are single runs: t
 transients, fields of tractions, and periods.
 """
 
-from microslip.config.records import STATIC_AMPLITUDES
-from microslip.config.settings import Claims
+from microslip.config.settings import STATIC_AMPLITUDES, Claims
 from microslip.foundation.canonical import number
 from microslip.studies import requests
 from microslip.studies.ladders import exact_model

@@ -11,8 +11,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 from scipy.special import j0
 
-from microslip.config.records import STATIC_AMPLITUDES
-from microslip.config.settings import Claims
+from microslip.config.settings import STATIC_AMPLITUDES, Claims
 from microslip.datasets.catalogue import FORMS, STATIC
 from microslip.datasets.variables import variable
 from microslip.studies.claims import claims

@@ -1,0 +1,121 @@
+"""Make products: datasets with their pages, figures, and pages of the explorer."""
+
+from __future__ import annotations
+
+import json
+import logging
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+from microslip.app.plan import Plan
+from microslip.config import load
+from microslip.sweeps import batch, content, evaluate
+
+log = logging.getLogger("microslip")
+
+
+def make_products(job: Any) -> None:
+    """Make the products of a job, one after the other.
+
+    job: the variable `snakemake` of a script.  Its parameter `products` is a JSON list of
+    [name, stem of the files, inputs].  Paths are relative to the folder of results.
+
+    An error in one product does not prevent the others.  The first error is raised at the end.
+    """
+    plan = Plan(load.from_mapping(job.config))
+    folder = Path(job.output[0].rpartition("/data/")[0])
+    errors = []
+    for name, stem, inputs in json.loads(job.params.products):
+        try:
+            make(plan, name, folder / "data" / stem, [folder / path for path in inputs])
+        except Exception as error:
+            errors.append(error)
+            if len(errors) > 1:
+                log.error("%s: %s: %s", name, type(error).__name__, error)
+    if errors:
+        raise errors[0]
+
+
+def make(plan: Plan, name: str, stem: Path, inputs: list[Path]) -> None:
+    """Make the files of a product, and let its plain names refer to them.
+
+    stem: path of the files without ending.  inputs: datasets, then batch files.
+
+    Raises SourcesEdited if the code has changed since the job was planned.
+    """
+    product = plan.products[name]
+    if stem.name.partition("-")[0] != product.stem:
+        raise batch.SourcesEdited("the code that makes it")
+    files = {end: stem.parent / f"{stem.name}{end}" for end in product.links.values()}
+    if name in plan.configuration.datasets:
+        _make_dataset(plan, name, files, inputs)
+    elif product.kind == "explorer":
+        _make_explorer(plan, name, files[".html"], inputs)
+    else:
+        _draw(plan, name, files, inputs)
+    for plain, ending in product.links.items():
+        content.remove_others(files[ending])
+        content.link(files[ending], stem.parents[1] / plain)
+
+
+def _make_dataset(plan: Plan, name: str, files: dict[str, Path], inputs: list[Path]) -> None:
+    from microslip.datasets import certified_map, netcdf, sweep_dataset
+    from microslip.report import claims_page, dataset_page
+    from microslip.studies import registry
+
+    configuration, failed = plan.configuration, []
+
+    def records() -> Iterator[dict]:
+        for record in batch.records_in(inputs):
+            if not evaluate.is_final(record["result"]):
+                failed.append(record)
+            yield record
+
+    builders = {"sweep": sweep_dataset, "certified": certified_map}
+    builder: Any = builders.get(plan.products[name].kind, registry)
+    root, groups = builder.build(configuration, name, records())
+    marker = files[".nc"].with_suffix(content.GAPS)
+    if failed:
+        marker.parent.mkdir(parents=True, exist_ok=True)
+        marker.touch()
+    netcdf.write(files[".nc"], root, groups)
+    shown = netcdf.whole(files[".nc"]) if builder is registry else root
+    lines = list(builder.report(shown, name))
+    (claims_page if name == "claims" else dataset_page).write(files[".html"], shown, lines)
+    for line in lines:
+        log.info(line)
+
+
+def _draw(plan: Plan, name: str, files: dict[str, Path], inputs: list[Path]) -> None:
+    from microslip.report.figures import drawing
+    from microslip.report.figures.data import loaded
+
+    figure = plan.configuration.figures[name]
+    datasets = {
+        dataset: loaded(path) for dataset, path in zip(figure.datasets, inputs, strict=True)
+    }
+    drawn = drawing.draw(figure.kind, datasets)
+    for path in files.values():
+        drawing.save(drawn, path)
+
+
+def _make_explorer(plan: Plan, name: str, path: Path, inputs: list[Path]) -> None:
+    from microslip.report.explorer import explorer, page
+    from microslip.report.figures.data import loaded
+
+    configuration, figure = plan.configuration, plan.configuration.figures[name]
+    count = len(figure.datasets)
+    answer = batch.lookup(batch.records_in(inputs[count:]))
+    maps = explorer.maps_of(configuration, figure)
+    periods = {
+        one: [answer(r) for r in explorer.period_requests(configuration, *maps, name=one)]
+        for one in maps
+    }
+    datasets = {
+        one: loaded(file) for one, file in zip(figure.datasets, inputs[:count], strict=True)
+    }
+    certified = [datasets.pop(one) for one in explorer.certified_of(configuration, figure)]
+    page.write(path, datasets, periods, certified)
+    for line in explorer.report(periods):
+        log.info(line)

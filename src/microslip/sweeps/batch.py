@@ -1,0 +1,266 @@
+"""Files with the records of batches, and journals of the jobs that compute them.
+
+A batch file contains the names of the rows of its requests in the first line, then a record in
+each line, and a checksum at the end.  It is written in one atomic step.  Batch files are also the
+cache: a job takes records from all batch files in the folder that share a row with its batch, and
+from all journals.  A journal contains the records that a job has computed so far; a job that is
+killed loses only the point in progress.
+
+A record has the keys key, request, result and versions.
+"""
+
+from __future__ import annotations
+
+import functools
+import hashlib
+import importlib.metadata
+import json
+import logging
+import os
+import platform
+import sys
+import time
+import uuid
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from contextlib import suppress
+from pathlib import Path
+
+from microslip.foundation import files, source_digest
+from microslip.foundation.canonical import canonical_json
+from microslip.foundation.errors import CacheError, SolverError
+from microslip.sweeps import evaluate
+from microslip.sweeps.request import key_of, label, row_of
+
+log = logging.getLogger(__name__)
+
+NOT_FINAL = b" not final\n"
+"""End of the checksum line if the solver failed at a point or reached its time limit.  Such a point
+is computed again by the next run."""
+BETWEEN_FLUSHES = 1.0
+"""Seconds between two flushes of a journal to disk, for a crash of the computer."""
+
+
+class SourcesEdited(CacheError):
+    """The code on disk differs from the running code, so that a result could come from either."""
+
+    def __init__(self, file: str):
+        super().__init__(
+            f"{file} was edited while its code was running, so that the result is not stored; "
+            "run again: finished points are stored"
+        )
+
+
+# Files
+
+
+def write(path: str | Path, records: Sequence[dict], final: bool = True) -> None:
+    """Write the records of a batch to a file in one atomic step.
+
+    final: False if a record is not final (see evaluate.is_final).  Raises CacheError if the file
+    cannot be written.
+    """
+    rows = sorted({row_of(record["request"]) for record in records})
+    lines = [canonical_json({"rows": rows}), *map(canonical_json, records)]
+    content = "".join(f"{line}\n" for line in lines).encode()
+    checksum = hashlib.sha256(content).hexdigest().encode()
+    files.write_atomically(Path(path), content + checksum + (b"\n" if final else NOT_FINAL))
+
+
+def read(path: str | Path) -> list[dict]:
+    """Read the records of a batch file in their order.  Raises CacheError if the file is missing or
+    damaged."""
+    lines, _ = _checked(path)
+    if not lines:
+        raise CacheError(f"{path} is damaged; run again: finished points are kept")
+    return [json.loads(line) for line in lines[1:]]
+
+
+def is_final(path: str | Path) -> bool:
+    """True if a batch file is undamaged and all its records are final."""
+    with suppress(CacheError):
+        lines, final = _checked(path)
+        return final and bool(lines)
+    return False
+
+
+def records_in(paths: Iterable[str | Path]) -> Iterator[dict]:
+    """Iterate over the records in batch files.  Raises CacheError for a damaged file."""
+    for path in paths:
+        yield from read(path)
+
+
+def lookup(records: Iterable[dict]) -> Callable[[dict], dict]:
+    """Return a function that maps a request to its record in `records`."""
+    by_key = {record["key"]: record for record in records}
+    return lambda request: by_key[key_of(request)]
+
+
+def _checked(path: str | Path) -> tuple[list[bytes], bool]:
+    """Return the lines of a file without the checksum, and whether the records are final.
+
+    There are no lines if the file is damaged.
+    """
+    try:
+        content = Path(path).read_bytes()
+    except OSError as error:
+        raise CacheError(files.advice("read", path, error)) from error
+    end, final = content.rfind(b"\n", 0, -1) + 1, not content.endswith(NOT_FINAL)
+    checksum = hashlib.sha256(content[:end]).hexdigest().encode() + (b"\n" if final else NOT_FINAL)
+    return (content[:end].splitlines() if content[end:] == checksum else []), final
+
+
+class Cache:
+    """Records of other batch files and journals in the folder of a batch.
+
+    Attributes
+    ----------
+    path : Path
+        File of the batch.
+    records : dict of str to dict
+        Final records by key.
+    """
+
+    def __init__(self, path: str | Path):
+        self.path = Path(path)
+        self.records: dict[str, dict] = {}
+        self._files = sorted(self.path.parent.glob("*.jsonl"))
+        self._rows = {file: self._rows_in(file) for file in self._files}
+        self._journals = {file: self._read_journal(file) for file in self._glob_journals()}
+
+    def find(self, requests: Iterable[dict]) -> None:
+        """Read the batch files that share a row with the requests."""
+        rows = {row_of(request) for request in requests}
+        for file in [file for file, other in self._rows.items() if not rows.isdisjoint(other)]:
+            del self._rows[file]
+            try:
+                self._add(read(file))
+            except CacheError as error:
+                log.warning("%s", error)
+
+    def remove_journals(self, keys: set[str]) -> None:
+        """Remove the journals whose records are all in a batch file with these keys."""
+        for file in self._glob_journals():
+            if keys.issuperset(self._journals.get(file) or self._read_journal(file)):
+                with suppress(OSError):
+                    file.unlink()
+
+    def _glob_journals(self) -> list[Path]:
+        return sorted(self.path.parent.glob("*.journal"))
+
+    def _rows_in(self, file: Path) -> frozenset[str]:
+        """Names of the rows in the first line of a batch file; empty if the file is damaged."""
+        try:
+            with open(file, "rb") as lines:
+                return frozenset(json.loads(lines.readline())["rows"])
+        except (OSError, ValueError, KeyError, TypeError):
+            log.warning("%s is damaged: its points are computed again", file)
+            return frozenset()
+
+    def _read_journal(self, file: Path) -> set[str]:
+        """Add the records of a journal, whose last line can be incomplete; return their keys."""
+        records = []
+        with suppress(OSError):
+            for line in file.read_bytes().splitlines():
+                with suppress(ValueError):
+                    records.append(json.loads(line))
+        return self._add(records)
+
+    def _add(self, records: Iterable[dict]) -> set[str]:
+        final = [record for record in records if evaluate.is_final(record["result"])]
+        self.records.update((record["key"], record) for record in final)
+        return {record["key"] for record in final}
+
+
+class Journal:
+    """The records that a job has computed so far.  The file is created by the first record."""
+
+    def __init__(self, path: str | Path):
+        """path: file of the batch."""
+        self.path = Path(path).with_suffix(f".{uuid.uuid4().hex[:8]}.journal")
+        self._file: int | None = None
+        self._flushed = 0.0
+
+    def append(self, record: dict) -> None:
+        """Append a record.  Raises CacheError if it cannot be written."""
+        try:
+            if self._file is None:
+                self._file = os.open(self.path, os.O_WRONLY | os.O_CREAT | os.O_APPEND, 0o666)
+            os.write(self._file, f"{canonical_json(record)}\n".encode())
+            if time.monotonic() - self._flushed > BETWEEN_FLUSHES:
+                os.fsync(self._file)
+                self._flushed = time.monotonic()
+        except OSError as error:
+            raise CacheError(files.advice("write", self.path, error)) from error
+
+    def close(self) -> None:
+        """Close the file.  It stays until its records are in a batch file."""
+        if self._file is not None:
+            os.close(self._file)
+            self._file = None
+
+
+# Results
+
+
+def computed(request: dict) -> tuple[dict, float]:
+    """Compute a request.  Return its record, and the CPU time of the solver in seconds.
+
+    Raises SourcesEdited if code that was imported during the computation differs from the code that
+    names the result.
+    """
+    loaded, started = len(sys.modules), time.process_time()
+    result = evaluate.computed(request)
+    seconds = time.process_time() - started
+    if len(sys.modules) != loaded and (edited := source_digest.LOADED.edited()):
+        raise SourcesEdited(edited)
+    # Times are omitted so that equal requests have equal records, except in measurements of time.
+    key = key_of(request)
+    return {"key": key, "request": request, "result": result, "versions": versions()}, seconds
+
+
+def solve(requests: Sequence[dict], path: str | Path) -> dict:
+    """Write the batch file of these requests.  Only records that the folder lacks are computed.
+
+    Returns the statistics of `finish`.  Raises CacheError if the file cannot be written.
+    """
+    files.refuse_unwritable(Path(path).parent)
+    cache, journal = Cache(path), Journal(path)
+    seconds: list[float] = []
+    cache.find(requests)
+    records = dict(cache.records)
+    try:
+        for request in requests:
+            key = key_of(request)
+            if key not in records:
+                records[key], took = computed(request)
+                seconds.append(took)
+                if evaluate.is_final(records[key]["result"]):
+                    journal.append(records[key])
+    finally:
+        journal.close()
+    return finish(cache, [records[key_of(request)] for request in requests], seconds)
+
+
+def finish(cache: Cache, records: Sequence[dict], seconds: Sequence[float]) -> dict:
+    """Write the batch file, remove the journals that it replaces, and return the statistics: the
+    number of records, the number of computed records, and their CPU time.
+
+    Points that did not converge are logged.  Raises SolverError if the solver failed at all points.
+    """
+    results = [record["result"] for record in records]
+    for record, result in zip(records, results, strict=True):
+        if not result.get("converged", True):
+            log.info("not converged: %s: %s", label(record["request"]), result["reason"])
+    if all(result.get("crashed") for result in results):
+        first = f"{label(records[0]['request'])}: {results[0]['reason']}"
+        raise SolverError(f"every point of this batch failed ({len(records)}), first {first}")
+    write(cache.path, records, all(map(evaluate.is_final, results)))
+    cache.remove_journals({record["key"] for record in records})
+    return {"points": len(records), "computed": len(seconds), "seconds": sum(seconds)}
+
+
+@functools.cache
+def versions() -> dict[str, str]:
+    """Versions of Python and of the numerical libraries, by name."""
+    libraries = {name: importlib.metadata.version(name) for name in ("numpy", "scipy", "numba")}
+    return {"python": platform.python_version(), **libraries}

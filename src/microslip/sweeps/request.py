@@ -1,0 +1,183 @@
+"""Requests: what is computed, as plain dicts of physical and numerical settings.
+
+Numbers of a request are canonical texts.  A result is named by the hash of its request and of the
+solver's code, so that it is never outdated and never computed twice.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from functools import cache
+from itertools import pairwise, product
+from typing import TYPE_CHECKING, NamedTuple
+
+from microslip.config.quantities import DRIVES
+from microslip.foundation import source_digest
+from microslip.foundation.canonical import canonical_json, fingerprint, number, sha256
+from microslip.sweeps.evaluate import request_of
+
+if TYPE_CHECKING:
+    from microslip.config.settings import Configuration, Sweep
+
+FORMAT = 1
+"""Version of the content of records.  Increase it if this content changes without a change of the
+solver."""
+STARTS = ("stress-free", "full-rotation", "full-slip")
+"""Initial states in Figure 5."""
+CONTENT_NAME = 16
+"""Number of hexadecimal digits of a hash in the name of a file."""
+
+
+class Batch(NamedTuple):
+    """Requests of a job: each row is combined with each value on an axis.
+
+    Attributes
+    ----------
+    rows : sequence of dict
+        Requests without the axis, or complete requests if there is no axis.
+    axis : str
+        Key of the axis; empty if there is no axis.
+    values : sequence of str
+        Values along the axis.
+    """
+
+    rows: Sequence[dict]
+    axis: str = ""
+    values: Sequence[str] = ()
+
+    @property
+    def requests(self) -> list[dict]:
+        """All requests, row by row."""
+        if not self.axis:
+            return list(self.rows)
+        return [row | {self.axis: value} for row in self.rows for value in self.values]
+
+    @property
+    def name(self) -> str:
+        """Hash of the requests and of the code that computes their results."""
+        code = sorted({source_digest.of_request(row) for row in self.rows})
+        return fingerprint(code, self._asdict(), FORMAT)[:CONTENT_NAME]
+
+    @property
+    def folder(self) -> str:
+        """Name of the folder of the batch: the motion, without parameters."""
+        return str(self.rows[0].get("motion", "none")).partition(":")[0]
+
+
+def solver_names(sweep: Sweep) -> tuple[str, str]:
+    """Canonical names of the motion and the pressure of a sweep.
+
+    Equal motions and equal pressures have equal names, so that they share results.
+    """
+    if ":" not in sweep.motion + sweep.pressure:
+        return sweep.motion, sweep.pressure  # a name without numbers is canonical
+    return _canonical_names(sweep.motion, sweep.pressure)
+
+
+@cache
+def _canonical_names(motion: str, pressure: str) -> tuple[str, str]:
+    from microslip.motions.by_name import motion_named
+    from microslip.pressures.by_name import pressure_named
+
+    return motion_named(motion).name, pressure_named(pressure).name
+
+
+def settings_of(sweep: Sweep) -> dict:
+    """Entries that the requests of all points of a sweep share."""
+    motion, pressure = solver_names(sweep)
+    common = {
+        "kind": "point" if sweep.method is None else "probe",
+        "motion": motion,
+        "model": sweep.model,
+        "tolerance": None if sweep.tolerance is None else number(sweep.tolerance),
+        "cells": sweep.cells,
+        "steps": sweep.steps,
+    }
+    if pressure != "hertz":
+        common["pressure"] = pressure
+    return common | ({} if sweep.method is None else {"method": sweep.method})
+
+
+def points_of(sweep: Sweep) -> Batch:
+    """Return the requests for all points of a sweep.
+
+    The requests are in the order of the dataset's dimensions.  The last dimension, velocity or
+    force, changes fastest and is the axis of the batch.
+    """
+    axes = {name: [*map(number, values)] for name, values in sweep.axes.items()}
+    common = {"amplitude": None, "velocity": None} | settings_of(sweep)
+    *names, last = axes
+    places = product(*(axes[name] for name in names))
+    rows = [common | dict(zip(names, place, strict=True)) for place in places]
+    for row in rows:
+        row.pop(last, None)
+    return Batch(rows, last, axes[last])
+
+
+def runs_of(configuration: Configuration, name: str) -> list[dict]:
+    """Return the requests for the single runs in the dataset of the sweep `name`.
+
+    Figures of the kinds history, field and transients ask for them.
+    """
+    requests = []
+    for figure in configuration.figures.values():
+        if figure.run and figure.sweep == (name,):
+            motion = solver_names(configuration.sweeps[name])[0]
+            starts = {"history": STARTS[:1], "transients": STARTS}.get(figure.kind)
+            kind = "field" if starts is None else "history"
+            for start in starts or [None]:
+                place = {"motion": motion} | ({} if start is None else {"start": start})
+                requests.append(request_of(kind, **place, **figure.run))
+    return requests
+
+
+def divide(points: Batch, size: int) -> list[Batch]:
+    """Divide points into batches, in order.  A batch contains whole rows, or parts of long rows.
+
+    size: mean number of points in a batch.
+    """
+    parts = cut(points.values, size) if len(points.values) > size else [list(points.values)]
+    blocks = cut(points.rows, max(size // len(points.values), 1))
+    return [Batch(block, points.axis, part) for block in blocks for part in parts]
+
+
+def cut(items: Sequence, mean: int) -> list[list]:
+    """Divide items into lists of consecutive items, with about `mean` items each.
+
+    The lists are equal within an eighth of their length, or within one item.  Inside this margin,
+    hashes of the items decide, so that an additional item changes few lists if they are long.
+    """
+    count = max(round(len(items) / max(mean, 1)), 1)
+    margin = len(items) // (16 * count)
+    ends = [0]
+    for index in range(1, count):
+        even = index * len(items) // count
+        near = range(even - margin, even + margin + 1)
+        ends.append(min(near, key=lambda end: fingerprint(items[end])) if margin else even)
+    return [list(items[start:end]) for start, end in pairwise([*ends, len(items)]) if start < end]
+
+
+def key_of(request: dict) -> str:
+    """Return the name of a request's result: a hash of the request and of the code.
+
+    Results differ by rounding errors between versions of NumPy, SciPy and Numba.  These versions
+    are recorded in each result, but they are not part of the name.
+    """
+    content = {"request": request, "source": source_digest.of_request(request), "format": FORMAT}
+    return sha256(canonical_json(content))
+
+
+def row_of(request: dict) -> str:
+    """Return the name of a request's row: a hash of the request without its velocity or force."""
+    axis = "force" if request.get("force") is not None else "velocity"
+    fixed = {name: value for name, value in request.items() if name != axis}
+    return fingerprint(fixed, source_digest.of_request(request))[:CONTENT_NAME]
+
+
+def label(request: dict) -> str:
+    """Describe a request in a few words, for messages."""
+    names = ["pressure", "poisson", "amplitude", "velocity", *DRIVES, "start"]
+    if request["kind"] != "point":
+        names += ["model", "method", "cells", "angles", "steps"]
+    place = ", ".join(f"{name} {request[name]}" for name in names if request.get(name) is not None)
+    return f"{request.get('motion', request['kind'])} at {place}"

@@ -1,0 +1,208 @@
+"""Batch files, the records that they share, journals, and errors of the solver."""
+
+import errno
+import json
+from unittest.mock import Mock
+
+import numpy as np
+import pytest
+from stubs.sweep_stub import EFFORT, RUNS, Solver, configured, requests_of
+
+import microslip
+from microslip.contact.contact import StepFailure
+from microslip.foundation.errors import CacheError, InputError, SolverError
+from microslip.solver.budget import Spent
+from microslip.sweeps import batch, evaluate, request
+
+
+def points(**transverse):
+    grid = {"velocity": [0.1, 1], "amplitude": [0, 1, 2], **transverse}
+    return requests_of(configured({"transverse": grid}), "transverse")
+
+
+@pytest.fixture
+def solver(monkeypatch):
+    return Solver(monkeypatch)
+
+
+def failing_at(monkeypatch, error):
+    """Let the stub of the solver raise an error at the amplitude 2."""
+    solve = microslip.solve
+
+    def fail(**arguments):
+        if arguments["amplitude"] == 2.0:
+            raise error
+        return solve(**arguments)
+
+    monkeypatch.setattr("microslip.solve", fail)
+
+
+def journals(folder):
+    return list(folder.glob("*.journal"))
+
+
+DAMAGE = {
+    "a bit": lambda text: text.replace(b'"0.5"', b'"0.6"', 1),
+    "half of it": lambda text: text[: len(text) // 2],
+    "a record": lambda text: text.partition(b"\n")[2],
+    "the checksum": lambda text: text[: text.rfind(b"\n", 0, -1) + 1],
+    "another file": lambda text: b"velocity,mu_macro\n",
+}
+
+
+@pytest.mark.parametrize("kind", DAMAGE)
+def test_a_damaged_batch_is_noticed_and_solved_again_to_the_same_bytes(kind, solver, tmp_path):
+    path = tmp_path / "batch.jsonl"
+    batch.solve(points(velocity=[0.5]), path)
+    assert batch.is_final(path)
+    whole = path.read_bytes()
+    path.write_bytes(DAMAGE[kind](whole))
+    assert path.read_bytes() != whole
+    assert not batch.is_final(path)
+    with pytest.raises(CacheError, match="is damaged; run again"):
+        list(batch.records_in([path]))
+    assert batch.solve(points(velocity=[0.5]), path)["computed"] == 3
+    assert path.read_bytes() == whole
+
+
+def test_a_job_takes_the_points_of_other_batches_with_the_same_rows(solver, tmp_path):
+    first = batch.solve(points(), tmp_path / "a.jsonl")
+    assert (first["points"], first["computed"], solver.calls) == (6, 6, 6)
+    assert batch.solve(points(), tmp_path / "b.jsonl")["computed"] == 0
+    assert (tmp_path / "a.jsonl").read_bytes() == (tmp_path / "b.jsonl").read_bytes()
+    assert batch.solve(points(amplitude=[0, 0.5, 1, 2]), tmp_path / "c.jsonl")["computed"] == 2
+    assert batch.solve(points(velocity=[0.1, 0.2, 1]), tmp_path / "d.jsonl")["computed"] == 3
+    assert batch.solve(points(tolerance=1e-2), tmp_path / "e.jsonl")["computed"] == 6
+    assert not journals(tmp_path)
+
+
+def test_only_files_with_the_same_rows_are_read(solver, tmp_path, monkeypatch):
+    batch.solve(points(), tmp_path / "a.jsonl")
+    read = Mock(side_effect=batch.read)
+    monkeypatch.setattr(batch, "read", read)
+    batch.solve(points(tolerance=1e-2), tmp_path / "b.jsonl")
+    assert not read.called
+
+
+def test_a_job_continues_from_the_journal_of_a_killed_one(solver, tmp_path, monkeypatch):
+    whole = tmp_path / "whole" / "batch.jsonl"
+    batch.solve(points(), whole)
+    path = tmp_path / "killed" / "batch.jsonl"
+    solve = microslip.solve
+
+    def killed(**arguments):
+        if solver.calls == 10:
+            raise KeyboardInterrupt
+        return solve(**arguments)
+
+    with monkeypatch.context() as patch:
+        patch.setattr("microslip.solve", killed)
+        with pytest.raises(KeyboardInterrupt):
+            batch.solve(points(), path)
+    (journal,) = journals(path.parent)
+    lines = journal.read_bytes()
+    assert lines.count(b"\n") == 4
+    journal.write_bytes(lines[:-40])  # the last line was not written completely
+    assert batch.solve(points(), path)["computed"] == 3
+    assert path.read_bytes() == whole.read_bytes()
+    assert not journals(path.parent)
+
+
+def test_a_journal_is_used_by_another_batch_and_stays_until_its_points_are_in_one(solver, tmp_path):
+    other = batch.Journal(tmp_path / "other.jsonl")
+    for one in points(amplitude=[1, 3]):
+        other.append(batch.computed(one)[0])
+    assert batch.solve(points(), tmp_path / "batch.jsonl")["computed"] == 4
+    assert len(journals(tmp_path)) == 1
+    assert batch.solve(points(amplitude=[1, 3]), tmp_path / "other.jsonl")["computed"] == 0
+    assert not journals(tmp_path)
+
+
+def test_a_record_is_the_same_computed_or_read(monkeypatch, tmp_path):
+    Solver(monkeypatch, fails=2.0)
+    steady = configured({"continuous_bore": {"velocity": [0.5]}}, figures={"r": RUNS["field"]})
+    for name, requests in (("a", points()), ("b", requests_of(steady, "continuous_bore"))):
+        path = tmp_path / f"{name}.jsonl"
+        records = [batch.computed(one)[0] for one in requests]
+        batch.solve(requests, path)
+        assert json.loads(json.dumps(records)) == batch.read(path)
+        assert all("solve_time_s" not in record["result"] for record in records)
+        assert batch.lookup(records)(requests[0]) == records[0]
+
+
+GAPS = [
+    SolverError("stalled"),
+    StepFailure("diverged"),
+    Spent("the work is spent"),
+    InputError("velocity", -1, "allowed is a number of at least 0"),
+]
+
+
+@pytest.mark.parametrize("error", GAPS, ids=lambda error: type(error).__name__)
+def test_a_point_at_which_the_solver_fails_is_data_too(monkeypatch, solver, tmp_path, error):
+    path = tmp_path / "batch.jsonl"
+    with monkeypatch.context() as patch:
+        failing_at(patch, error)
+        batch.solve(points(), path)
+    records = batch.read(path)
+    assert [record["result"]["converged"] for record in records] == 4 * [True] + 2 * [False]
+    assert records[-1]["result"]["reason"] == f"{type(error).__name__}: {error}"
+    assert not batch.is_final(path)
+    assert not batch.is_final(tmp_path / "none.jsonl")
+    assert batch.solve(points(), tmp_path / "again.jsonl")["computed"] == 2  # the failed points
+
+
+NOT_OF_THE_POINT = [
+    TypeError("unsupported operand"),
+    ValueError("f(a) and f(b) must have different signs"),
+    np.linalg.LinAlgError("Singular matrix"),
+    RecursionError("too deep"),
+    MemoryError("no room"),
+    KeyboardInterrupt(),
+    SystemExit(1),
+    CacheError("no room"),
+    OSError(errno.ENOSPC, ""),
+]
+
+
+@pytest.mark.parametrize("error", NOT_OF_THE_POINT, ids=lambda error: type(error).__name__)
+def test_an_error_of_the_code_or_the_machine_fails_the_batch(monkeypatch, solver, tmp_path, error):
+    failing_at(monkeypatch, error)
+    with pytest.raises(type(error)):
+        batch.solve(points(), tmp_path / "batch.jsonl")
+    (journal,) = journals(tmp_path)
+    assert journal.read_bytes().count(b"\n") == 4  # earlier points are stored
+
+
+def test_a_batch_in_which_every_point_fails_is_no_data(monkeypatch, solver, tmp_path):
+    failing_at(monkeypatch, SolverError("stalled"))
+    with pytest.raises(SolverError, match=r"every point of this batch failed \(2\).*: stalled"):
+        batch.solve(points(amplitude=[2]), tmp_path / "batch.jsonl")
+
+
+@pytest.mark.parametrize("kind", sorted(evaluate._KINDS))
+def test_a_failure_of_the_solver_is_a_gap_for_every_kind_of_request(monkeypatch, kind):
+    fail = Mock(side_effect=SolverError("a root finder\nfound none"))
+    monkeypatch.setitem(evaluate._KINDS, kind, fail)
+    result = evaluate.computed({"kind": kind})
+    assert result["converged"] is False
+    assert result["reason"] == "SolverError: a root finder found none"
+    assert not evaluate.is_final(result)
+
+
+@pytest.mark.parametrize(("budget", "computed"), [("time", 6), ("work", 0)])
+def test_what_ran_out_of_time_is_computed_again(monkeypatch, solver, tmp_path, budget, computed):
+    monkeypatch.setitem(EFFORT, "exhausted", budget)
+    batch.solve(points(), tmp_path / "a.jsonl")
+    assert batch.solve(points(), tmp_path / "b.jsonl")["computed"] == computed
+
+
+def test_a_folder_that_cannot_be_written_to_is_one_line_before_any_computation(solver, tmp_path):
+    (tmp_path / "file").touch()
+    with pytest.raises(CacheError, match="cannot write to .*file/inside"):
+        batch.solve(points(), tmp_path / "file" / "inside" / "batch.jsonl")
+    assert not solver.calls
+
+
+def test_requests_of_one_row_share_its_name(solver):
+    assert len({request.row_of(one) for one in points()}) == 3

@@ -1,0 +1,136 @@
+"""Requests of sweeps, and their division into batches."""
+
+import json
+
+import pytest
+from stubs.sweep_stub import RUNS, configured
+
+from microslip.config import load
+from microslip.foundation import source_digest
+from microslip.sweeps import request as sweep
+
+
+def points_of(**transverse):
+    grid = {"velocity": [0.1, 1], "amplitude": [0, 1, 2], **transverse}
+    return sweep.points_of(configured({"transverse": grid}).sweeps["transverse"])
+
+
+def requests_of(**transverse):
+    return points_of(**transverse).requests
+
+
+def test_requests_are_canonical_and_run_through_the_velocity_fastest():
+    result = [(r["amplitude"], r["velocity"]) for r in requests_of()]
+    assert result == [(a, v) for a in ("0", "1", "2") for v in ("0.1", "1")]
+    assert requests_of(amplitude=[2.0, 1, 0.0]) == requests_of()
+    forces = {"motion": "transverse", "force": [0.5, 1], "amplitude": 1}
+    result = sweep.points_of(configured({"pulled": forces}).sweeps["pulled"]).requests
+    assert [(r["velocity"], r["force"]) for r in result] == [(None, "0.5"), (None, "1")]
+
+
+def test_a_new_axis_keeps_the_old_requests():
+    with_nu = requests_of(poisson=[0, 0.3])
+    assert with_nu[:6] == requests_of()
+    assert len(with_nu) == 12
+
+
+def test_another_method_is_a_request_of_another_kind():
+    (probe,) = requests_of(velocity=1, amplitude=1, method="euler")
+    assert (probe["kind"], probe["method"]) == ("probe", "euler")
+
+
+def test_figures_ask_for_single_runs():
+    steady = {"velocity": [0.5]}
+    sweeps = {"transverse": {"velocity": 1, "amplitude": 1}, "continuous_bore": steady}
+    configuration = configured(sweeps, figures=RUNS)
+    kinds = [request["kind"] for request in sweep.runs_of(configuration, "continuous_bore")]
+    assert kinds == ["field", "history", "history", "history"]
+    (history,) = sweep.runs_of(configuration, "transverse")
+    assert (history["periods"], history["velocity"]) == (4, "0.1")
+
+
+@pytest.mark.parametrize("size", [1, 2, 4, 6, 50])
+def test_batches_of_points_hold_every_request_once_and_in_order(size):
+    for points in (points_of(), points_of(velocity=list(range(1, 30)), poisson=[0, 0.3])):
+        cut = sweep.divide(points, size)
+        assert [request for batch in cut for request in batch.requests] == points.requests
+        assert len({batch.name for batch in cut}) == len(cut)
+
+
+def sizes_of(points, size):
+    return [len(batch.requests) for batch in sweep.divide(points, size)]
+
+
+@pytest.mark.parametrize("size", [1, 2, 10, 100, 300])
+def test_batches_are_equal_within_an_eighth_or_a_row(size):
+    points = points_of(amplitude=list(range(1000)))
+    sizes = sizes_of(points, size)
+    assert len(sizes) == pytest.approx(2000 / size, rel=0.1)
+    assert max(sizes) - min(sizes) <= max(2, 0.25 * size)
+    assert sum(sizes) == 2000
+
+
+def test_the_batches_of_the_default_sweeps_keep_two_cores_busy():
+    configuration = load.load("config/config.yaml")
+    points = sweep.points_of(configuration.sweeps["bore"])
+    sizes = sizes_of(points, configuration.points_per_job)
+    assert len(sizes) % 2 == 0
+    assert max(sizes) - min(sizes) <= len(points.values)
+
+
+def test_long_rows_are_cut_along_the_velocity():
+    axis = [float(value) for value in range(1, 200)]
+    sizes = sizes_of(points_of(velocity=axis), 50)
+    assert len(sizes) == 3 * 4
+    assert 44 <= min(sizes) <= max(sizes) <= 56
+
+
+def names_of(size, **transverse):
+    return {batch.name for batch in sweep.divide(points_of(**transverse), size)}
+
+
+@pytest.mark.parametrize("amplitude", [0.5, 500.5, 2000])
+def test_an_amplitude_more_changes_few_of_the_large_batches(amplitude):
+    axis = [float(value) for value in range(1, 1000)]
+    before, after = (names_of(200, amplitude=values) for values in (axis, [*axis, amplitude]))
+    assert len(before) == len(after) == 10
+    assert 1 <= len(after - before) <= 5
+
+
+def test_a_batch_is_named_by_its_requests_and_the_code(monkeypatch):
+    (batch,) = sweep.divide(points_of(amplitude=[1]), 50)
+    assert sweep.Batch(**json.loads(json.dumps(batch._asdict()))).name == batch.name
+    name = batch.name
+    monkeypatch.setattr(source_digest, "of_request", lambda request: "of other sources")
+    assert batch.name != name
+
+
+REQUEST = {"kind": "point", "motion": "bore", "velocity": "0.1", "amplitude": "1", "cells": None}
+
+
+@pytest.mark.parametrize(
+    ("name", "value"),
+    [("motion", "transverse"), ("velocity", "0.11"), ("amplitude", "0"), ("cells", 8), ("new", 1)],
+)
+def test_everything_in_a_request_counts_for_the_name_of_its_result(name, value, monkeypatch):
+    monkeypatch.setattr(source_digest, "of_request", lambda request: "of these sources")
+    key = sweep.key_of(REQUEST)
+    assert sweep.key_of({**REQUEST, name: value}) != key
+    assert sweep.key_of(dict(reversed(REQUEST.items()))) == key
+    monkeypatch.setattr(source_digest, "of_request", lambda request: "of other sources")
+    assert sweep.key_of(REQUEST) != key
+
+
+def test_swapped_values_and_the_format_of_records_count(monkeypatch):
+    key = sweep.key_of(REQUEST)
+    assert sweep.key_of({**REQUEST, "velocity": "1", "amplitude": "0.1"}) != key
+    monkeypatch.setattr(sweep, "FORMAT", 99)
+    assert sweep.key_of(REQUEST) != key
+
+
+@pytest.mark.parametrize("name", ["velocity", "amplitude", "poisson"])
+def test_a_row_has_all_velocities_of_equal_other_settings(name):
+    rows = {sweep.row_of(request) for request in requests_of()}
+    assert len(rows) == 3
+    one, other = requests_of()[0], requests_of()[0] | {name: "0.25"}
+    assert (sweep.row_of(one) == sweep.row_of(other)) == (name == "velocity")

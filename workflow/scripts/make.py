@@ -1,0 +1,17 @@
+"""Make datasets with their pages, figures, and pages of the explorer.
+
+Output: for a dataset, a netCDF-4 file with CF conventions and an HTML page; for a figure, PNG and
+PDF; for the explorer, one HTML file that needs no network.  All quantities are dimensionless,
+except the seconds and bytes of studies.
+"""
+
+import logging
+from pathlib import Path
+
+from microslip.app.job_log import job_log
+from microslip.app.products import make_products
+
+with job_log(snakemake.log[0], shown=logging.INFO):
+    make_products(snakemake)
+    if snakemake.output[0].endswith(".made"):
+        Path(snakemake.output[0]).touch()
