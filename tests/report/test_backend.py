@@ -10,8 +10,9 @@ CODE = """
 import sys
 import numpy as np
 import xarray as xr
-from stubs import figures_stub
 from microslip.report.figures import drawing
+drawing.import_matplotlib()
+from stubs import figures_stub
 
 dataset = figures_stub.spanning("a map")
 drawing.save(drawing.draw("map", {"a": dataset}), sys.argv[1])

@@ -11,7 +11,7 @@ from matplotlib.text import Text
 from stubs import figures_stub as stub
 from stubs.figures_stub import artists
 
-from microslip.report.figures import atlas
+from microslip.report.figures import atlas, drawing
 
 pytestmark = [pytest.mark.slow, pytest.mark.usefixtures("without_layout")]
 
@@ -28,7 +28,7 @@ def stability() -> xr.Dataset:
 
 def panels_of(name, dataset) -> list:
     """Panels of an accuracy figure with the trials of their points."""
-    panels = [axes for axes in stub.draw(name, {"accuracy": dataset}).axes if axes.axison]
+    panels = [axes for axes in drawing.draw(name, {"accuracy": dataset}).axes if axes.axison]
     return [
         (axes, dataset.isel(trial=dataset["trial_point"].values == str(point)))
         for axes, point in zip(panels, dataset["point"].values, strict=True)
@@ -49,7 +49,7 @@ def test_every_trial_and_the_front_are_drawn_and_no_failure_is_hidden(name, cost
             sizes.append(line.get_xdata().size)
             plain = own & (costs > 0) & np.isfinite(costs)
             assert set(costs[plain]) <= set(line.get_xdata())
-            above = errors[own & (errors > 1e-3)]  # above the bottom strip
+            above = errors[own & (errors > 1e-3)]  # above the bottom of the axis
             assert set(above) <= set(line.get_ydata())
         assert sum(sizes) == np.isfinite(errors).sum()
         (front,) = artists(axes, "front")
@@ -69,9 +69,9 @@ def test_every_trial_and_the_front_are_drawn_and_no_failure_is_hidden(name, cost
     data = accuracy.copy(deep=True)
     data[cost][0], data["error"][1] = 0.0, 0.0
     first = panels_of(name, data)[0][0]
-    (free,), (exact,) = artists(first, "left"), artists(first, "low")
-    assert free.get_xdata()[0] == first.get_xlim()[0]
-    assert set(exact.get_ydata()) == {first.get_ylim()[0]}
+    (beyond,) = artists(first, "beyond")
+    (before,) = artists(panels_of(name, accuracy)[0][0], "beyond")
+    assert len(beyond.get_xdata()) == len(before.get_xdata()) + 2
 
 
 def test_the_error_of_the_reference_is_hatched_where_it_is_known(accuracy):
@@ -84,7 +84,7 @@ def test_the_error_of_the_reference_is_hatched_where_it_is_known(accuracy):
 
 
 def test_a_profile_shows_the_share_of_points_within_a_ratio_of_the_best(accuracy):
-    figure = stub.draw("accuracy_profile", {"accuracy": accuracy})
+    figure = drawing.draw("accuracy_profile", {"accuracy": accuracy})
     tightest = accuracy.isel(map_tolerance=int(np.argmin(accuracy["map_tolerance"].values)))
     looks = set()
     for name, ratios in zip(
@@ -120,7 +120,7 @@ def test_the_map_colours_and_names_every_region_of_the_cheapest_model():
     names[2:4, 1:3] = names[6:8, 9:12] = names[0, 12] = "mdr"
     names[8, 0] = ""
     data = cheapest(names, np.geomspace(0.1, 5, 9))
-    figure = stub.draw("model_map", {"accuracy": data})
+    figure = drawing.draw("model_map", {"accuracy": data})
     (legend,) = figure.findobj(Legend)
     handles = zip(legend.get_texts(), legend.legend_handles, strict=True)
     colours = {text.get_text().split()[-1]: to_hex(one.get_facecolor()) for text, one in handles}
@@ -138,7 +138,7 @@ def test_the_map_colours_and_names_every_region_of_the_cheapest_model():
         i = np.argmin(abs(np.log(data["bore_amplitude"].values / amplitude)))
         assert names[i, j][:2].capitalize() == text
     even = cheapest(names[:1, :1], np.array([0.5]))
-    axes = stub.draw("model_map", {"accuracy": even}).axes[0]
+    axes = drawing.draw("model_map", {"accuracy": even}).axes[0]
     assert axes.get_yscale() == "linear" and len(artists(axes, "region")) == 1
 
 
@@ -146,23 +146,26 @@ def test_the_atlas_shows_every_outcome(stability):
     data = stability.copy(deep=True)
     data["outcome"][:] = np.arange(data["outcome"].size).reshape(data["outcome"].shape) % 5
     data["outcome"].loc[{"method": "midpoint"}] = 0  # the method applies to no case
-    figure = stub.draw("stability_atlas", {"stability": data})
-    methods: list[str] = []
-    for axes, axis in zip(figure.axes, data["axis"].values, strict=True):
-        cases = data.isel(case=data["case_axis"].values == axis)
-        labels = [label.get_text() for label in axes.get_yticklabels()]
-        methods = labels if any(labels) else methods
-        assert methods[0] == "shipped" and "midpoint" not in methods
-        # As a dict, because sel has another keyword `method`.
-        expected = cases["outcome"].sel({"method": methods}).values
-        (mesh,) = artists(axes, "outcome")
-        np.testing.assert_array_equal(mesh.get_array().filled(0), expected)
-        signs = {text.get_position()[::-1]: text.get_text() for text in axes.texts}
-        for (i, j), code in np.ndenumerate(expected):
+    figure = drawing.draw("stability_atlas", {"stability": data})
+    (axes,) = figure.axes
+    methods = [label.get_text() for label in axes.get_xticklabels()]
+    assert methods[0] == "shipped" and "midpoint" not in methods
+    rows = {
+        tick: text.get_text()
+        for tick, text in zip(axes.get_yticks(), axes.get_yticklabels(), strict=True)
+    }
+    assert list(rows.values()) == list(data["case_label"].values)
+    # As a dict, because sel has another keyword `method`.
+    expected = data["outcome"].sel({"method": methods}).transpose("case", "method").values
+    signs = {text.get_position(): text.get_text() for text in axes.texts}
+    for row, codes in zip(rows, expected, strict=True):
+        for column, code in enumerate(codes):
             sign = atlas.OUTCOMES[code][2] if code else None
-            assert signs.get((i + 0.5, j + 0.5)) == sign
-        assert [t.get_text() for t in axes.get_xticklabels()] == list(cases["case_label"].values)
-        assert str(cases["axis_note"].sel(axis=axis).values) in axes.get_xlabel().replace("\n", " ")
+            assert signs.get((column + 0.5, row)) == sign
+    squares = [p for p in axes.patches if (p.get_gid() or "").startswith("outcome")]
+    assert len(squares) == np.count_nonzero(expected)
+    notes = {" ".join(text.get_text().split()) for text in axes.texts}
+    assert {*data["axis_label"].values, *data["axis_note"].values} <= notes
     (legend,) = figure.legends
     names = [text.get_text().partition(":")[0] for text in legend.get_texts()]
     assert names == ["converged", "slow", "wrong", "diverged", "blank"]

@@ -7,7 +7,6 @@ import xarray as xr
 from matplotlib.text import Text
 from stubs import claims_stub, drives_stub, studies_stub
 
-from microslip.report.figures import drawing
 from microslip.studies import registry
 from microslip.theory import paper
 
@@ -207,37 +206,6 @@ def pulled() -> dict[str, xr.Dataset]:
     """Datasets of the figures of drives."""
     maps = {f"drift_{motion}": drives_stub.drift(motion) for motion in ("transverse", "bore")}
     return maps | drives_stub.pulled()
-
-
-FIGURES = {
-    "fig1_force_history": ("history", "transverse"),
-    "fig2_transverse_map": ("map", "transverse"),
-    "fig3_traction_field": ("field", "continuous_bore"),
-    "fig4_continuous_bore": ("curves", "continuous_bore"),
-    "fig5_transients": ("transients", "continuous_bore"),
-    "fig6_bore_map": ("map", "bore"),
-    "poisson": ("map", "transverse", "bore"),
-    "drift_maps": ("map", "drift_transverse", "drift_bore"),
-    "drives": ("drives", "transverse", "drive_force", "drive_spring", "drive_body"),
-    **{
-        kind: (kind, study)
-        for study, kinds in {
-            "accuracy": ("accuracy_profile", "accuracy_vs_cost", "accuracy_vs_work", "model_map"),
-            "stability": ("stability_atlas",),
-            "claims": ("claims_static", "claims_patches"),
-        }.items()
-        for kind in kinds
-    },
-    "fit": ("fit", "fit"),
-}
-"""Kind and datasets of figures by name. Other names are those of figures of several sweeps."""
-
-
-def draw(name, datasets):
-    """Draw a figure by its name, from its datasets among these."""
-    other = "curves" if name.startswith(("extended_static", "extended_steady")) else "map"
-    kind, *keys = FIGURES.get(name, (other,))
-    return drawing.draw(kind, {key: datasets[key] for key in keys or datasets})
 
 
 def words(figure) -> str:

@@ -443,7 +443,6 @@ KINDS = {
     "field": Kind(run={"velocity": 0.5, "cells": None}, motion="continuous-bore"),
     "curves": Kind(),
     "transients": Kind(run={"velocity": 0.8, "travel": 5.0, **_SIZES}, motion="continuous-bore"),
-    "drives": Kind(),
     "explorer": Kind(),
     **{f"accuracy_{kind}": Kind("accuracy") for kind in ("profile", "vs_cost", "vs_work")},
     "model_map": Kind("accuracy"),

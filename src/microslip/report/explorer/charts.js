@@ -5,40 +5,27 @@ const FONT = { family: "DejaVu Sans, Verdana, Arial, sans-serif", size: 11, colo
 const MU = "<i>μ̃</i><sub>macro</sub>";
 const FORWARD = "forward force / (<i>μF<sub>z</sub></i>)";
 const PHONE = matchMedia("(max-width: 700px)"); // as in style.css
+const RATIOS = { type: "log", dtick: 1, exponentformat: "power" }; // settings of a logarithmic axis
+const LEGEND = { orientation: "h", x: 0, xanchor: "left", y: 1.01, yanchor: "bottom" };
 const BAR = 32; // height of the margin above a chart, where the bar of buttons hides no data
 
 // On a phone a finger scrolls the page, so the charts do not zoom and have no buttons.
 function config() {
-  return {
-    responsive: true,
-    displaylogo: false,
-    displayModeBar: PHONE.matches ? false : "hover",
-    modeBarButtons: [["toImage", "resetScale2d"]],
-  };
+  const bar = { displayModeBar: PHONE.matches ? false : "hover", modeBarButtons: [["toImage", "resetScale2d"]] };
+  return { responsive: true, displaylogo: false, ...bar };
 }
 
 function axis(title, more) {
-  return {
-    title: { text: title, standoff: 6 },
-    showline: true,
-    mirror: true,
-    ticks: "outside",
-    ticklen: 3,
-    zeroline: false,
-    gridcolor: "#ececec",
-    fixedrange: PHONE.matches,
-    ...more,
-  };
+  const lines = { showline: true, mirror: true, ticks: "outside", ticklen: 3, zeroline: false, gridcolor: "#ececec" };
+  return { title: { text: title, standoff: 6 }, ...lines, fixedrange: PHONE.matches, ...more };
 }
 
 function layout(more) {
   return {
     font: FONT,
-    margin: { l: 52, r: 10, t: BAR, b: 42 },
+    margin: { l: 48, r: 10, t: BAR, b: 42 },
     hovermode: "closest",
     dragmode: PHONE.matches ? false : "zoom",
-    paper_bgcolor: "#fff",
-    plot_bgcolor: "#fff",
     ...more,
   };
 }
@@ -63,6 +50,7 @@ function cellEdges(map) {
   return { x: edges(exponents).map((exponent) => 10 ** exponent), y: edges(map.amplitude) };
 }
 
+// contact: position [velocity, amplitude] of the form's contact, or null.
 function drawMap(element, map, row, column, contact) {
   const columns = shownColumns(map);
   const pick = (table) => table.map((row) => columns.map((j) => row[j]));
@@ -81,68 +69,38 @@ function drawMap(element, map, row, column, contact) {
   );
   // Lines are white on dark colours and black on pale ones.
   const levels = (start, end, color) => ({
-    type: "contour",
-    x: velocity,
-    y: map.amplitude,
-    z: mu,
+    type: "contour", x: velocity, y: map.amplitude, z: mu, line: { color, width: 1 },
     contours: { coloring: "none", start, end, size: 0.1, showlabels: true, labelfont: { size: 10, color } },
-    line: { color, width: 1 },
-    showscale: false,
-    showlegend: false,
-    hoverinfo: "skip",
+    showscale: false, showlegend: false, hoverinfo: "skip",
   });
   const traces = [
     {
-      type: "heatmap",
-      name: "map",
-      ...bounds,
-      z: mu,
-      text,
-      hovertemplate: "%{text}<extra></extra>",
-      colorscale: "Cividis",
-      zmin: 0,
-      zmax: 1,
+      type: "heatmap", name: "map", ...bounds, z: mu, text, hovertemplate: "%{text}<extra></extra>",
+      colorscale: "Cividis", zmin: 0, zmax: 1,
       colorbar: { title: { text: MU, side: "right" }, thickness: 12, outlinewidth: 0.5, len: 1, y: 0.5 },
     },
     levels(0.1, 0.5, "#fff"),
     levels(0.6, 0.9, INK),
     {
-      type: "scatter",
-      name: `not converged (${bad.length} of ${velocity.length * map.amplitude.length})`,
-      mode: "markers",
-      x: bad.map((place) => place[0]),
-      y: bad.map((place) => place[1]),
-      marker: { symbol: "x-thin", size: 8, line: { width: 2, color: VERMILLION } },
-      hoverinfo: "skip",
-      showlegend: bad.length > 0,
+      type: "scatter", name: `not converged (${bad.length} of ${velocity.length * map.amplitude.length})`,
+      mode: "markers", x: bad.map((place) => place[0]), y: bad.map((place) => place[1]), hoverinfo: "skip",
+      marker: { symbol: "x-thin", size: 8, line: { width: 2, color: VERMILLION } }, showlegend: bad.length > 0,
     },
-    contactTrace(contact),
+    {
+      type: "scatter", name: "your contact", mode: "markers", x: contact ? [contact[0]] : [], y: contact ? [contact[1]] : [],
+      marker: { symbol: "star", size: 16, color: VERMILLION, line: { width: 1.5, color: "#fff" } },
+      hovertemplate: "your contact: velocity %{x:.4g}, amplitude %{y:.4g}<extra></extra>", showlegend: contact !== null,
+    },
   ];
   const ends = (list) => [list[0], list[list.length - 1]];
   Plotly.react(element, traces, layout({
-    xaxis: axis(map.labels[0], { type: "log", range: ends(bounds.x).map(Math.log10), dtick: 1,
-      exponentformat: "power", showgrid: false }),
+    xaxis: axis(map.labels[0], { ...RATIOS, range: ends(bounds.x).map(Math.log10), showgrid: false }),
     yaxis: axis(map.labels[1], { range: ends(bounds.y), showgrid: false }),
     dragmode: false,
     shapes: cross(map, row, column),
-    margin: { l: 52, r: 10, t: BAR, b: 42 },
-    legend: { orientation: "h", x: 0, xanchor: "left", y: 1.01, yanchor: "bottom" },
+    legend: LEGEND,
   }), config());
   Plotly.Plots?.resize(element); // its height depends on the panel beside it
-}
-
-// contact: position [velocity, amplitude] of the form's contact, or null.
-function contactTrace(contact) {
-  return {
-    type: "scatter",
-    name: "your contact",
-    mode: "markers",
-    x: contact ? [contact[0]] : [],
-    y: contact ? [contact[1]] : [],
-    marker: { symbol: "star", size: 16, color: VERMILLION, line: { width: 1.5, color: "#fff" } },
-    hovertemplate: "your contact: velocity %{x:.4g}, amplitude %{y:.4g}<extra></extra>",
-    showlegend: contact !== null,
-  };
 }
 
 // Marks the selected cell of the map and the two cuts through it.
@@ -194,26 +152,14 @@ function drawCut(element, map, along, fixed, selected, hidden) {
     const [at, limit] = limitAlong(map, given, along, fixed);
     const kept = at.map((_, k) => k).filter((k) => !inVelocity || at[k] > 0);
     return {
-      type: "scatter",
-      mode: "lines",
-      name: given.label,
-      visible: !hidden.has(given.label),
-      x: kept.map((k) => at[k]),
-      y: kept.map((k) => limit[k]),
-      line: { color: given.color, dash: given.dash, width: 1.8 },
-      hovertemplate: `${given.long_name}: %{y:.4f}<extra></extra>`,
-      hoverlabel: { namelength: 0 },
+      type: "scatter", mode: "lines", name: given.label, visible: !hidden.has(given.label),
+      x: kept.map((k) => at[k]), y: kept.map((k) => limit[k]), line: { color: given.color, dash: given.dash, width: 1.8 },
+      hovertemplate: `${given.long_name}: %{y:.4f}<extra></extra>`, hoverlabel: { namelength: 0 },
     };
   });
   traces.push({
-    type: "scatter",
-    mode: "markers",
-    name: "computed",
-    x,
-    y: indices.map(value("mu_macro")),
-    customdata: indices,
-    error_y: { type: "data", array: indices.map(value("mu_macro_error")), color: INK,
-      thickness: 1, width: 2 },
+    type: "scatter", mode: "markers", name: "computed", x, y: indices.map(value("mu_macro")), customdata: indices,
+    error_y: { type: "data", array: indices.map(value("mu_macro_error")), color: INK, thickness: 1, width: 2 },
     marker: {
       color: good.map((yes) => (yes ? INK : "#fff")),
       size: indices.map((k) => (k === selected ? 10 : 5)),
@@ -222,12 +168,10 @@ function drawCut(element, map, along, fixed, selected, hidden) {
     },
     hovertemplate: `${along} %{x:.4g}<br>mu_macro %{y:.5f}<extra></extra>`,
   });
-  const shown = inVelocity ? { type: "log", dtick: 1, exponentformat: "power" } : {};
   Plotly.react(element, traces, layout({
-    xaxis: axis(map.labels[inVelocity ? 0 : 1], shown),
+    xaxis: axis(map.labels[inVelocity ? 0 : 1], inVelocity ? RATIOS : {}),
     yaxis: axis(MU, { range: [-0.04, 1.06], dtick: 0.2 }),
     showlegend: false,
-    margin: { l: 46, r: 8, t: BAR, b: 42 },
   }), config());
 }
 
@@ -262,8 +206,7 @@ function drawForces(history, loop, period, mu, error, frame) {
   ], layout({
     xaxis: axis("phase  <i>ωt</i> (degrees)", { range: [first, last], dtick: 90 }),
     yaxis: y,
-    legend: { orientation: "h", x: 0, y: 1.01, yanchor: "bottom", font: { size: 10 }, entrywidth: 55 },
-    margin: { l: 46, r: 14, t: BAR, b: 40 },
+    legend: { ...LEGEND, font: { size: 10 }, entrywidth: 55 },
   }), config());
   Plotly.react(loop, [
     { ...here, x: [period.other[frame]] },
@@ -272,7 +215,6 @@ function drawForces(history, loop, period, mu, error, frame) {
   ], layout({
     xaxis: axis(period.map.labels[2], { range: [-1.06, 1.06], dtick: 0.5 }),
     yaxis: y,
-    margin: { l: 46, r: 14, t: BAR, b: 40 },
   }), config());
 }
 

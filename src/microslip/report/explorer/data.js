@@ -4,29 +4,19 @@ const NUMBERS = JSON.parse(document.getElementById("numbers").textContent);
 
 // Base64 to typed arrays, little-endian.
 function bytesOf(text) {
-  const raw = atob(text);
-  const bytes = new Uint8Array(raw.length);
-  for (let k = 0; k < raw.length; k++) bytes[k] = raw.charCodeAt(k);
-  return bytes;
+  return Uint8Array.from(atob(text), (sign) => sign.charCodeAt(0));
 }
 
-const decodedMaps = new Map();
-
 // Returns the decoded periods of a map. The first call decodes them.
-function decoded(map) {
-  if (!decodedMaps.has(map.id)) {
-    const p = map.periods;
-    decodedMaps.set(map.id, p.count === 0 ? null : {
-      tractions: new Int8Array(bytesOf(p.tractions).buffer),
-      slips: bytesOf(p.slips),
-      forces: new Int16Array(bytesOf(p.forces).buffer),
-      phases: new Uint16Array(bytesOf(p.phases).buffer),
-      radii: new Uint16Array(bytesOf(p.radii).buffer),
-      bounds: new Uint16Array(bytesOf(p.bounds).buffer),
-      densities: new Uint16Array(bytesOf(p.densities).buffer),
-    });
-  }
-  return decodedMaps.get(map.id);
+function decoded({ periods }) {
+  const numbers = (name, Type) => new Type(bytesOf(periods[name]).buffer);
+  periods.decoded ??= {
+    tractions: numbers("tractions", Int8Array),
+    slips: bytesOf(periods.slips),
+    forces: numbers("forces", Int16Array),
+    ...Object.fromEntries(["phases", "radii", "bounds", "densities"].map((name) => [name, numbers(name, Uint16Array)])),
+  };
+  return periods.decoded;
 }
 
 // The stored period of a point of a map: forces over mu F_z and phases in rad at every frame, radii

@@ -25,11 +25,8 @@ function discOf(period) {
       // On the inner rings every second, third, ... sector has an arrow.
       const every = Math.ceil(CLOSEST / (2 * half * radius));
       const between = i === 0 ? radius : radius - period.radius[i - 1];
-      disc.arrows.push(
-        j % every || (between < CLOSEST / 2 && i % 2)
-          ? null
-          : [radius * Math.cos(angle), radius * Math.sin(angle), (LONGEST * period.bound[i]) / largest]
-      );
+      const arrow = [radius * Math.cos(angle), radius * Math.sin(angle), (LONGEST * period.bound[i]) / largest];
+      disc.arrows.push(j % every || (between < CLOSEST / 2 && i % 2) ? null : arrow);
     }
   });
   return disc;
@@ -89,7 +86,7 @@ function drawDisc(element, disc, frame) {
     line: { color: "#fff", width: 0.6 }, hoverinfo: "skip",
   });
   const turns = Array.from({ length: 121 }, (_, k) => (k * Math.PI) / 60);
-  const hottest = hottestLines(disc);
+  const hottest = hottestLines(disc), square = { range: [-1.06, 1.06], dtick: 0.5, showgrid: false, constrain: "domain" };
   Plotly.react(element, [
     area("sticks", STICK, parts[0]),
     area("slips", SLIP, parts[1]),
@@ -100,12 +97,10 @@ function drawDisc(element, disc, frame) {
     { type: "scatter", mode: "lines", x: turns.map(Math.cos), y: turns.map(Math.sin),
       line: { color: INK, width: 1.2 }, hoverinfo: "skip", showlegend: false },
   ], layout({
-    xaxis: axis("lateral position / <i>a</i>", { range: [-1.06, 1.06], dtick: 0.5, showgrid: false,
-      constrain: "domain" }),
-    yaxis: axis("forward position / <i>a</i>", { range: [-1.06, 1.06], dtick: 0.5, showgrid: false,
-      scaleanchor: "x", constrain: "domain" }),
-    legend: { orientation: "h", x: 0, y: 1.01, yanchor: "bottom", font: { size: 10 } },
-    margin: { l: 46, r: 8, t: BAR + 22, b: 40 },
+    xaxis: axis("lateral position / <i>a</i>", square),
+    yaxis: axis("forward position / <i>a</i>", { ...square, scaleanchor: "x" }),
+    legend: { ...LEGEND, font: { size: 10 } },
+    margin: { l: 48, r: 10, t: BAR + 22, b: 42 },
     dragmode: false,
   }), config());
 }

@@ -1,9 +1,8 @@
 """The explorer: an interactive HTML page that needs no network.
 
-This module lists the inputs of a page. `payload` packs datasets, periods and certified maps,
-`si_form` packs the data of the form for a real contact, and `page` writes the page. The JavaScript
-files in this folder run in the browser and draw with plotly.js. The page shows datasets and stored
-periods, and evaluates certified maps.
+This module lists the inputs of a page. `payload` packs datasets and periods, `contact_form` packs
+the data of the form for a real contact, and `page` writes the page. The JavaScript files in this
+folder run in the browser and draw with plotly.js.
 
 Snakemake imports this module whenever it parses the workflow, so the module has few imports.
 """
@@ -15,7 +14,7 @@ from collections.abc import Iterator
 from microslip.config.settings import Configuration, Figure
 from microslip.sweeps.evaluate import request_of
 
-SCRIPTS = "certified elliptic limits beyond contact data charts disc lines views form link page"
+SCRIPTS = "data charts disc sweeps contact form link page"
 ASSETS = ("page.html", "style.css", *(f"{name}.js" for name in SCRIPTS.split()))
 """Files of the page, besides the data and plotly.js. The scripts run in this order."""
 MAPS = ("transverse", "bore")

@@ -1,7 +1,7 @@
 // The form for a real contact: the fields, and the text of the answer.
 
-const SI = NUMBERS.si;
 const TEXTS = {}; // contents of the form, by field name
+const ROWS = {}; // elements of the fields
 const ONE_COLUMN = matchMedia("(max-width: 1199px)"); // as in style.css
 
 // Sets a field of the form. Unknown fields and choices are ignored.
@@ -20,15 +20,9 @@ function contactOn(map) {
   return same && contact.velocity > 0 ? [contact.velocity, contact.amplitude] : null;
 }
 
-function inUnit(value, unit) {
-  const [prefix, size] = prefixOf(SI, value);
-  return `${digits(value / size)} ${prefix}${unit}`;
-}
-
 // A value with its significant digits.
 function withError(value, error) {
-  if (!Number.isFinite(error)) return "not known";
-  const places = clipped(1 - Math.floor(Math.log10(error)), 0, 8);
+  const places = Math.min(Math.max(1 - Math.floor(Math.log10(error)), 0), 8);
   return error < 1e-8 ? digits(value, 6) : `${value.toFixed(places)} ± ${error.toPrecision(2)}`;
 }
 
@@ -59,144 +53,96 @@ function quantity(id) {
   Object.assign(input, { id: `si-${id}`, type: "text", value: field.example });
   input.setAttribute("inputmode", "decimal");
   input.setAttribute("autocomplete", "off");
-  Object.assign(TEXTS, { [id]: field.example, [`${id}_unit`]: field.units[0].name });
+  Object.assign(TEXTS, { [id]: field.example, [`${id}_unit`]: field.units[0] });
   input.addEventListener("input", () => {
     TEXTS[id] = input.value;
     answerForm();
   });
-  const units = choice(`${id}_unit`, `unit: ${field.label}`, field.units.map(({ name }) => [name, name]));
+  const units = choice(`${id}_unit`, `unit: ${field.label}`, field.units.map((name) => [name, name]));
   units.hidden = field.units.length < 2;
   return labelled(field.label, input, units);
 }
 
 function offerContact() {
-  const rows = {};
-  const bodies = [...Object.keys(SI.materials), SI.of_numbers];
-  const chosen = (id, label, options) => {
+  const bodies = [...Object.keys(SI.materials), SI.of_numbers].map((name) => [name, name]);
+  const lists = { motion: ["motion", Object.entries(SI.motions)], material: ["sphere", bodies], counterbody: ["flat", bodies] };
+  for (const [id, [label, options]] of Object.entries(lists)) {
     const control = choice(id, label, options);
     control.value = TEXTS[id] = SI.chosen[id];
-    return labelled(label, control);
-  };
-  rows.motion = chosen("motion", "motion", Object.entries(SI.motions));
-  rows.material = chosen("material", "sphere", bodies.map((name) => [name, name]));
-  rows.counterbody = chosen("counterbody", "flat", bodies.map((name) => [name, name]));
-  for (const id of Object.keys(SI.fields)) rows[id] = quantity(id);
-  const bodiesFirst = ["motion"];
-  for (const [side, fields] of Object.entries(SI.sides)) bodiesFirst.push(side, ...fields);
-  const others = Object.keys(SI.fields).filter((id) => !bodiesFirst.includes(id));
-  element("contact-form").append(...[...bodiesFirst, ...others].map((id) => rows[id]));
+    ROWS[id] = labelled(label, control);
+  }
+  for (const id of Object.keys(SI.fields)) ROWS[id] = quantity(id);
+  const first = ["motion", ...Object.entries(SI.sides).flat(2)];
+  const order = [...first, ...Object.keys(SI.fields).filter((id) => !first.includes(id))];
+  element("contact-form").append(...order.map((id) => ROWS[id]));
   element("contact-form").addEventListener("submit", (e) => e.preventDefault());
-  offerContact.rows = rows;
   element("ask").addEventListener("click", () => {
     STATE.asking = !STATE.asking;
+    STATE.contact = null;
     arrange();
-    if (STATE.asking) {
-      answerForm();
-      redraw();
-      // In one column the page scrolls to the form.
-      if (ONE_COLUMN.matches) element("contact-view").scrollIntoView?.({ block: "start" });
-    } else {
-      STATE.contact = null;
-      redraw();
-    }
+    if (STATE.asking) answerForm();
+    redraw();
+    // In one column the page scrolls to the form.
+    if (STATE.asking && ONE_COLUMN.matches) element("contact-view").scrollIntoView?.({ block: "start" });
     writeLink();
   });
 }
 
-// Hides the fields that are not necessary.
-function showFields() {
-  const { rows } = offerContact;
-  for (const [side, fields] of Object.entries(SI.sides)) {
-    for (const id of fields) rows[id].hidden = TEXTS[side] !== SI.of_numbers;
-  }
-  for (const [motion, id] of Object.entries(SI.amplitude_of)) rows[id].hidden = motion !== TEXTS.motion;
-}
-
+// Answers the form, and marks its contact on the map of the motion.
 function answerForm() {
-  showFields();
+  for (const [side, fields] of Object.entries(SI.sides)) {
+    for (const id of fields) ROWS[id].hidden = TEXTS[side] !== SI.of_numbers;
+  }
+  for (const [motion, id] of Object.entries(SI.amplitude_of)) ROWS[id].hidden = motion !== TEXTS.motion;
   writeLink();
   STATE.contact = null;
   try {
-    STATE.contact = answerOf(SI, NUMBERS.certified, questionOf(SI, TEXTS));
+    STATE.contact = contactOf(TEXTS);
     tellContact(STATE.contact);
   } catch (error) {
     if (!(error instanceof Refusal)) throw error;
     paragraph("contact-value", error.message, true);
-    paragraph("contact-note", "");
-    paragraph("contact-still", "");
+    for (const id of ["contact-note", "contact-command"]) paragraph(id, "");
     table("contact-facts", []);
     element("contact-warnings").replaceChildren();
   }
-  const own = SWEEPS.find((one) => one.kind === "map" && one.motion === TEXTS.motion && one.pressure === "hertz");
-  const shown = STATE.map === STATE.shown && STATE.map.motion === TEXTS.motion && STATE.map.pressure === "hertz";
-  if (own && !shown) {
-    show(own.entries[0]);
-  } else if (own) {
-    drawMap(element("map"), STATE.map, STATE.row, STATE.column, contactOn(STATE.map));
-  }
+  const fits = (map) => map.motion === TEXTS.motion && map.pressure === "hertz";
+  const own = SWEEPS.find((one) => one.kind === "map" && fits(one));
+  if (own && !(STATE.map === STATE.shown && fits(STATE.map))) show(own.entries[0]);
+  else if (own) drawMap(element("map"), STATE.map, STATE.row, STATE.column, contactOn(STATE.map));
 }
 
-function tellContact(said) {
-  const { friction, static_friction, near } = said;
+function tellContact(contact) {
+  const { motion, velocity, amplitude, poisson, mu, load } = contact, still = mu * load;
+  const fits = NUMBERS.certified.filter((one) => one.motion === motion);
+  const answers = fits.map((one) => lookUp(one, velocity, amplitude, poisson)).filter((one) => one !== null);
+  const friction = amplitude === 0 ? { value: 1, error: 0 } : answers.sort((a, b) => a.error - b.error)[0];
   if (friction) {
     const times = (factor) => withError(factor * friction.value, factor * friction.error);
-    const [prefix, size] = prefixOf(SI, said.still);
-    paragraph("contact-value", `Coefficient of friction ${times(said.mu)} with vibration, instead of ` +
-      `${digits(said.mu)}: a force of ${times(said.still / size)} ${prefix}N, instead of ${inUnit(said.still, "N")}`);
-    paragraph("contact-note", `Ratio of both (mu_macro): ${withError(friction.value, friction.error)}; ` +
-      `source: ${friction.source}.${approach(said)}${outside(said)}`);
+    const [prefix, size] = prefixOf(still);
+    paragraph("contact-value", `Coefficient of friction ${times(mu)} with vibration, instead of ${digits(mu)}: ` +
+      `a force of ${times(still / size)} ${prefix}N, instead of ${inUnit(still, "N")}`);
+    paragraph("contact-note", `Ratio of both (mu_macro): ${withError(friction.value, friction.error)}, from a certified map.`);
   } else {
-    const at = near ? ` At Poisson's ratio ${digits(near.poisson)} the ratio mu_macro would be ` +
-      `${withError(near.value, near.error)}; what Poisson's ratio changes is not in that error.` : "";
-    paragraph("contact-value", `No certified friction: ${said.refused}.`, true);
-    paragraph("contact-note", at.trim() + outside(said));
+    const ranges = fits.map((one) => ["velocity", "amplitude", "poisson"].map((name) =>
+      `${name} ${one[name].map((end) => digits(end)).join(" to ")}`).join(", "));
+    paragraph("contact-value", ranges.length ? "This contact is outside the certified map of the page." :
+      `The page has no certified map of ${motion}.`, true);
+    paragraph("contact-note", ranges.length ? `The map: ${ranges.join("; or ")}.` : "");
   }
-  paragraph("contact-still", static_friction ? `Coefficient at vanishing speed: ` +
-    `${withError(said.mu * static_friction.value, said.mu * static_friction.error)}.` : "");
+  paragraph("contact-command", commandOf(TEXTS));
   table("contact-facts", [
-    ["velocity (dimensionless)", digits(said.velocity)],
-    ["amplitude (dimensionless)", digits(said.amplitude)],
-    ["Poisson's ratio of both bodies as one", digits(said.poisson)],
-    ["slides all over at u_lim", inUnit(said.u_lim, "m")],
-    ["contact radius", inUnit(said.contact_radius, "m")],
-    ["indentation", inUnit(said.indentation, "m")],
-    ["largest pressure", inUnit(said.largest_pressure, "Pa")],
+    ["velocity (dimensionless)", digits(velocity)],
+    ["amplitude (dimensionless)", digits(amplitude)],
+    ["Poisson's ratio of both bodies as one", digits(poisson)],
+    ["slides all over at u_lim", inUnit(contact.u_lim, "m")],
+    ["contact radius", inUnit(contact.a, "m")],
+    ["indentation", inUnit(contact.indentation, "m")],
+    ["largest pressure", inUnit(contact.pressure, "Pa")],
   ]);
-  const lines = [...said.warnings.map((text) => `Warning: ${text}`),
-    ...said.not_checked.map((text) => `Not checked: ${text}`)];
-  element("contact-warnings").replaceChildren(...lines.map((text) => {
+  element("contact-warnings").replaceChildren(...warningsOf(contact).map((text) => {
     const item = document.createElement("li");
     item.textContent = text;
     return item;
   }));
-}
-
-// A speed in the unit of the form.
-function inSpeedUnit(speed) {
-  const { units } = SI.fields.speed, unit = units.find(({ name }) => name === TEXTS.speed_unit) ?? units[0];
-  return `${digits(speed / unit.factor)} ${unit.name}`;
-}
-
-// For a contact slower than its map: both coefficients of the interpolation, and their speeds.
-function approach({ friction, slowest, static_friction, mu }) {
-  const remedy = friction.error > slowest.map_error && OUTSIDE_MAP.test(friction.source)
-    ? " Outside the certified range: microslip predict computes it to any tolerance." : "";
-  if (!["between static limit and map", "static limit"].includes(friction.source) || !slowest.friction) return remedy;
-  const coefficient = ({ value, error }) => withError(mu * value, mu * error);
-  return ` The map begins at a forward speed of ${inSpeedUnit(slowest.speed)} for this contact, where the coefficient is ` +
-    `${coefficient(slowest.friction)}; towards speed 0 it falls to ${coefficient(static_friction)}.${remedy}`;
-}
-
-const OUTSIDE_MAP = /^between /;
-
-// Returns a sentence that states where the star of the contact is on the map, or that it is outside.
-function outside({ motion, velocity, amplitude, poisson }) {
-  const map = NUMBERS.maps.find((one) => one.motion === motion && one.pressure === "hertz");
-  if (map === undefined) return "";
-  const fast = map.velocity[map.velocity.length - 1], wide = map.amplitude[map.amplitude.length - 1];
-  const slow = map.velocity.find((one) => one > 0);
-  const off = velocity < slow || velocity > fast || amplitude > wide || amplitude < map.amplitude[0];
-  if (off) return " The point lies outside of the map that is drawn.";
-  const other = map.poisson === poisson ? "" : `, which is drawn for Poisson's ratio ${digits(map.poisson)}`;
-  return ` A star marks the point on the map${other}.`;
 }

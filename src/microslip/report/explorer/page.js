@@ -11,7 +11,7 @@ function show(entry) {
   pause();
   STATE.shown = entry;
   markSweep(entry);
-  const isMap = sweepOf(entry).kind === "map";
+  const isMap = entry.kind === "map";
   element("map-view").hidden = element("hint").hidden = !isMap;
   element("lines-view").hidden = isMap;
   arrange();
@@ -69,7 +69,7 @@ function redraw() {
 
 // Arranges the panels. An open form replaces the texts of the point.
 function arrange() {
-  const isMap = sweepOf(STATE.shown).kind === "map";
+  const isMap = STATE.shown.kind === "map";
   // On a wide page with an open form or without periods, the cuts are on the right.
   const beside = isMap && !ONE_COLUMN.matches && (STATE.asking || STATE.shown.periods.count === 0);
   const right = STATE.asking ? "contact-view" : "point-view";

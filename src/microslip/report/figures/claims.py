@@ -13,23 +13,24 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Circle
 from scipy.interpolate import griddata
 
-from microslip.config.quantities import AMPLITUDE, FORWARD, LATERAL, VELOCITY, Quantity
-from microslip.datasets.catalogue import FORMS, STATIC
+from microslip.config.quantities import AMPLITUDE, FORWARD, LATERAL, VELOCITY
+from microslip.datasets.catalogue import FORMS
 from microslip.report.figures import panels
 from microslip.report.figures import style as look
 from microslip.report.figures.data import columns
 
-BORE_AMPLITUDE = replace(AMPLITUDE["bore"], latex=r"\tilde{\varphi}")
-LIMIT = "limit", STATIC, look.BLUE, look.SOLID
-ZONE = "zone", "mu_static_stick_zone", look.GREEN, look.DASHED
-SLIDER = "slider", "mu_static_slider", look.ORANGE, look.DASHDOT
-PRINTED = "zone_printed", "mu_static_stick_zone_printed", look.ORANGE, look.DOTTED
-MOTIONS = (
-    ("transverse", "transverse oscillation", AMPLITUDE["transverse"], (LIMIT, ZONE, SLIDER)),
-    ("bore", "oscillating bore", BORE_AMPLITUDE, (LIMIT, ZONE, PRINTED)),
-)
-"""Motion, title, amplitude and curves of each column. A curve has a variable, a closed form, a
-colour and a line style."""
+MOTIONS = {
+    "transverse": ("transverse oscillation", AMPLITUDE["transverse"]),
+    "bore": ("oscillating bore", replace(AMPLITUDE["bore"], latex=r"\tilde{\varphi}")),
+}
+"""Title and amplitude of each column of panels."""
+CURVES = {
+    "limit": "mu_static",
+    "zone": "mu_static_stick_zone",
+    "slider": "mu_static_slider",
+    "zone_printed": "mu_static_stick_zone_printed",
+}
+"""Variables of the curves, and their closed forms. A motion has some of them."""
 LIGHTEST = 0.82
 """Upper end of the colour map for lines. Lines in lighter colours have too little contrast."""
 PIXELS = 401
@@ -43,29 +44,31 @@ AREAS = (
 )
 
 
-def static(name: str, dataset: xr.Dataset) -> Figure:
+def static(dataset: xr.Dataset) -> Figure:
     """Draw friction against the amplitude, and fractions of the bound against the radius."""
     figure = look.new_figure(look.DOUBLE, 6.4)
     grid = figure.subplots(2, 2)
-    for axes, (motion, title, quantity, curves) in zip(grid[0], MOTIONS, strict=True):
-        _friction(axes, dataset, motion, curves)
+    for axes, (motion, (title, quantity)) in zip(grid[0], MOTIONS.items(), strict=True):
+        _friction(axes, dataset, motion)
         axes.set(xlabel=look.axis(quantity), ylabel=look.FRICTION)
         panels.legend_above(axes, title)
-    for axes, (motion, _, quantity, _) in zip(grid[1], MOTIONS, strict=True):
-        _shares(axes, dataset, motion, quantity)
+    for axes, (motion, (_, quantity)) in zip(grid[1], MOTIONS.items(), strict=True):
+        _shares(axes, dataset, motion, quantity.latex)
         panels.legend_above(axes, "fraction of the friction bound")
     for axes in grid.flat:
         panels.unit_range(axes)
     return figure
 
 
-def _friction(axes: Axes, dataset: xr.Dataset, motion: str, curves: tuple) -> None:
+def _friction(axes: Axes, dataset: xr.Dataset, motion: str) -> None:
     """Draw lines for the limit and the formulas, and markers for the points and the paper's run."""
     amplitude = dataset[f"{motion}_curve_amplitude"].values
-    for variable, name, color, ls in curves:
-        label = FORMS[motion][name].equation or FORMS[motion][name].label
-        values = dataset[f"{motion}_curve_{variable}"].values
-        axes.plot(amplitude, values, color=color, ls=ls, label=label, zorder=3, gid=variable)
+    for variable, form in CURVES.items():
+        if f"{motion}_curve_{variable}" in dataset:
+            (color, ls), known = look.LIMITS[form], FORMS[motion][form]
+            ink: look.Ink = {"color": color, "ls": ls, "label": known.equation or known.label}
+            values = dataset[f"{motion}_curve_{variable}"].values
+            axes.plot(amplitude, values, zorder=3, gid=variable, **ink)
     paper, slowest = (float(dataset[f"claims_{n}"]) for n in ("paper_velocity", "slowest"))
     for what, velocity, marker in (("slow", paper, "o"), ("march", slowest, "v")):
         names = (f"{motion}_{n}" for n in ("amplitude", what, f"{what}_error"))
@@ -74,13 +77,12 @@ def _friction(axes: Axes, dataset: xr.Dataset, motion: str, curves: tuple) -> No
         points = at, values, errors, np.isfinite(errors)
         panels.computed(axes, *points, label=label, marker=marker, clip_on=False)
     label = rf"the paper's run, $\tilde{{v}} = {look.number(paper)}$"
-    ink: look.Ink = {"mfc": "none", "mec": look.VERMILLION, "mew": 1.1, "zorder": 6}
-    ink |= {"clip_on": False}
+    ink = {"mfc": "none", "mec": look.VERMILLION, "mew": 1.1, "zorder": 6, "clip_on": False}
     axes.plot(at, dataset[f"{motion}_paper"].values, "s", ms=6.5, label=label, gid="paper", **ink)
     axes.set_xlim(0.0, amplitude[-1])
 
 
-def _shares(axes: Axes, dataset: xr.Dataset, motion: str, quantity: Quantity) -> None:
+def _shares(axes: Axes, dataset: xr.Dataset, motion: str, symbol: str) -> None:
     """Draw the fractions of the bound for oscillation (solid) and forward friction (dashed)."""
     radius, dim = dataset["share_radius"].values, f"{motion}_share_amplitude"
     amplitudes = dataset[dim].values
@@ -88,17 +90,16 @@ def _shares(axes: Axes, dataset: xr.Dataset, motion: str, quantity: Quantity) ->
     for index, (amplitude, color) in enumerate(zip(amplitudes, shades, strict=True)):
         row = dataset.isel({dim: index})
         used, rest = columns(row, f"{motion}_used_share", f"{motion}_left_share")
-        label = look.conditions([(quantity.latex, float(amplitude))])
+        label = look.conditions([(symbol, float(amplitude))])
         axes.plot(radius, used, color=color, ls=look.SOLID, label=label, gid="used")
         axes.plot(radius, rest, color=color, ls=look.DASHED, gid="left")
     for ls, label in ((look.SOLID, "used"), (look.DASHED, "remaining, forward")):
         axes.plot([], [], color=look.BLACK, ls=ls, label=label)
-    axes.set(
-        xlim=(0.0, 1.0), xlabel=r"radius  $r/a$", ylabel="fraction of the bound  (dimensionless)"
-    )
+    axes.set(xlim=(0.0, 1.0), xlabel=r"radius  $r/a$")
+    axes.set_ylabel("fraction of the bound  (dimensionless)")
 
 
-def patches(name: str, dataset: xr.Dataset) -> Figure:
+def patches(dataset: xr.Dataset) -> Figure:
     """Draw the contact at three moments of an oscillating bore, and the stick area in a period."""
     figure = look.new_figure(look.DOUBLE, 5.2)
     grid = figure.subplot_mosaic("abc;ddd", height_ratios=(1.0, 0.72))
@@ -109,7 +110,18 @@ def patches(name: str, dataset: xr.Dataset) -> Figure:
     contacts[0].set_ylabel(look.axis(FORWARD))
     label = "traction divided by bound  $|q|/(\\mu p)$\nwhere it sticks"
     panels.colour_bar(shade, contacts, label, shrink=0.8, pad=0.015, aspect=24)
-    _areas(grid["d"], dataset)
+    axes, phase = grid["d"], dataset["patch_phase"].values / np.pi
+    for variable, label, color, ls in AREAS:
+        axes.plot(phase, dataset[variable].values, color=color, ls=ls, label=label, gid=variable)
+    for moment in dataset["patch_moment_phase"].values[list(MOMENTS)] / np.pi:
+        axes.axvline(moment, color=look.GREY, lw=0.7, ls=look.DOTTED, zorder=0)
+    symbols = MOTIONS["bore"][1].latex, VELOCITY["bore"].latex
+    values = (float(dataset[f"patch_{n}"]) for n in ("amplitude", "velocity"))
+    at = look.conditions(zip(symbols, values, strict=True))
+    panels.legend_above(axes, f"stick area, {at}", ncols=3)
+    axes.set(xlim=phase[[0, -1]], xlabel=r"phase  $\Omega t/\pi$")
+    axes.set_ylabel("fraction of the contact  (dimensionless)")
+    panels.unit_range(axes)
     return figure
 
 
@@ -133,19 +145,3 @@ def _contact(axes: Axes, at: xr.Dataset) -> ScalarMappable:
     axes.set(xlim=(-1.08, 1.08), ylim=(-1.32, 1.08), xlabel=look.axis(LATERAL))
     axes.set(xticks=(-1, 0, 1), yticks=(-1, 0, 1))
     return shade
-
-
-def _areas(axes: Axes, dataset: xr.Dataset) -> None:
-    """Draw the stick area as a fraction of the contact area."""
-    phase = dataset["patch_phase"].values / np.pi
-    for variable, label, color, ls in AREAS:
-        axes.plot(phase, dataset[variable].values, color=color, ls=ls, label=label, gid=variable)
-    for moment in dataset["patch_moment_phase"].values[list(MOMENTS)] / np.pi:
-        axes.axvline(moment, color=look.GREY, lw=0.7, ls=look.DOTTED, zorder=0)
-    symbols = BORE_AMPLITUDE.latex, VELOCITY["bore"].latex
-    values = (float(dataset[f"patch_{n}"]) for n in ("amplitude", "velocity"))
-    at = look.conditions(zip(symbols, values, strict=True))
-    panels.legend_above(axes, f"stick area, {at}", ncols=3)
-    axes.set(xlim=phase[[0, -1]], xlabel=r"phase  $\Omega t/\pi$")
-    axes.set_ylabel("fraction of the contact  (dimensionless)")
-    panels.unit_range(axes)

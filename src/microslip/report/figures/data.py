@@ -1,4 +1,4 @@
-"""Read datasets for figures, and select Poisson's ratios and curves."""
+"""Read datasets for figures, and select parts of them."""
 
 from __future__ import annotations
 
@@ -9,8 +9,6 @@ import xarray as xr
 
 from microslip.datasets.netcdf import whole
 from microslip.foundation.files import CacheError
-
-Curve = tuple[np.ndarray, np.ndarray]
 
 
 def loaded(path: str | os.PathLike[str]) -> xr.Dataset:
@@ -28,35 +26,24 @@ def loaded(path: str | os.PathLike[str]) -> xr.Dataset:
         ) from error
 
 
-def at_one_poisson(dataset: xr.Dataset) -> xr.Dataset:
-    """Select the Poisson's ratio nearest 0 (as in the paper)."""
-    return dataset.sel(poisson=0.0, method="nearest") if "poisson" in dataset.dims else dataset
-
-
 def at_each_poisson(dataset: xr.Dataset) -> list[xr.Dataset]:
     """Split a dataset by Poisson's ratio, in ascending order."""
     if "poisson" not in dataset.dims:
         return [dataset]
+    dataset = dataset.sortby("poisson")
     return [dataset.isel(poisson=index) for index in range(dataset.sizes["poisson"])]
 
 
-def spans_a_map(dataset: xr.Dataset) -> bool:
-    """Return whether a dataset has at least two amplitudes and two velocities above 0."""
-    return dataset.sizes.get("amplitude", 0) > 1 and int((dataset["velocity"] > 0).sum()) > 1
+def moving(dataset: xr.Dataset) -> xr.Dataset:
+    """Select the velocities above 0."""
+    if "velocity" not in dataset.dims:
+        return dataset
+    return dataset.isel(velocity=dataset["velocity"].values > 0)
 
 
 def limit(dataset: xr.Dataset, name: str) -> xr.DataArray:
     """Return a theoretical limit, on a fine axis if the dataset has one."""
     return dataset[f"{name}_curve"] if f"{name}_curve" in dataset else dataset[name]
-
-
-def curve(variable: xr.DataArray, **at: float) -> Curve:
-    """Return abscissa and ordinate of a variable along the dimension that `at` does not select.
-
-    Dimensions in `at` that the variable does not have are ignored.
-    """
-    line = variable.sel({dim: value for dim, value in at.items() if dim in variable.dims})
-    return np.asarray(line[line.dims[0]].values), np.asarray(line.values, dtype=float)
 
 
 def columns(dataset: xr.Dataset, *names: str) -> tuple[np.ndarray, ...]:

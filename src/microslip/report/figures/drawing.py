@@ -1,8 +1,8 @@
 """Draw figures from datasets and save them.
 
 Figures show stored numbers only: every curve, including those from theory, is a variable of a
-dataset. Each kind of figure has a module. The module `style` defines colours and fonts, and `data`
-selects parts of datasets.
+dataset. The kind of figure determines the function that draws it. The module `style` defines
+colours and fonts, and `data` selects parts of datasets.
 
     figure = draw("map", {"transverse": data.loaded("results/transverse.nc")})
     save(figure, "results/figures/fig2_transverse_map.pdf")
@@ -16,7 +16,7 @@ import importlib
 import json
 import os
 import sys
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Mapping
 from contextlib import suppress
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -28,28 +28,26 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 DRAWN = {
-    "history": ("history.draw",),
-    "map": ("maps.draw", "groups.draw", "certified.draw", "drift.draw"),
-    "field": ("field.draw",),
-    "curves": ("steady.curves", "groups.draw"),
-    "transients": ("steady.transients",),
-    "drives": ("drives.drives",),
-    "accuracy_profile": ("accuracy.profile",),
-    "accuracy_vs_cost": ("work_precision.draw",),
-    "accuracy_vs_work": ("work_precision.draw",),
-    "model_map": ("model_map.draw",),
-    "stability_atlas": ("atlas.draw",),
-    "claims_static": ("claims.static",),
-    "claims_patches": ("claims.patches",),
-    "fit": ("fit.draw",),
-    "curve": ("curve.draw",),
+    "history": "runs.history",
+    "map": "maps.draw",
+    "field": "field.draw",
+    "curves": "curves.draw",
+    "transients": "runs.transients",
+    "accuracy_profile": "accuracy.profile",
+    "accuracy_vs_cost": "accuracy.versus_cost",
+    "accuracy_vs_work": "accuracy.versus_work",
+    "model_map": "accuracy.model_map",
+    "stability_atlas": "atlas.draw",
+    "claims_static": "claims.static",
+    "claims_patches": "claims.patches",
+    "fit": "predictions.fit",
+    "curve": "predictions.curve",
 }
-"""For each kind of figure, the modules and functions that draw it.
+"""Module and function that draw each kind of figure.
 
-The kinds fit and curve are drawn by commands, from their own results.  All other kinds are those of
-config.settings.KINDS.
+The kinds fit and curve are drawn by commands, from their own results. All other kinds except
+explorer are those of config.settings.KINDS.
 """
-
 FORMATS: dict[str, tuple[dict[str, None], str]] = {
     "png": ({"Software": None}, "Description"),
     "pdf": ({"Creator": None, "Producer": None, "CreationDate": None}, "Subject"),
@@ -66,24 +64,7 @@ def modules_of(kind: str) -> tuple[str, ...]:
 
     Modules that these modules import are not included.
     """
-    names = dict.fromkeys(function.partition(".")[0] for function in DRAWN[kind])
-    return ("report/figures/drawing.py", *(f"report/figures/{name}.py" for name in names))
-
-
-def _function_of(kind: str, shown: Sequence[xr.Dataset]) -> str:
-    """Return the module and the function that draw these datasets."""
-    first, attributes = DRAWN[kind][0], shown[0].attrs
-    if kind == "curves" and (len(shown) > 1 or attributes.get("motion") != "continuous-bore"):
-        return "groups.draw"
-    if kind == "map":
-        if "map_coordinates" in attributes:
-            return "certified.draw"
-        if "force" in shown[0].dims:
-            return "drift.draw"
-        paper = attributes.get("motion") in ("transverse", "bore")
-        if len(shown) > 1 or not paper or attributes.get("pressure", "hertz") != "hertz":
-            return "groups.draw"
-    return first
+    return "report/figures/drawing.py", f"report/figures/{DRAWN[kind].partition('.')[0]}.py"
 
 
 def draw(kind: str, datasets: Mapping[str, xr.Dataset]) -> Figure:
@@ -104,17 +85,16 @@ def draw(kind: str, datasets: Mapping[str, xr.Dataset]) -> Figure:
     import_matplotlib()
     from microslip.report.figures.style import style
 
-    shown = list(datasets.values())
-    module, _, function = _function_of(kind, shown).partition(".")
+    module, _, function = DRAWN[kind].partition(".")
     draw_panels = getattr(importlib.import_module(f"microslip.report.figures.{module}"), function)
     with style():
-        figure = draw_panels(kind, *shown)
+        figure = draw_panels(*datasets.values())
         for _ in range(2):  # the second pass converges; the layout is then fixed
             figure.get_layout_engine().execute(figure)
         figure.set_layout_engine("none")
         for finish in getattr(figure, "finishing", ()):
             finish()
-    figure.made_from = made_from(shown)
+    figure.made_from = made_from(datasets.values())
     return figure
 
 

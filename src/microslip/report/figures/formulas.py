@@ -3,10 +3,6 @@
 from __future__ import annotations
 
 import re
-from typing import TYPE_CHECKING
-
-if TYPE_CHECKING:
-    import xarray as xr
 
 GREEK = {
     name: rf"\{name}" for name in ("alpha", "beta", "delta", "kappa", "mu", "nu", "omega", "Omega")
@@ -33,12 +29,6 @@ def mathtext(formula: str) -> str:
     text = re.sub(r"\s*([/()])\s*", r"\1", _WORD.sub(_symbol, formula).strip())
     text = re.sub(r"\s+", r"\\,", text)
     return f"${text}$" if text else ""
-
-
-def axis_label(dataset: xr.Dataset, dim: str, default: str = "") -> str:
-    """Return the name and the formula of an axis. `default` replaces a missing formula."""
-    name = "forward velocity" if dim == "velocity" else dim
-    return f"{name}  {mathtext(dataset[dim].attrs.get('formula', default))}".strip()
 
 
 def html(formula: str) -> str:

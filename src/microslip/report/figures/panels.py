@@ -20,7 +20,8 @@ from microslip.report.figures.data import finite_or_nan
 WIDE = 10.0
 """An axis is logarithmic if the ratio of its largest to its smallest value exceeds this number."""
 VISIBLE_ERROR = 0.01
-"""Smallest error estimate that is drawn. The markers hide smaller error estimates."""
+"""Smallest error estimate that is drawn, relative to the largest value. The markers hide smaller
+error estimates."""
 
 
 def grid(figure: Figure | SubFigure, count: int, across: int, **shared: Any) -> list[Axes]:
@@ -59,7 +60,6 @@ def legend_above(
         loc="lower left",
         bbox_to_anchor=(0.0, 1.02),
         ncols=ncols,
-        handlelength=2.2,
         handletextpad=0.6,
         columnspacing=0.8,
         borderaxespad=0.0,
@@ -69,27 +69,13 @@ def legend_above(
 
 
 def legend_of_figure(
-    figure: Figure | SubFigure,
-    handles: Sequence[Artist],
-    where: str = "upper center",
-    ncols: int | None = None,
+    figure: Figure | SubFigure, handles: Iterable[Artist], where: str = "upper center", **more: Any
 ) -> None:
-    """Add one legend for all panels, outside the panels."""
-    if handles:
-        columns = ncols or len(handles)
-        place: look.Ink = {"loc": f"outside {where}", "ncols": columns}
-        figure.legend(handles=handles, columnspacing=1.6, **place)
-
-
-def merged(handles: Iterable[Artist]) -> list[Artist]:
-    """Return one legend entry for each kind of artist, the one with the longest label.
-
-    The entries are in the order of the names of the kinds: lines and markers, then patches.
-    """
-    entries: dict[str, Artist] = {}
-    for handle in sorted(handles, key=lambda handle: len(str(handle.get_label()))):
-        entries[type(handle).__name__] = handle
-    return [entries[kind] for kind in sorted(entries)]
+    """Add one legend outside the panels."""
+    if entries := list(handles):
+        more = {"ncols": len(entries), "columnspacing": 1.6} | more
+        place: Any = f"outside {where}"
+        figure.legend(handles=entries, loc=place, **more)
 
 
 def colour_bar(
@@ -148,31 +134,33 @@ def edges(points: np.ndarray, logarithmic: bool) -> np.ndarray:
     return np.unique([2 * points[0] - between[0], *between, 2 * points[-1] - between[-1]])
 
 
-def unit_range(axes: Axes, low: float = 0.0) -> None:
-    """Set the vertical range of a panel from `low` to 1, with a margin."""
-    margin = 0.04 * (1.0 - low)
-    axes.set_ylim(low - margin, 1.0 + margin)
-    axes.set_yticks([i / 5 for i in range(round(5 * low), 6)])
+def unit_range(axes: Axes, low: float = 0.0, high: float = 1.0) -> None:
+    """Set the vertical range of a panel to 0 to 1, extended to `low` and `high`."""
+    low, high = np.floor(5 * min(low, 0.0)) / 5, np.ceil(5 * max(high, 1.0)) / 5
+    margin = 0.04 * (high - low)
+    axes.set_ylim(low - margin, high + margin)
+    axes.set_yticks(np.arange(round(5 * low), round(5 * high) + 1) / 5)
 
 
-def computed(axes: Axes, x: np.ndarray, *columns: np.ndarray, label: str, **ink: Any) -> None:
-    """Draw computed points with a band for their errors. Unconverged points are hollow.
+def computed(axes: Axes, x: np.ndarray, *points: np.ndarray, label: str = "", **ink: Any) -> None:
+    """Draw computed points with error bars. Unconverged points are hollow.
 
-    columns: values, error estimates, and flags that are nonzero for converged points.
+    points: values, error estimates, and flags that are nonzero for converged points.
     """
-    values, errors, converged = columns[0], finite_or_nan(columns[1]), columns[2] != 0
-    ink = {"color": look.BLACK, **look.COMPUTED, **ink}
-    if np.nanmax(errors, initial=0.0) >= VISIBLE_ERROR:
-        band: look.Ink = {"color": look.PALE, "lw": 0, "zorder": 1, "gid": "error-band"}
-        once = _once(axes, "error estimate")
-        axes.fill_between(x, values - errors, values + errors, label=once, **band)
-    axes.plot(x[converged], values[converged], label=label, gid="computed", **ink)
+    values, errors, converged = points[0], finite_or_nan(points[1]), points[2] != 0
+    marks: look.Ink = {"color": look.BLACK, "ls": "none", "marker": "o", "ms": 3.2, "mew": 0.7}
+    marks |= {"zorder": 5, **ink}
+    bars: look.Ink = {"fmt": "none", "ecolor": marks["color"], "elinewidth": 0.7, "capsize": 1.8}
+    if np.nanmax(errors, initial=0.0) >= VISIBLE_ERROR * np.nanmax(np.abs(values), initial=1e-300):
+        axes.errorbar(x, values, yerr=errors, **bars).lines[2][0].set_gid("error")
+    axes.plot(x[converged], values[converged], gid="computed", label=label, **marks)
     if not converged.all():
-        ink |= {"mfc": "white", "label": _once(axes, "not converged"), "gid": "unconverged"}
-        axes.plot(x[~converged], values[~converged], **ink)
+        marks |= {"mfc": "white", "ls": "none", "gid": "unconverged"}
+        text = once(axes, "not converged")
+        axes.plot(x[~converged], values[~converged], label=text, **marks)
 
 
-def _once(axes: Axes, label: str) -> str:
+def once(axes: Axes, label: str) -> str:
     """Return the label, prefixed with "_" (hidden in legends) if the panel already has it."""
     return "_" + label if label in axes.get_legend_handles_labels()[1] else label
 

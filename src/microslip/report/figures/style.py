@@ -1,4 +1,4 @@
-"""The style of all figures: sizes, fonts, colours and labels of quantities."""
+"""The style of all figures: sizes, fonts, colours, labels of quantities and numbers in labels."""
 
 from __future__ import annotations
 
@@ -9,11 +9,12 @@ from typing import Any
 
 import matplotlib.style
 import numpy as np
+import xarray as xr
 from matplotlib.figure import Figure
 from matplotlib.textpath import TextPath
 from matplotlib.ticker import EngFormatter
 
-from microslip.config.quantities import MU_MACRO, Quantity
+from microslip.config.quantities import AMPLITUDE, DRIVES, MU_MACRO, VELOCITY, Quantity
 from microslip.report.figures.formulas import mathtext
 
 Ink = dict[str, Any]
@@ -28,7 +29,7 @@ GREEN, ORANGE, PURPLE = "#009E73", "#E69F00", "#CC79A7"
 GREY, PALE, SKY = "#6E6E6E", "#D4D4D4", "#56B4E9"
 
 COLOURMAP = "cividis"
-"""Colour map for values from 0 to 1, perceptually uniform and readable in grey. The module `signed`
+"""Colour map for values from 0 to 1, perceptually uniform and readable in grey. The module `scales`
 extends it to negative friction."""
 
 # Line styles distinguish curves that are printed without colour.
@@ -36,11 +37,6 @@ SOLID = "-"
 DASHED = (0, (5.0, 2.0))
 DASHDOT = (0, (6.0, 1.6, 1.2, 1.6))
 DOTTED = (0, (1.0, 1.6))
-
-COMPUTED: Ink = {"ls": "none", "marker": "o", "ms": 3.2, "mew": 0.7, "zorder": 5}
-"""Markers of computed values in all figures."""
-
-ERROR_BARS: Ink = {"mew": 0.7, "elinewidth": 0.7, "capsize": 1.8}
 
 LINES = (
     (BLACK, "o", SOLID),
@@ -54,6 +50,18 @@ LINES = (
 )
 """Colour, marker and line style of each line in a panel, in the order of the lines."""
 
+LIMITS: dict[str, tuple[str, Any]] = {
+    "mu_large_amplitude": (VERMILLION, DASHED),
+    "mu_static_slider": (ORANGE, DASHDOT),
+    "mu_static_stick_zone": (GREEN, DASHED),
+    "mu_static_stick_zone_printed": (PURPLE, DOTTED),
+    "mu_static": (BLUE, SOLID),
+    "mu_closed_form": (GREEN, DASHDOT),
+    "mu_forward_theory": (BLUE, SOLID),
+    "mu_torque_theory": (VERMILLION, DASHED),
+}
+"""Colour and line style of each closed form, by the name of its variable."""
+
 MODELS = {
     "rigid": (BLACK, "h", "Ri"),
     "slider": (ORANGE, "<", "Sl"),
@@ -65,13 +73,10 @@ MODELS = {
 }
 """Colour, marker and two-letter abbreviation of each contact model, coarsest first."""
 
-SMALLEST = 7.0
-"""Smallest font size in points."""
-HEADING = 8.0
-"""Font size in points of the headings of panels."""
+SMALLEST, HEADING, LABEL = 7.0, 8.0, 8.5
+"""Font sizes in points: the smallest one, of the headings of panels, and of the labels of axes."""
 LONGEST = 100
 """Maximum number of characters of a title from the configuration."""
-
 DPI = 300
 
 RC = {
@@ -81,13 +86,13 @@ RC = {
     "font.sans-serif": ["DejaVu Sans"],  # ships with matplotlib: the same on every machine
     "mathtext.fontset": "dejavusans",
     "font.size": 8,
-    "axes.labelsize": 8.5,
+    "axes.labelsize": LABEL,
     "axes.titlesize": HEADING,
     "xtick.labelsize": 8,
     "ytick.labelsize": 8,
     "legend.fontsize": 8,
     "legend.frameon": False,
-    "legend.handlelength": 2.6,
+    "legend.handlelength": 2.2,
     "legend.borderaxespad": 0.4,
     "legend.labelspacing": 0.35,
     "axes.linewidth": 0.7,
@@ -112,12 +117,6 @@ FRICTION = f"{MU_MACRO.text}  {MU_MACRO.math}  (dimensionless)"
 FRICTION_IN_TWO_LINES = FRICTION.replace("  (", "\n(")
 
 
-def axis(quantity: Quantity) -> str:
-    """Return the label of an axis: words, the symbol, and the ratio that defines the symbol."""
-    ratio = f" = {mathtext(quantity.unit)[1:-1]}" if quantity.unit else ""
-    return f"{quantity.text}  ${quantity.latex}{ratio}$"
-
-
 def style() -> AbstractContextManager[None]:
     """Return a context in which the figures' settings replace the user's settings."""
     return matplotlib.style.context(RC, after_reset=True)
@@ -126,6 +125,29 @@ def style() -> AbstractContextManager[None]:
 def new_figure(width: float, height: float) -> Figure:
     """Return an empty figure with a size in inches and a layout in which panels do not overlap."""
     return Figure(figsize=(width, height), layout="constrained")
+
+
+def quantity(dataset: xr.Dataset, dim: str) -> Quantity:
+    """Return the description of an axis of a dataset. Axes of the paper have a symbol."""
+    tables = {"velocity": VELOCITY, "amplitude": AMPLITUDE}
+    one = tables[dim].get(dataset.attrs.get("motion", "")) if dim in tables else DRIVES.get(dim)
+    name = "forward velocity" if dim == "velocity" else dim
+    formula = dataset[dim].attrs.get("formula", "") if dim in dataset else ""
+    return one or Quantity(name, "", formula)
+
+
+def symbol(dataset: xr.Dataset, dim: str) -> str:
+    """Return the symbol of an axis of a dataset in LaTeX, or else its name."""
+    name = rf"\mathrm{{{dim}}}" if dim != "poisson" else r"\nu"
+    return quantity(dataset, dim).latex or name
+
+
+def axis(one: Quantity) -> str:
+    """Return the label of an axis: words, the symbol, and the ratio that defines the symbol."""
+    ratio = mathtext(one.unit)
+    if not one.latex:
+        return f"{one.text}  {ratio or '(dimensionless)'}"
+    return f"{one.text}  ${one.latex}{' = ' + ratio[1:-1] if ratio else ''}$"
 
 
 def number(value: float) -> str:
@@ -156,6 +178,11 @@ def conditions(pairs: Iterable[tuple[str, float]]) -> str:
     return ", ".join(f"${symbol} = {number(value)}$" for symbol, value in pairs)
 
 
+def ratio(dataset: xr.Dataset) -> str:
+    """Format the Poisson's ratio of a dataset as mathtext."""
+    return conditions([(r"\nu", float(dataset["poisson"]))])
+
+
 def model(name: str) -> tuple[str, str, str]:
     """Return the colour, marker and abbreviation of a contact model. An unknown model is grey."""
     return MODELS.get(name, (GREY, "p", name[:2].capitalize()))
@@ -166,7 +193,7 @@ def in_order(names: set[str]) -> list[str]:
     return [name for name in MODELS if name in names] + sorted(names - MODELS.keys())
 
 
-def literal(text: str) -> str:
+def literal(text: object) -> str:
     """Escape a title from the configuration so that matplotlib draws it verbatim.
 
     Dollar signs are escaped, white space becomes single spaces, and a text of more than `LONGEST`

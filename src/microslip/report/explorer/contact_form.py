@@ -1,0 +1,164 @@
+"""Pack the data of the form for a real contact: fields, units, materials, rules, and tables of
+friction.
+
+The rules and their texts are those of si.warnings. A table has friction on a regular grid, from a
+certified map, so that the page needs no formula of a map.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+import xarray as xr
+
+from microslip.foundation.number_text import PREFIXES
+from microslip.foundation.units import read
+from microslip.si import warnings
+from microslip.si.contact import LARGEST_RATIO
+from microslip.si.inputs import INPUTS
+from microslip.si.materials import MATERIALS
+from microslip.sweeps.period_codec import text_of
+from microslip.theory.hertz import D_half
+
+COUNTS = {"velocity": 129, "amplitude": 129, "poisson": 6}
+"""Number of coordinates of a table along each axis with more than one value."""
+LARGEST = 65535
+"""Largest integer of two bytes."""
+OF_NUMBERS = "by E and ν"
+"""Choice in the list of materials for entering Young's modulus and Poisson's ratio."""
+MOTIONS = {
+    "transverse": "transverse: oscillates across the sliding direction",
+    "bore": "bore: oscillates in spin about the contact normal",
+}
+"""Motions of the form, with descriptions."""
+
+
+class Field(NamedTuple):
+    """An input field for a quantity: its name on the page, the input in si.inputs.INPUTS, the units
+    that it offers (the first one is the default) and its default number."""
+
+    label: str
+    input: str
+    units: tuple[str, ...]
+    example: str
+
+
+_PRESSURES = ("GPa", "MPa", "kPa", "Pa", "psi")
+FIELDS = {
+    "radius": Field("radius of the sphere", "radius", ("mm", "um", "m", "inch"), "5"),
+    "load": Field("normal load", "load", ("N", "mN", "uN", "kN", "kgf", "lbf"), "10"),
+    "young": Field("E of the sphere", "young", _PRESSURES, "210"),
+    "nu": Field("ν of the sphere", "nu", ("",), "0.3"),
+    "counter_young": Field("E of the flat", "young", _PRESSURES, "210"),
+    "counter_nu": Field("ν of the flat", "nu", ("",), "0.3"),
+    "mu": Field("μ without vibration", "mu", ("",), "0.3"),
+    "speed": Field("forward speed", "speed", ("mm/s", "um/s", "m/s", "m/min", "km/h"), "10"),
+    "frequency": Field("frequency", "frequency", ("kHz", "Hz", "MHz", "rpm", "rad/s"), "20"),
+    "stroke": Field("amplitude (half stroke)", "amplitude", ("um", "nm", "mm", "m"), "0.3"),
+    "angle": Field("amplitude (half angle)", "rotation_amplitude", ("mrad", "deg", "rad"), "1"),
+}
+"""Fields, keyed by their names in the scripts, in the order of the form."""
+
+
+def packed() -> dict:
+    """Pack the data of the form as JSON values."""
+    inputs = {name: INPUTS[field.input] for name, field in FIELDS.items()}
+    return {
+        "motions": MOTIONS,
+        "fields": {
+            name: {
+                **field._asdict(),
+                "low": inputs[name].low,
+                "high": inputs[name].high if np.isfinite(inputs[name].high) else None,
+                "zero": inputs[name].zero,
+            }
+            for name, field in FIELDS.items()
+        },
+        "units": {
+            unit: read(f"1 {unit}", inputs[name].unit or "").si
+            for name, field in FIELDS.items()
+            for unit in field.units
+        },
+        "sides": {"material": ["young", "nu"], "counterbody": ["counter_young", "counter_nu"]},
+        "amplitude_of": {"transverse": "stroke", "bore": "angle"},
+        "chosen": {"material": "steel", "counterbody": "steel", "motion": "transverse"},
+        "of_numbers": OF_NUMBERS,
+        "materials": {
+            name: {
+                "young": None if body.rigid else body.young,
+                "poisson": body.poisson,
+                "density": body.density,
+                "hardness": body.hardness,
+            }
+            for name, body in MATERIALS.items()
+        },
+        "checks": [[rule._asdict() for rule in rules] for rules in warnings.CHECKS],
+        "properties": warnings.PROPERTIES,
+        "missing": warnings.MISSING,
+        "whose": warnings.SIDES,
+        "adhesion": {
+            "adhesion": warnings.ADHESION,
+            "range": warnings.RANGE,
+            "short": warnings.SHORT,
+            "rubbery": warnings.RUBBERY,
+        },
+        "prefixes": PREFIXES,
+        "largest_share": LARGEST_RATIO,
+        "half_stuck": D_half(),
+    }
+
+
+def table(dataset: xr.Dataset) -> dict:
+    """Pack friction of a certified map, and its error bound, on a regular grid.
+
+    The page interpolates linearly along the logarithm of the velocity, the amplitude and Poisson's
+    ratio. The error of a cell is the largest one of the map in the cell, plus twice the largest
+    difference between the interpolation and the map at the midpoints of the cell, of its edges and
+    of its faces. Twice the difference at a midpoint bounds the error of the interpolation of a
+    parabola, and of a function with a kink.
+    """
+    ends = {name: (float(dataset[name].min()), float(dataset[name].max())) for name in COUNTS}
+    axes = {
+        name: (np.geomspace if name == "velocity" else np.linspace)(*ends[name], 2 * count - 1)
+        for name, count in COUNTS.items()
+        if ends[name][1] > ends[name][0]
+    }  # with the midpoints
+    fine = dataset.microslip.at(**{name: axes[name].clip(*ends[name]) for name in axes})
+    fine = fine.expand_dims([name for name in COUNTS if name not in axes])
+    fine = fine.transpose("poisson", "amplitude", "velocity")
+    value, error = fine["mu_macro"].values, fine["mu_macro_error"].values
+    wide = [axis for axis, size in enumerate(value.shape) if size > 1]
+    line = value[::2, ::2, ::2]
+    for axis in wide:
+        line = _with_midpoints(line, axis)
+    bound = error + 2.0 * np.abs(value - line) + 0.5 / LARGEST
+    bound = np.where(np.isfinite(bound), bound, np.inf)
+    for axis in wide:
+        bound = _largest(bound, axis)
+    known = np.isfinite(bound)
+    step = float(bound[known].max(initial=1e-9)) / (LARGEST - 1)
+    codes = np.where(known, np.ceil(np.where(known, bound, 0.0) / step), LARGEST)
+    nodes = np.nan_to_num(value[::2, ::2, ::2]).clip(0.0, 1.0)
+    return {
+        "motion": dataset.attrs["motion"],
+        **{name: list(both) for name, both in ends.items()},
+        "counts": list(nodes.shape[::-1]),
+        "values": text_of(np.round(LARGEST * nodes).astype(np.uint16)),
+        "errors": text_of(np.minimum(codes, LARGEST).astype(np.uint16)),
+        "error_step": step,
+    }
+
+
+def _with_midpoints(values: np.ndarray, axis: int) -> np.ndarray:
+    """Insert the means of neighbours along an axis."""
+    rows = np.moveaxis(values, axis, 0)
+    result = np.repeat(rows, 2, axis=0)[:-1]
+    result[1::2] = (rows[1:] + rows[:-1]) / 2.0
+    return np.moveaxis(result, 0, axis)
+
+
+def _largest(values: np.ndarray, axis: int) -> np.ndarray:
+    """Return the largest value in each cell, of three values along an axis."""
+    rows = np.moveaxis(values, axis, 0)
+    return np.moveaxis(np.maximum(np.maximum(rows[:-2:2], rows[1:-1:2]), rows[2::2]), 0, axis)
