@@ -2,10 +2,8 @@
 
     python benchmarks/sweep_cost.py [--config FILE] [--markdown FILE]
 
-Solves every point of every sweep once, as well as the single runs and some of the explorer's
-periods, and sums up the CPU time spent in the solver. The datasets do not contain this time,
-because it differs from run to run. The mean over all requests is TYPICAL in
-microslip/app/dry_run.py.
+Solves every point of every sweep once, and the single runs of figures, and sums up the CPU time
+spent in the solver. The datasets do not contain this time, because it differs from run to run.
 """
 
 from __future__ import annotations
@@ -15,7 +13,7 @@ import one_thread  # noqa: F401
 # isort: split
 
 import time
-from itertools import groupby, product
+from itertools import groupby
 from pathlib import Path
 
 import numpy as np
@@ -24,54 +22,22 @@ from tqdm import tqdm
 
 import microslip
 from microslip.config import load
-from microslip.report.explorer import explorer
-from microslip.sweeps import batches, evaluate
+from microslip.sweeps import evaluate
+from microslip.sweeps.request import points_of, runs_of
 
 
-def cost(sweep):
-    """One row of the table."""
-    axes = (sweep.velocity, sweep.amplitude or (None,), sweep.poisson)
-    answers, seconds = [], []
-    for velocity, amplitude, poisson in tqdm(list(product(*axes)), desc=sweep.name, leave=False):
-        began = time.process_time()
-        answers.append(
-            microslip.solve(
-                sweep.motion,
-                velocity,
-                amplitude,
-                poisson=poisson,
-                model=sweep.model,
-                tolerance=sweep.tolerance,
-                cells=sweep.cells,
-                steps=sweep.steps,
-            )
-        )
-        seconds.append(time.process_time() - began)
-    return {
-        "sweep": sweep.name,
-        "points": len(answers),
-        "converged": sum(answer.converged for answer in answers),
-        "tolerance": f"{sweep.tolerance:g}",
-        "largest error": f"{max(answer.mu_macro_error for answer in answers):.1e}",
-        **columns_of(seconds),
-    }
-
-
-def cost_beside(configuration, name):
-    """Rows of the single runs of a sweep, and of every 20th period of its map."""
-    requests = batches.history_requests(configuration, name)
-    if name in explorer.maps_of(configuration):
-        requests += explorer.period_requests(configuration, name)[::20]
+def cost(name, requests):
+    """Rows of the table: the requests of each kind of a sweep."""
     for kind, group in groupby(requests, key=lambda request: request["kind"]):
-        seconds = []
-        for request in group:
+        results, seconds = [], []
+        for request in tqdm(list(group), desc=name, leave=False):
             began = time.process_time()
-            evaluate.computed(request)
+            results.append(evaluate.computed(request))
             seconds.append(time.process_time() - began)
         yield {
             "sweep": f"{name}: {kind}",
-            "points": len(seconds),
-            **dict.fromkeys(("converged", "tolerance", "largest error"), "-"),
+            "points": len(results),
+            "converged": sum(bool(one.get("converged", True)) for one in results),
             **columns_of(seconds),
         }
 
@@ -92,8 +58,10 @@ def main():
     options = parser.parse_args()
     microslip.warm_up()
     configuration = load.load(options.config)
-    rows = [cost(sweep) for sweep in configuration.sweeps.values()]
-    rows += [row for name in configuration.sweeps for row in cost_beside(configuration, name)]
+    rows = []
+    for name, sweep in configuration.sweeps.items():
+        requests = [*points_of(sweep).requests, *runs_of(configuration, name)]
+        rows += cost(name, requests)
     tables.publish(tables.markdown(rows), options)
 
 

@@ -29,16 +29,15 @@ from pathlib import Path
 
 import pytest
 import yaml
-from microslip.sweeps.store import Store
 from stubs import certified_stub, job_server
 from stubs.workflow_project import ENVIRONMENT
 
 import microslip
 from microslip.config import load
 from microslip.contact.registry import MODELS
-from microslip.datasets import certified_map, netcdf, sweep_dataset
+from microslip.datasets import netcdf, sweep_dataset
 from microslip.solver import method_names
-from microslip.sweeps import batches
+from microslip.sweeps import batch, request
 
 ROOT = Path(__file__).parents[2]
 PAGES = sorted(
@@ -120,14 +119,12 @@ def write_sweeps(folder, names):
     """
     configuration = tutorial_configuration()
     place = folder / Path(configuration.results).relative_to("results")
-    store = Store(place)
     for name in names:
-        grid = configuration.sweeps[name]
-        points = [batches.answer(request, store)[0] for request in batches.points_of(grid).requests]
-        settings = configuration.of_sweep(name)
-        sweep_dataset.write_sweep(place / f"{name}.nc", grid, points, [], settings)
+        points = request.points_of(configuration.sweeps[name]).requests
+        records = [batch.computed(point)[0] for point in points]
+        root, groups = sweep_dataset.build(configuration, name, records)
+        netcdf.write(place / f"{name}.nc", root, groups)
         shutil.copy(place / f"{name}.nc", folder)
-    return store
 
 
 @pytest.fixture(scope="session")
@@ -142,13 +139,12 @@ def with_a_sweep(tmp_path_factory):
 def computed(tmp_path_factory):
     """A folder `results` with all datasets of the pages."""
     folder = tmp_path_factory.mktemp("docs") / "results"
-    store = write_sweeps(folder, tutorial_configuration().sweeps)
+    write_sweeps(folder, tutorial_configuration().sweeps)
     # coarse, so that it takes seconds
-    axes = {"velocity": [0.001, 10], "amplitude": [0, 3], "adaptive": {"error": 0.1}}
+    axes = {"velocity": [0.001, 10], "amplitude": [0, 3], "error": 0.1}
     map_ = certified_stub.configured("transverse", **axes)
-    records = certified_stub.played(map_, lambda request: batches.answer(request, store)[0])
-    netcdf.write(folder / f"{map_.name}.nc", certified_map.build(map_, records))
-    # without computation
+    data = certified_stub.built(map_, lambda point: batch.computed(point)[0])
+    netcdf.write(folder / "certified" / "transverse.nc", data)
     return folder
 
 

@@ -4,24 +4,27 @@ from dataclasses import fields
 from pathlib import Path
 
 import pytest
-import xarray as xr
-from microslip.sweeps.store import Store
 from stubs import certified_stub, claims_stub, studies_stub
 from stubs.sweep_stub import Solver
 
 import microslip
 from microslip.config import load
-from microslip.datasets import certified_map, sweep_dataset
+from microslip.datasets import sweep_dataset
 from microslip.si.output import Prediction
 from microslip.si.response import UNITS
 from microslip.studies import registry
-from microslip.sweeps import batches
+from microslip.sweeps import batch, request
 
 PAGE = (Path(__file__).parents[2] / "docs" / "reference" / "fields.md").read_text(encoding="utf-8")
 GRIDS = {
-    "transverse": {"velocity": [0.1, 1], "amplitude": [0.5, 2], "poisson": [0, 0.3]},
-    "bore": {"velocity": [0.1, 1], "amplitude": [0.5, 2]},
-    "continuous_bore": {"velocity": [0.1, 1]},
+    "transverse": {
+        "motion": "transverse",
+        "velocity": [0.1, 1],
+        "amplitude": [0.5, 2],
+        "poisson": [0, 0.3],
+    },
+    "bore": {"motion": "bore", "velocity": [0.1, 1], "amplitude": [0.5, 2]},
+    "continuous_bore": {"motion": "continuous-bore", "velocity": [0.1, 1]},
 }
 
 
@@ -80,26 +83,19 @@ def all_names(data):
     return {str(name) for node in data.subtree for name in node.to_dataset().variables}
 
 
-def written(name, folder):
+def written(name):
     configuration = load.from_mapping({"sweeps": GRIDS})
-    store, grid = Store(folder), configuration.sweeps[name]
-    records = [
-        [batches.answer(request, store)[0] for request in requests]
-        for requests in (
-            batches.points_of(grid).requests,
-            batches.history_requests(configuration, name),
-        )
-    ]
-    path = folder / f"{name}.nc"
-    sweep_dataset.write_sweep(path, grid, *records, configuration.of_sweep(name))
-    with xr.open_datatree(path) as data:
-        return all_names(data)
+    requests = [*request.points_of(configuration.sweeps[name]).requests]
+    requests += request.runs_of(configuration, name)
+    records = [batch.computed(one)[0] for one in requests]
+    root, groups = sweep_dataset.build(configuration, name, records)
+    return {str(key) for part in (root, *groups.values()) for key in part.variables}
 
 
 @pytest.mark.slow
-def test_every_variable_of_a_sweep_is_in_the_table_and_no_other(tmp_path, monkeypatch):
+def test_every_variable_of_a_sweep_is_in_the_table_and_no_other(monkeypatch):
     Solver(monkeypatch)
-    names = set().union(*(written(name, tmp_path) for name in GRIDS))
+    names = set().union(*map(written, GRIDS))
     fine = {name for name in names if name.removesuffix("_curve") in names and "_curve" in name}
     assert (
         set(section("A sweep (`transverse.nc`, `bore.nc`, `continuous_bore.nc`)")) == names - fine
@@ -107,15 +103,10 @@ def test_every_variable_of_a_sweep_is_in_the_table_and_no_other(tmp_path, monkey
 
 
 def test_every_variable_of_a_certified_map_is_in_its_table_and_no_other():
-    axes = GRIDS["bore"] | {"poisson": [0, 0.3], "adaptive": {"error": 0.1}}
-    (map_,) = load.from_mapping({"sweeps": {"bore": axes}}).certified.values()
-    flat = {"mu_macro": 0.5, "mu_macro_error": 0.0, "converged": True}
-
-    def answer(request):
-        return {"key": batches.key_of(request), "result": flat, "versions": {}}
-
-    data = certified_map.build(map_, certified_stub.played(map_, answer))
-    title = "A certified map (`certified_transverse.nc`, `certified_bore.nc`)"
+    axes = {"velocity": [0.1, 1], "amplitude": [0.5, 2], "poisson": [0, 0.3], "error": 0.1}
+    map_ = certified_stub.configured("bore", **axes)
+    data = certified_stub.built(map_, lambda point: certified_stub.record(point, 0.5, 0.0))
+    title = "A certified map (`certified/transverse.nc`, `certified/bore.nc`)"
     assert set(section(title)) == set(map(str, data.variables))
 
 
