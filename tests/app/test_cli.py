@@ -22,7 +22,10 @@ SPIN = "spin: rotation about the contact normal"
         ("bore", {"velocity": 0.5, "amplitude": 1.0, "poisson": 0.3, "tolerance": 5e-3}),
         ("continuous-bore", {"velocity": 0.5}),
         ("transverse", {"velocity": 0, "amplitude": 0.5}),
-        ("transverse", {"velocity": 0.5, "amplitude": 0.5, "model": "slider", "steps": 32}),
+        (
+            "transverse",
+            {"velocity": 0.5, "amplitude": 0.5, "model": "slider", "steps": 32, "tolerance": 0.1},
+        ),
         ("bore", {"velocity": 2, "amplitude": 1, "cells": 6, "steps": 8, "tolerance": 0.1}),
     ],
 )

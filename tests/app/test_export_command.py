@@ -162,7 +162,7 @@ def test_a_table_with_a_point_outside_a_map_is_not_written(tmp_path, capsys, mon
     axis = "--load '10 N' --speed '10 mm/s' --amplitude '0.1..0.2 um, 2' --map certified.nc"
     code, out, error = run(capsys, f"table transverse {VIBRATED} {axis} --output {file}")
     assert code == 1 and not file.exists() and not out
-    assert "amplitude_si = 1e-07: --map = 'certified.nc': at velocity" in error
+    assert "amplitude_m = 1e-07: --map = 'certified.nc': at velocity" in error
     assert "outside the map" in error and "no table" in error
 
 

@@ -135,7 +135,7 @@ def test_a_folder_that_is_gone_is_one_line(tmp_path):
 
 SMALL = """
 sweeps:
-  transverse: {velocity: [0.5], amplitude: [0], model: rigid, tolerance: 1.0e-2}
+  transverse: {motion: transverse, velocity: [0.5], amplitude: [0], model: rigid, tolerance: 1.0e-2}
 """
 
 

@@ -34,7 +34,7 @@ def test_a_period_has_phases_and_points():
 def test_a_prediction_keeps_its_texts():
     request = {"material": "steel", "radius": "5 mm", "load": "10 N", "mu": 0.3, "speed": "1 mm/s"}
     data = microslip.to_xarray(microslip.predict("continuous-bore", **request, rotation="10 rad/s"))
-    assert "load: 10 N" in data.attrs["understood"] and float(data.rotation_rad_s) == 10.0
+    assert "load: 10 N" in data.attrs["inputs"] and float(data.rotation_rad_s) == 10.0
     assert data.attrs["warnings"].startswith("the bodies are elastically dissimilar")
 
 

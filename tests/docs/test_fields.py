@@ -26,6 +26,11 @@ GRIDS = {
     "bore": {"motion": "bore", "velocity": [0.1, 1], "amplitude": [0.5, 2]},
     "continuous_bore": {"motion": "continuous-bore", "velocity": [0.1, 1]},
 }
+RUNS = {
+    "force": {"kind": "history", "sweep": "transverse"},
+    "tractions": {"kind": "field", "sweep": "continuous_bore"},
+    "approach": {"kind": "transients", "sweep": "continuous_bore"},
+}
 
 
 def section(title):
@@ -84,7 +89,7 @@ def all_names(data):
 
 
 def written(name):
-    configuration = load.from_mapping({"sweeps": GRIDS})
+    configuration = load.from_mapping({"sweeps": GRIDS, "figures": RUNS})
     requests = [*request.points_of(configuration.sweeps[name]).requests]
     requests += request.runs_of(configuration, name)
     records = [batch.computed(one)[0] for one in requests]
@@ -112,7 +117,7 @@ def test_every_variable_of_a_certified_map_is_in_its_table_and_no_other():
 
 STUDIES = {
     "accuracy": (
-        "The study of accuracy (`accuracy_cost.nc`)",
+        "The study of accuracy (`accuracy.nc`)",
         studies_stub,
         studies_stub.accuracy_result,
     ),
@@ -129,5 +134,5 @@ STUDIES = {
 def test_every_variable_of_a_study_is_in_its_table_and_no_other(study):
     title, stub, result = STUDIES[study]
     answer, _ = studies_stub.answered(result)
-    data = registry.build(study, stub.configured(), answer)
+    data = registry.undivided(stub.configured(), study, answer)
     assert set(section(title)) == set(map(str, data.variables))

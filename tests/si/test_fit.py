@@ -2,6 +2,7 @@
 
 import json
 import math
+import re
 from types import SimpleNamespace
 
 import numpy as np
@@ -273,7 +274,7 @@ def test_the_command_names_the_line_that_it_leaves_out(closed, tmp_path, capsys)
     out, complaint = capsys.readouterr()
     assert complaint.startswith("microslip fit: line 6: speed is 'fast'")
     assert complaint.endswith("; left out\n") and complaint.count("\n") == 1
-    assert "rows              4, of" in out
+    assert re.search(r"^rows +4, of", out, re.M)
     labels = xr.load_dataset(tmp_path / "fit.nc").label.values
     assert labels.tolist() == ["r0.2", "r0.5", "r1.0", "r2.0"]
 

@@ -91,7 +91,11 @@ def test_answers_know_no_units(pulls):
     }
     for name, (length, time, mass) in dimensions.items():
         factor = LENGTH**length * TIME**time * MASS**mass
-        assert one[name] is None or other[name] == pytest.approx(one[name] * factor, rel=1e-6), name
+        # a threshold of 0 is known to the accuracy of the steps, a fraction of full friction
+        scales = {"force_threshold_N": one["sliding_friction_N"] * factor, "safety_factor": 1.0}
+        noise = 1e-8 * scales.get(name, 0.0)
+        close = one[name] is None or pytest.approx(one[name] * factor, rel=1e-6, abs=noise)
+        assert one[name] is None or other[name] == close, name
     assert one["outcome"] == other["outcome"]
 
 

@@ -15,6 +15,7 @@ import re
 import shutil
 import sys
 import tempfile
+import textwrap
 from contextlib import redirect_stderr, redirect_stdout
 from importlib import import_module
 from pathlib import Path
@@ -64,7 +65,8 @@ def main(arguments: list[str]) -> int:
     Returns exit code 2 for bad input.  Otherwise Snakemake raises SystemExit with its exit code.
     """
     if {"-h", "--help"} & set(arguments):
-        print(HELP.format(configurations=", ".join(configurations())), end="")
+        names = textwrap.wrap(", ".join(configurations()), 75)
+        print(HELP.format(configurations=f"\n{21 * ' '}".join(names)), end="")
         return 0
     with redirect_stdout(sys.__stdout__):  # also for the jobs of Snakemake
         return _run(arguments)

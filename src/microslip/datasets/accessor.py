@@ -204,7 +204,7 @@ def _coordinate(name: str, value: Any) -> xr.DataArray:
         if array.dtype.kind == "O" and all(isinstance(one, Real | Decimal) for one in array.flat):
             array = array.astype(float)
         good = array.dtype.kind in "iuf" and bool(np.isfinite(array).all())
-    except (TypeError, ValueError):
+    except (TypeError, ValueError, OverflowError):
         good = False
     if not good:
         raise InputError(name, value, ALLOWED)
