@@ -276,16 +276,18 @@ def contradict(line: dict) -> bool:
 
 
 def summary(seed: int, lines: list[dict]) -> str:
-    """Markdown: table of error/estimate ratios by stratum and tolerance, and all failures."""
+    """Markdown: error/estimate ratios by stratum and by tolerance, and all failures."""
     rows = []
-    names = [stratum.name for stratum in blind_points.strata_of(seed)]
+    for stratum in blind_points.strata_of(seed):
+        of = [line for line in lines if line["stratum"] == stratum.name]
+        rows += [_row(stratum.name, of)] if of else []
     for tolerance in sorted({line["tolerance"] for line in lines}, reverse=True):
-        at = [line for line in lines if line["tolerance"] == tolerance]
-        for name in names:
-            of = [line for line in at if line["stratum"] == name]
-            rows += [_row(name, f"{tolerance:g}", of)] if of else []
-        rows.append(_row("all", f"{tolerance:g}", at))
-    rows.append(_row("all", "all", lines))
+        rows.append(
+            _row(
+                f"tolerance {tolerance:g}", [one for one in lines if one["tolerance"] == tolerance]
+            )
+        )
+    rows.append(_row("all", lines))
     return "\n".join([_verdict(lines), "", tables.markdown(rows), *_exceptions(lines)]) + "\n"
 
 
@@ -321,13 +323,12 @@ def _over_tolerance(line):
     return max(off(line) - line["uncertainty"], 0.0) / allowed(line)
 
 
-def _row(stratum, tolerance, lines):
+def _row(name, lines):
     converged = [line for line in lines if is_judged(line)]
     ratios = [ratio(line) for line in converged] or [0.0]
     plain = [off(line) / max(line["error"], 1e-12) for line in converged] or [0.0]
     return {
-        "points": stratum,
-        "tolerance": tolerance,
+        "points": name,
         "number": len(lines),
         "converged": sum(line["converged"] for line in lines),
         "fail": sum(map(failed, lines)),
@@ -358,9 +359,10 @@ def _exceptions(lines):
     for line in lines:
         if not line["converged"]:
             text.append(f"\nNot converged: {_named(line)}: {line['reason']}.")
+    without = [str(line["k"]) for line in lines if not line["by"]]
+    if without:
+        text.append(f"\nWithout a reference: points {', '.join(without)}.")
     for line in lines:
-        if not line["by"]:
-            text.append(f"\nWithout a reference: {_named(line)}.")
         if contradict(line):
             every = ", ".join(
                 f"{one['reference']:.6g} +- {one['uncertainty']:.0e} ({one['by']})"

@@ -59,7 +59,6 @@ LONG_PAGES = (
     "docs/how-to/measured_strokes.md",
     "docs/how-to/rough_contacts.md",
     "docs/how-to/sweeps.md",
-    "docs/how-to/workflow.md",
     "docs/tutorials/datasets.md",
     "docs/tutorials/real_contact.md",
 )
