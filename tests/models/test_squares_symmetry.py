@@ -6,8 +6,7 @@ from models.test_squares import direct_sum
 
 from microslip.contact import squares as squares_contact
 from microslip.contact.contact import LATERAL, TORQUE, Body, energy_norm, forces, forward_slip
-from microslip.contact.convolution import convolve, square_convolution, workspace
-from microslip.contact.half import MIRROR, TURN
+from microslip.contact.convolution import MIRROR, TURN, convolve, square_convolution, workspace
 from microslip.contact.path import make_path
 from microslip.contact.registry import MODELS
 from microslip.contact.squares import CartesianContact

@@ -1,13 +1,20 @@
-"""Surface displacement of rectangular cells under tractions, by a compiled FFT convolution.
+"""Surface displacement of equal rectangular cells under tractions, by a compiled convolution.
 
-Zero-padding of each side to at least twice as many cells makes the convolution linear.  The output
-of a transform is in digit-reversed order.  The transformed influence coefficients and the input of
-the inverse transform have the same order, so that no array is ever sorted.  Butterflies run over
-whole rows, so that the compiler generates vector instructions.  The transforms skip rows that are
-zero or not needed.
+Along an axis with n cells, the cell j has the coordinate x = j - (n - 1) / 2.  A field is a sum of
+cosines and sines of 2 pi k x / (2 n - 1), k = 0 .. n - 1.  This period is long enough that the
+convolution does not wrap around.  The influence of forward on forward, and of lateral on lateral
+tractions, is even along both axes: it multiplies each wave by a number.  The influence of forward
+on lateral tractions is odd along both axes: it multiplies the wave and exchanges cosine and sine.
 
-For symmetric fields, it is sufficient to transform a part: a quarter for fields that are even along
-both axes (quarter.py), and a half for fields with a half-turn or mirror symmetry (half.py).
+If a symmetry gives the field behind the forward coordinate 0, only the cells ahead of it are
+resolved.  Each wave along the lateral axis is then either even or odd along the forward axis:
+
+- TURN, for translations: a half turn leaves a field unchanged, so that the parities along both axes
+  are equal.  A quarter of the cells is sufficient if fields are even along both axes.
+- MIRROR, for rotations: forward parts are even along the forward axis, and lateral parts are odd.
+
+The waves are evaluated by products of matrices, which is faster than Fourier transforms up to about
+64 cells along a side.
 """
 
 from __future__ import annotations
@@ -17,52 +24,42 @@ from typing import NamedTuple
 
 import numpy as np
 
-from microslip.contact import half, quarter
-from microslip.contact.transform import backward, forward
+from microslip.contact.operators import padded, transform
 from microslip.foundation.compiled import kernel
 from microslip.theory.hertz import G_STAR
 
+TURN, MIRROR = "half turn", "mirror image"
+"""Symmetries of a field."""
+
 
 class Convolution(NamedTuple):
-    """Tables of the compiled convolution.
+    """Matrices of the convolution on R x C resolved cells.
 
-    P is the padded number of cells along a side of the resolved part.  H is the number of lateral
-    frequencies.  H equals P, or is smaller if half of the cells are resolved.
+    The lateral axis has P parities (1 if only positive coordinates are resolved, else 2) and W
+    waves of each parity, the last of which are padding.  The forward axis has F waves: n, or 2 n if
+    both parities occur.
 
     Attributes
     ----------
-    radices : np.ndarray
-        Factors of P.
-    roots : np.ndarray, shape (2, P)
-        cos and sin of 2 pi k / P.
-    kernel : np.ndarray, shape (P, H)
-        Transform of the influence coefficients, which is real; for a quarter of the cells, see
-        quarter.folded_filter.
-    cross : np.ndarray, shape (2, P, H)
-        Transform of the influence coefficients for the conjugate traction, used only if `coupled`;
-        for half of the cells, see half.halved_filter.
-    coupled : bool
-        Whether nu > 0.
-    opposite : np.ndarray, shape (P,)
-        For each row, the row with the opposite frequency.
-    images : int
-        Number of cells for each resolved cell: 1 if all are resolved, 2 for a half, 4 for a
-        quarter.
-    folding : quarter.Folding
-        Tables for the convolution of a quarter of the cells.
-    halving : half.Halving
-        Tables for the convolution of a half of the cells.
+    columns, columns_back : np.ndarray, shapes (C, P W) and (P W, C)
+        Waves along the lateral axis; the second array is padded along its last axis.
+    rows, rows_back : np.ndarray, shapes (2, P, F, R) and (2, P, R, F)
+        Waves along the forward axis, for each component and each lateral parity.
+    direct : np.ndarray, shape (2, F, W)
+        Factor of each wave of the same component.
+    cross : np.ndarray, shape (P, F, W)
+        Factor of the forward wave for the lateral wave with the other parities, and vice versa.
+    shift : int
+        Distance of two waves with the same frequency and different parities along the forward axis.
     """
 
-    radices: np.ndarray
-    roots: np.ndarray
-    kernel: np.ndarray
+    columns: np.ndarray
+    columns_back: np.ndarray
+    rows: np.ndarray
+    rows_back: np.ndarray
+    direct: np.ndarray
     cross: np.ndarray
-    coupled: bool
-    opposite: np.ndarray
-    images: int
-    folding: quarter.Folding
-    halving: half.Halving
+    shift: int
 
 
 @lru_cache(maxsize=8)
@@ -71,7 +68,7 @@ def square_convolution(
     poisson: float,
     modulus: float = G_STAR,
     images: int = 1,
-    symmetry: str = half.TURN,
+    symmetry: str = TURN,
     half_widths: tuple[float, float] = (1.0, 1.0),
 ) -> tuple[Convolution, float, float]:
     """Create the convolution on cells x cells equal cells of a rectangle.
@@ -83,54 +80,63 @@ def square_convolution(
     poisson, modulus : float
         Poisson's ratio, and G* in working units.
     images : int
-        See Convolution.  If it is 4, fields at nu = 0 are even along both axes, and only squares
-        with positive coordinates are resolved.  If it is 2, fields have a symmetry of half.py, and
-        only cells with a positive forward coordinate are resolved.
+        Number of cells for each resolved cell.  If it is 4, fields at nu = 0 are even along both
+        axes, and only cells with positive coordinates are resolved.  If it is 2, fields have the
+        symmetry, and only cells with a positive forward coordinate are resolved.
     symmetry : str
-        Symmetry of the fields if `images` is 2: half.TURN or half.MIRROR.
+        Symmetry of the fields if `images` is 2: TURN or MIRROR.
     half_widths : tuple of float
         Half of the forward and the lateral width of the rectangle.
 
     Returns
     -------
     convolution : Convolution
-        Tables of the compiled convolution.
+        Matrices of the compiled convolution.
     scale : float
         Displacement of a cell under a unit traction on the same cell, in u_lim.
     largest : float
         Upper bound on the eigenvalues of the convolution, in u_lim per unit of traction.
     """
-    padded = _padded(cells // 2 if images == 4 else cells)
-    radices = _radices(padded)
-    turns = 2.0 * np.pi * np.arange(padded) / padded
-    order = _order(list(radices))
-    opposite = np.argsort(order)[-order % padded]
-    whole = 2 * padded if images == 4 else padded
-    coefficients = influence(cells, whole, poisson, modulus, half_widths)
-    if images == 2 and padded % 2 == 0:
-        # the largest offset is its own negative and is never used; 0 keeps the kernel even
-        coefficients[1][padded // 2], coefficients[1][:, padded // 2] = 0.0, 0.0
-    halving = half.halving(order, opposite, cells, symmetry)
-    transforms = [np.fft.fft2(part) for part in coefficients]
-    if images == 2:
-        kernel, cross = half.halved_filter(transforms, order, halving.rows, cells, symmetry)
+    period, width = 2 * cells - 1, padded(cells)
+    waves = np.arange(cells)
+    angles = 2.0 * np.pi / period * np.outer(waves, waves - 0.5 * (cells - 1))
+    every = np.stack([np.cos(angles), np.sin(angles)])
+    ahead = every[..., cells // 2 :]
+    # waves along the lateral axis: parities, waves and cells
+    lateral = every if images < 4 else ahead[:1]
+    wide = np.zeros((lateral.shape[2], len(lateral), width))
+    wide[..., :cells] = np.moveaxis(lateral, 2, 0)
+    columns = wide.reshape(len(wide), -1)
+    back = np.zeros((columns.shape[1], padded(len(columns))))
+    back[:, : len(columns)] = columns.T
+    if images == 1:
+        rows = np.broadcast_to(every.reshape(-1, cells), (2, 2, 2 * cells, cells))
+    elif images == 2 and symmetry == MIRROR:
+        rows = np.repeat(ahead[:, None], 2, axis=1)
     else:
-        kernel, cross = (part.T[np.ix_(order, order)] for part in transforms)
-    largest = np.abs(kernel).max() + np.abs(cross).max()
-    # the inverse transform lacks the factor 1 / P^2
-    kernel, cross = (kernel / padded**2).real, cross / padded**2
+        rows = np.stack([ahead[: len(lateral)]] * 2)
+    normal, conjugate = influence(cells, period, poisson, modulus, half_widths)
+    parts = np.fft.fft2([normal - conjugate.real, normal + conjugate.real, -conjugate.imag])
+    spectrum = parts.real[:, :cells, :cells]
+    largest = np.abs(spectrum[:2]).max() + np.abs(spectrum[2]).max()
+    share = np.where(waves > 0, 2.0, 1.0) / period
+    factors = np.zeros((3, cells, width))
+    factors[..., :cells] = images * share[:, None] * share * spectrum
+    # the sign is 1 if the parities of a forward wave along both axes are equal
+    cross = np.stack([factors[2], factors[2] if symmetry == TURN else -factors[2]])[: len(lateral)]
+    if images == 1:
+        cross = np.stack([[factors[2], -factors[2]], [-factors[2], factors[2]]])
+        factors = np.stack([factors, factors], axis=1)
     convolution = Convolution(
-        radices,
-        np.stack([np.cos(turns), np.sin(turns)]),
-        quarter.folded_filter(kernel, opposite) if images == 4 else np.ascontiguousarray(kernel),
-        np.stack([cross.real, cross.imag]),
-        poisson > 0.0,
-        opposite,
-        images,
-        quarter.folding(order, opposite),
-        halving,
+        columns,
+        back,
+        np.ascontiguousarray(rows),
+        np.ascontiguousarray(np.swapaxes(rows, 2, 3)),
+        factors[:2].reshape(2, -1, width),
+        cross.reshape(len(lateral), -1, width),
+        cells if images == 1 else 0,
     )
-    return convolution, float(coefficients[0][0, 0]), float(largest)
+    return convolution, float(normal[0, 0]), float(largest)
 
 
 def influence(
@@ -143,9 +149,10 @@ def influence(
     """Compute the influence coefficients for the traction and for its complex conjugate, (P, P)
     each.
 
-    The kernels of influence.py are integrated over a cell in closed form, and evaluated at
-    the centres of cells.  Units are u_lim per unit of traction.  The first axis is the forward
-    offset, and the second axis is the lateral offset.  Negative offsets are wrapped around.
+    The complex traction is lateral + i forward.  The kernels of influence.py are integrated over a
+    cell in closed form, and evaluated at the centres of cells.  Units are u_lim per unit of
+    traction.  The first axis is the forward offset, and the second axis is the lateral offset.
+    Negative offsets are wrapped around.
     """
     forward, lateral = (2.0 * half_width / cells for half_width in half_widths)
     offsets = np.fft.fftfreq(padded, 1.0 / padded)
@@ -165,151 +172,41 @@ def influence(
     return scale * single, scale * kappa * (squares + 2j * product)
 
 
-def _padded(cells: int) -> int:
-    """Smallest P >= 2 cells - 1 whose prime factors are 2 and 3."""
-    padded = 2 * cells - 1
-    while padded != 2 ** _power(padded, 2) * 3 ** _power(padded, 3):
-        padded += 1
-    return padded
-
-
-def _power(number: int, prime: int) -> int:
-    count = 0
-    while number % prime == 0:
-        number //= prime
-        count += 1
-    return count
-
-
-def _radices(padded: int) -> np.ndarray:
-    twos = _power(padded, 2)
-    radices = [4] * (twos // 2) + [2] * (twos % 2) + [3] * _power(padded, 3)
-    return np.array(radices, dtype=np.int64)  # an integer array even if empty, for a single cell
-
-
-def _order(radices: list[int]) -> np.ndarray:
-    """Frequency of each row after the transform."""
-    if not radices:
-        return np.zeros(1, dtype=np.int64)
-    rest = _order(radices[1:])
-    return np.concatenate([k + radices[0] * rest for k in range(radices[0])])
-
-
-def workspace(operator: Convolution) -> tuple[np.ndarray, np.ndarray]:
+def workspace(operator: Convolution) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Scratch arrays of `convolve`, for use by one thread."""
-    return np.zeros((2, *operator.kernel.shape)), np.zeros((2, *operator.kernel.shape))
+    components, parities, waves, rows = operator.rows.shape
+    width = operator.direct.shape[2]
+    return (
+        np.empty((rows, parities * width)),
+        np.empty((components, parities, waves, width)),
+        np.empty((rows, operator.columns_back.shape[1])),
+    )
 
 
 @kernel
 def convolve(operator: Convolution, scratch: tuple, q: np.ndarray, out: np.ndarray) -> None:
-    """Fill `out` with A q.  `q` and `out` contain forward and lateral parts of the resolved
-    squares, (2, rows, columns); scratch: arrays from `workspace`."""
-    (first, second), radices, roots = scratch, operator.radices, operator.roots
-    columns, width = q.shape[1], second.shape[2]
-    _spread(operator, q, first)
-    forward(first[0], first[1], columns, radices, roots)
-    _turn_over(operator, columns, first, second)
-    forward(second[0], second[1], width, radices, roots)
-    _multiply(operator, first, second)
-    backward(second[0], second[1], width, radices, roots)
-    _turn_back(operator, columns, second, first)
-    backward(first[0], first[1], columns, radices, roots)
-    _gather(operator, first, out)
-
-
-@kernel
-def _spread(operator: Convolution, q: np.ndarray, first: np.ndarray) -> None:
-    """Copy tractions to the rows of the first transform, and zeros to the other rows."""
-    if operator.images == 4:
-        quarter.spread(operator.folding, q, first)
-    elif operator.images == 2:
-        half.turned(q, first)
-    else:
-        n = q.shape[1]
-        for part in range(2):
-            for row in range(first.shape[1]):
-                for column in range(n):
-                    first[part, row, column] = q[1 - part, row, column] if row < n else 0.0
-
-
-@kernel
-def _turn_over(operator: Convolution, columns: int, first: np.ndarray, second: np.ndarray) -> None:
-    """Transpose the array for the transform along the other axis."""
-    if operator.images == 4:
-        quarter.fold(operator.folding, columns, first, second)
-    elif operator.images == 2:
-        half.completed(operator.halving, columns, first, second)
-    else:
-        padded = first.shape[1]
-        for part in range(2):
-            for column in range(columns):
-                for row in range(padded):
-                    second[part, column, row] = first[part, row, column]
-            for row in range(columns, padded):
-                for column in range(padded):
-                    second[part, row, column] = 0.0
-
-
-@kernel
-def _multiply(operator: Convolution, first: np.ndarray, second: np.ndarray) -> None:
-    """Multiply the transform in `second` by the transform of the influence coefficients; first:
-    scratch array."""
-    if operator.images == 4:
-        quarter.apply_filter(operator.folding, operator.kernel, second)
-    elif not operator.coupled:
-        for part in range(2):
-            for i in range(second.shape[1]):
-                for k in range(second.shape[2]):
-                    second[part, i, k] *= operator.kernel[i, k]
-    elif operator.images == 1:
-        copy, values = first.ravel(), second.ravel()
-        for i in range(values.size):
-            copy[i] = values[i]
-        _multiply_coupled(operator, first, second)
-    elif operator.halving.sign < 0.0:
-        half.multiply_mirrored(operator.kernel, operator.cross, operator.opposite, second)
-    else:
-        half.multiply_turned(operator.kernel, operator.cross, second)
-
-
-@kernel
-def _turn_back(operator: Convolution, columns: int, second: np.ndarray, first: np.ndarray) -> None:
-    """Undo `_turn_over`."""
-    if operator.images == 4:
-        quarter.unfold(operator.folding, columns, second, first)
-    elif operator.images == 2:
-        half.halved(operator.halving, columns, second, first)
-    else:
-        for part in range(2):
-            for row in range(first.shape[1]):
-                for column in range(columns):
-                    first[part, row, column] = second[part, column, row]
-
-
-@kernel
-def _gather(operator: Convolution, first: np.ndarray, out: np.ndarray) -> None:
-    """Undo `_spread`."""
-    if operator.images == 4:
-        quarter.gather(operator.folding, first, out)
-    elif operator.images == 2:
-        half.turned_back(first, out)
-    else:
-        for part in range(2):
-            for row in range(out.shape[1]):
-                for column in range(out.shape[2]):
-                    out[part, row, column] = first[1 - part, row, column]
-
-
-@kernel
-def _multiply_coupled(operator: Convolution, values: np.ndarray, out: np.ndarray) -> None:
-    """Fill `out` with `kernel` times the transform of the traction, plus `cross` times the
-    transform of its conjugate."""
-    padded = values.shape[1]
-    for i in range(padded):
-        far = operator.opposite[i]
-        for k in range(padded):
-            real = values[0, far, operator.opposite[k]]
-            imag = -values[1, far, operator.opposite[k]]
-            cr, ci = operator.cross[0, i, k], operator.cross[1, i, k]
-            out[0, i, k] = operator.kernel[i, k] * values[0, i, k] + cr * real - ci * imag
-            out[1, i, k] = operator.kernel[i, k] * values[1, i, k] + cr * imag + ci * real
+    """Fill `out` with A q.  `q` and `out` contain forward and lateral parts of the resolved cells,
+    (2, rows, columns); scratch: arrays from `workspace`."""
+    lateral, spectrum, image = scratch
+    _, parities, waves, _ = operator.rows.shape
+    of_parity = lateral.reshape(parities * lateral.shape[0], -1)
+    for c in range(2):
+        transform(q[c], operator.columns, (0, 1), lateral, (0, 1))
+        for p in range(parities):
+            transform(operator.rows[c, p], of_parity, (p, parities), spectrum[c, p], (0, 1))
+    ahead, aside = operator.direct
+    for p in range(parities):
+        for f in range(waves):
+            g, factors = (f + operator.shift) % waves, operator.cross[p, f]
+            first, second = spectrum[0, p, f], spectrum[1, parities - 1 - p, g]
+            for k in range(len(first)):
+                x, y = first[k], second[k]
+                first[k] = ahead[f, k] * x + factors[k] * y
+                second[k] = aside[g, k] * y + factors[k] * x
+    for c in range(2):
+        for p in range(parities):
+            transform(operator.rows_back[c, p], spectrum[c, p], (0, 1), of_parity, (p, parities))
+        transform(lateral, operator.columns_back, (0, 1), image, (0, 1))
+        for row in range(q.shape[1]):
+            for column in range(q.shape[2]):
+                out[c, row, column] = image[row, column]

@@ -49,7 +49,7 @@ def descend(
         Friction bound; imposed displacement b; tractions, which are the initial guess on entry and
         within the bound on return; slip, which is filled.
     scratch : tuple of np.ndarray
-        Two arrays of convolution.workspace, and an array of shape (4, rows, columns).
+        Arrays of convolution.workspace, and an array of shape (4, rows, columns).
     control : tuple
         Length of the first gradient step; largest allowed residual, as a force divided by mu F_z;
         patience, see PATIENCE.
@@ -64,7 +64,7 @@ def descend(
     weight, scale, largest = cell
     bound, b, q, slip = fields
     length, tolerance, patience = control
-    first, second, values = scratch
+    room, values = scratch
     trial, elastic = values[:2], values[2:]
     rows, columns = bound.shape
     sums = np.empty((3, columns))  # one for each column, so that the compiler can vectorise
@@ -76,7 +76,7 @@ def descend(
     between = int(BETWEEN_LOOKS / (rows * columns)) + 1
     best, best_at, residual = np.inf, 0, np.inf
     for iteration in range(MOST_ITERATIONS):
-        convolve(convolution, (first, second), trial, elastic)
+        convolve(convolution, room, trial, elastic)
         sums[:] = 0.0
         for c in range(2):
             for i in range(rows):

@@ -30,6 +30,11 @@ LANES = 8
 ZERO = (0.0, 0.0, 0.0, 0.0)
 
 
+def padded(count: int) -> int:
+    """Smallest multiple of LANES that is at least `count`."""
+    return -(-count // LANES) * LANES
+
+
 @intrinsic
 def fused(typing: Any, a: Any, b: Any, c: Any) -> Any:
     """Return a b + c for floats, with a single rounding."""

@@ -154,12 +154,12 @@ def _polar(problem: Problem, cells: int, angles: int, focus: Focus | float | Non
 
 
 def _cartesian(problem: Problem, cells: int, angles: int, focus: Focus | float | None) -> Contact:
-    from microslip.contact import half
+    from microslip.contact.convolution import MIRROR, TURN
     from microslip.contact.squares import CartesianContact
 
     symmetry = ""  # symmetry of the tractions, if the pressure has the same one
     if problem.motion.half_disc:
-        symmetry = half.MIRROR if problem.motion.rotates else half.TURN
+        symmetry = MIRROR if problem.motion.rotates else TURN
     return CartesianContact(cells, problem.poisson, problem.pressure, symmetry)
 
 

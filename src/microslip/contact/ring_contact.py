@@ -13,7 +13,7 @@ import numpy as np
 from microslip.contact.contact import MIRROR, Body, Contact, Guess, March
 from microslip.contact.influence import ring_influence
 from microslip.contact.march import march, strain_energy
-from microslip.contact.operators import LANES, multiply
+from microslip.contact.operators import multiply, padded
 from microslip.contact.path import Path
 from microslip.contact.rings import Focus, make_rings
 from microslip.contact.splitting import PENALTIES, best_penalty
@@ -131,7 +131,7 @@ class RingContact(Contact):
     def pack(self, values: np.ndarray, fill: float = 0.0) -> np.ndarray:
         """Convert values (..., rows, cells) to fields (..., points) of compiled code.
 
-        Each row of a field has a multiple of LANES points; the additional points get `fill`.
+        Each row of a field has operators.padded(cells) points; the additional points get `fill`.
         """
         *shape, rows, cells = values.shape
         out = np.full((*shape, rows, padded(cells)), fill)
@@ -335,8 +335,3 @@ class RadialContact(RingContact):
 
 NO_DRIVE = np.zeros(6), np.zeros(0)
 """Arguments `drive` and `lengths` of march.march without a driven body."""
-
-
-def padded(cells: int) -> int:
-    """Smallest multiple of LANES that is at least `cells`."""
-    return -(-cells // LANES) * LANES

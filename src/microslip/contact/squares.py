@@ -1,4 +1,4 @@
-"""Contact of equal rectangular cells with FFT convolution, for any nu and any outline.
+"""Contact of equal rectangular cells with a compiled convolution, for any nu and any outline.
 
 The cells cover the rectangle around the contact, with the same number along both axes.  For a round
 contact they are squares, as in the paper, and this model is the reference for the other models.
@@ -13,7 +13,6 @@ import signal
 
 import numpy as np
 
-from microslip.contact import half
 from microslip.contact.contact import (
     LATERAL,
     MIRROR,
@@ -25,7 +24,8 @@ from microslip.contact.contact import (
     forces,
     rigid_displacement,
 )
-from microslip.contact.convolution import convolve, square_convolution, workspace
+from microslip.contact.convolution import MIRROR as MIRRORED
+from microslip.contact.convolution import TURN, convolve, square_convolution, workspace
 from microslip.contact.descent import PATIENCE, descend
 from microslip.contact.path import Path
 from microslip.pressures.hertz import HERTZ
@@ -59,7 +59,7 @@ class CartesianContact(Contact):
     pressure : pressure.Pressure
         Any pressure.
     symmetry : str
-        Symmetry of the motion: half.TURN for translations, half.MIRROR for rotations without a
+        Symmetry of the motion: TURN for translations, MIRRORED for rotations without a
         lateral displacement, "" for other motions.  The symmetry is used only if the pressure is
         symmetric as well.
 
@@ -112,7 +112,7 @@ class CartesianContact(Contact):
         self.compliance = np.full(self.bound.shape, self.scale)
         self.resultants = np.ones(3)
         if self.images > 1:  # the images of the cells cancel this force
-            self.resultants[LATERAL if symmetry == half.MIRROR else TORQUE] = 0.0
+            self.resultants[LATERAL if symmetry == MIRRORED else TORQUE] = 0.0
 
     def displacement(self, state: np.ndarray) -> np.ndarray:
         """Elastic displacement A q of each cell under tractions q, with the shape of the state."""
@@ -211,7 +211,7 @@ class StepSolver:
         self.contact, self.tolerance, self.patience = contact, float(tolerance), patience
         self._length = 1.0 / contact.scale
         rows, columns = contact.bound.shape
-        self._scratch = (*workspace(contact.convolution), np.empty((4, rows, columns)))
+        self._scratch = workspace(contact.convolution), np.empty((4, rows, columns))
 
     def solve(
         self, b: np.ndarray, guess: np.ndarray, share: float = 1.0
@@ -272,7 +272,7 @@ def _images(loads: np.ndarray, symmetry: str, poisson: float) -> int:
     """
     if len(loads) % 2 or not symmetry:
         return 1
-    if symmetry == half.MIRROR:
+    if symmetry == MIRRORED:
         return 2 if _is_like(loads, loads[::-1]) else 1
     even = _is_like(loads, loads[::-1]) and _is_like(loads, loads[:, ::-1])
     if even and poisson == 0.0:
@@ -290,6 +290,6 @@ def _mean_of_images(loads: np.ndarray, images: int, symmetry: str) -> np.ndarray
     if images == 1:
         return loads
     ahead = len(loads) // 2
-    image = loads[::-1, ::-1] if images == 2 and symmetry == half.TURN else loads[::-1]
+    image = loads[::-1, ::-1] if images == 2 and symmetry == TURN else loads[::-1]
     mean = 0.5 * (loads + image)[ahead:]
     return 0.5 * (mean + mean[:, ::-1])[:, ahead:] if images == 4 else mean
