@@ -9,7 +9,6 @@ from importlib import import_module as _import_module
 from typing import Any as _Any
 
 from microslip.foundation import accessor as _accessor
-from microslip.foundation import source_digest as _source_digest  # noqa: F401  reads what will be loaded
 
 _WHERE = {
     "solve": "microslip.adaptive.point",

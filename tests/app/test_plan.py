@@ -83,7 +83,7 @@ def test_an_edit_of_a_builder_or_of_the_script_renames_what_it_makes(monkeypatch
 
 def test_the_look_of_figures_counts_for_all_of_them_and_a_kind_for_its_own():
     files = {
-        kind: source_digest.LOADED.of_builder(*drawing.modules_of(kind)) for kind in drawing.DRAWN
+        kind: source_digest.LOADED.builder(*drawing.modules_of(kind)) for kind in drawing.DRAWN
     }
     assert all("report/figures/style.py" in some for some in files.values())
     assert [k for k, some in files.items() if "report/figures/atlas.py" in some] == [

@@ -18,7 +18,7 @@ SNAKEMAKE = Path(sys.executable).with_name("snakemake")
 ENVIRONMENT = {
     "PATH": "/usr/bin:/bin",
     "HOME": os.environ.get("HOME", str(ROOT)),
-    "NUMBA_CACHE_DIR": str(compiled.folder().parent),
+    "NUMBA_CACHE_DIR": str(compiled.FOLDER.parent),
 }
 COMPILED = shutil.ignore_patterns("compiled-*")
 RUN = ["-j2", "--configfile", "tiny.yaml"]

@@ -25,16 +25,13 @@ OTHERS = {module.partition(".")[0] for module in MODULES}
 EXCEPTIONS = {
     ROOT / "src/microslip/foundation/compiled.py": {
         "numba.config",
+        "numba.core.caching",
         "numba.core.event",
         "numba.np.arraymath",
     },
-    ROOT / "src/microslip/foundation/kernel_store.py": {
-        "numba.core.caching",
-        "numba.core.serialize",
-    },
 }
-"""Other modules: settings and events of Numba, an import that it would do more slowly, and the
-classes from which storage of compiled code is derived."""
+"""Other modules: settings, cache locators and events of Numba, and an import that it would do more
+slowly."""
 STANDARD = {"_asdict", "_exit", "_fields", "_replace"}
 """Public names of the standard library that begin with an underscore."""
 ARGPARSE = {"_actions", "_option_string_actions", "_AppendAction"}

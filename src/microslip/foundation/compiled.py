@@ -1,85 +1,179 @@
-"""Compilation of functions with Numba.  This module sets all Numba options of the package.
+"""Compilation of functions with Numba, and storage of the compiled code.
 
-kernel_cache.py chooses the folder of the compiled code.  Results do not depend on this folder.
+`kernel` is `numba.njit(cache=True)`.  Numba's cache fails in four cases.  This module prevents them
+by Numba's settings and by a listener to Numba's events:
+
+- Numba notices an edit of the file of a function, but not an edit of another file that the function
+  uses.  So the name of the folder contains a digest of all kernels and of what they import.
+- Numba raises an error for a folder that is read-only or full.  So the folder is checked once.  If
+  it is not usable, another folder is used, or compiled code is not stored.
+- Numba raises an error for a damaged file.  So the folder contains a list of checksums, which is
+  written after each compilation.  At the start of a process, other files are removed.
+- Two processes that compile one function at the same time can mix up the codes of its signatures.
+  So one process compiles at a time, and the others wait and then use its code.
 """
 
 from __future__ import annotations
 
 import contextlib
+import errno
+import hashlib
+import json
+import os
+import shutil
 import sys
-from collections.abc import Callable, Iterator
-from importlib.machinery import PathFinder
-from importlib.util import module_from_spec
+import tempfile
+import time
+from collections.abc import Callable
+from pathlib import Path
+from types import ModuleType
+from typing import IO
 
 import numba
 import scipy
-from numba.core import event
+from numba.core import caching, event
+from platformdirs import user_cache_path
 
-from microslip.foundation.errors import InputError
-from microslip.foundation.kernel_cache import BySources, folder
-from microslip.foundation.kernel_store import KernelStore
+from microslip.foundation.errors import CacheError, InputError
+from microslip.foundation.files import write_atomically
+from microslip.foundation.source_digest import LOADED
 
 if numba.config.DISABLE_JIT:
-    raise InputError(
-        "NUMBA_DISABLE_JIT",
-        numba.config.DISABLE_JIT,
-        "the solver runs only as compiled code; allowed is 0, or no such variable",
-    )
+    allowed = "the solver runs only as compiled code; allowed is 0, or no such variable"
+    raise InputError("NUMBA_DISABLE_JIT", numba.config.DISABLE_JIT, allowed)
 
 numba.config.SLP_VECTORIZE = 1
 """Combine neighbouring scalar operations into vector instructions, which Numba does not do by
 default.  Matrix products then take half the time."""
-
-BLAS = "scipy.linalg.cython_blas"
-
-
-def _look_for_blas() -> None:
-    """Import Numba's module that searches for BLAS, without importing all of scipy.linalg.
-
-    Numba searches for BLAS when it loads any kernel, and imports scipy.linalg for this.  This
-    import takes a fifth of the CPU time of `microslip point`.  So BLAS is imported without its
-    package.
-    """
-    if "scipy.linalg" in sys.modules:
-        return
-    spec = PathFinder.find_spec(BLAS, [f"{path}/linalg" for path in scipy.__path__])
-    if spec is None or spec.loader is None:
-        return
-    sys.modules[BLAS] = module_from_spec(spec)
-    with contextlib.suppress(ImportError):
-        spec.loader.exec_module(sys.modules[BLAS])
-        import numba.np.arraymath  # noqa: F401
-    sys.modules.pop(BLAS, None)
+OPTIONS = {"nogil": True, "error_model": "numpy"}
+"""Numba options.  Sums are not reordered, and division by zero works as in NumPy."""
+ROOM = 16_000_000
+"""Free bytes that a folder needs.  The compiled code takes 5 MB."""
+SPELL = 1.0
+"""Seconds without compilation after which the next compilation is announced again.  Between the
+kernels of one solution, milliseconds pass."""
+LONGEST_WAIT = 300.0
+"""Seconds that a process waits while another one compiles."""
+REPORTED = "MICROSLIP_SAID_UNSTORED"
+"""Environment variable that is set after the message about a folder.  Jobs inherit it."""
 
 
-_look_for_blas()
+def _usable_folder() -> Path | None:
+    """Folder for the compiled code of the running sources; None if no folder is usable."""
+    chosen = [Path(place) for place in [os.environ.get("NUMBA_CACHE_DIR")] if place]
+    places = [*chosen, LOADED.folder / "__pycache__", user_cache_path("microslip")]
+    problems = []
+    digest = LOADED.digest(LOADED.kernels)[:16]
+    for place in places:
+        folder = place / f"compiled-{digest}"
+        try:
+            folder.mkdir(parents=True, exist_ok=True, mode=0o700)
+            with tempfile.TemporaryFile(dir=folder) as file:
+                file.write(bytes(65536))
+            if shutil.disk_usage(folder).free < ROOM:
+                raise OSError(errno.ENOSPC, f"less than {ROOM / 1e6:g} MB are free")
+            break
+        except OSError as error:
+            problems.append(f"{place} ({error.strerror})")
+    is_stored = len(problems) < len(places)
+    if problems and (chosen or not is_stored) and not os.environ.get(REPORTED):
+        os.environ[REPORTED] = "1"
+        other = f"it is stored in {place}" if is_stored else "each process compiles it again"
+        line = f"compiled code cannot be stored in {' or '.join(problems)}; {other}"
+        print(f"microslip: {line}; NUMBA_CACHE_DIR names another folder", file=sys.stderr)
+    return folder if is_stored else None
 
-_CLOCK = event.TimingListener()
-event.register("numba:compiler_lock", _CLOCK)
+
+class Locator(getattr(caching, "UserProvidedCacheLocator", object)):  # type: ignore[misc]
+    """Numba's locator for a given folder, in which the path of the package does not count, so that
+    a copy of the package uses the same compiled code.  Old versions of Numba do not use it."""
+
+    @classmethod
+    def get_suitable_cache_subpath(cls, py_file: str) -> str:
+        """Name of the folder for a file with kernels."""
+        return Path(py_file).parent.name
+
+
+class _Listener(event.Listener):
+    """Listener to Numba's compiler lock, which encloses loading, compiling and storing, and to the
+    compilations inside it."""
+
+    depth, is_compiling, ended = 0, False, -SPELL
+    seconds, _started = 0.0, 0.0
+    _lock: IO | None = None
+
+    def on_start(self, event: event.Event) -> None:
+        if event.kind == "numba:compile":
+            is_first = not self.is_compiling and time.monotonic() > self.ended + SPELL
+            if is_first and sys.stderr.isatty():
+                print(
+                    "microslip: compiling the solver, once for each kind of contact",
+                    file=sys.stderr,
+                )
+            self.is_compiling = True
+        elif self.depth == 0:
+            self._started, self._lock = time.monotonic(), _lock()
+        self.depth += event.kind != "numba:compile"
+
+    def on_end(self, event: event.Event) -> None:
+        self.depth -= event.kind != "numba:compile"
+        if self.depth == 0:
+            self.seconds += time.monotonic() - self._started
+            if self.is_compiling:
+                self.is_compiling, self.ended = False, time.monotonic()
+                if FOLDER is not None:
+                    _list_checksums(FOLDER)
+            if self._lock is not None:
+                self._lock.close()
+
+
+def _lock() -> IO | None:
+    """Wait for processes that compile.  Return an open file that is locked until it is closed, or
+    None if files cannot be locked."""
+    with contextlib.suppress(ImportError, OSError):
+        import fcntl
+
+        file, started = open(f"{FOLDER}/lock", "w"), time.monotonic()  # noqa: SIM115
+        while time.monotonic() < started + LONGEST_WAIT:
+            try:
+                fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
+                return file
+            except BlockingIOError:
+                time.sleep(0.05)
+    return None
+
+
+def _checksums(folder: Path) -> dict[str, str]:
+    files = {path.relative_to(folder).as_posix(): path for path in folder.rglob("*.nb[ic]")}
+    return {name: hashlib.sha256(path.read_bytes()).hexdigest() for name, path in files.items()}
+
+
+def _list_checksums(folder: Path) -> None:
+    with contextlib.suppress(OSError, CacheError):  # the next process compiles again
+        write_atomically(folder / "checksums.json", json.dumps(_checksums(folder)).encode())
+
+
+def _remove_damaged(folder: Path) -> None:
+    listed = {}
+    with contextlib.suppress(OSError, ValueError):
+        listed = json.loads((folder / "checksums.json").read_bytes())
+    for name in dict(_checksums(folder).items() - listed.items()):
+        (folder / name).unlink(missing_ok=True)
+
+
+FOLDER = _usable_folder()
+"""Folder of the compiled code, or None."""
+if FOLDER is not None:
+    with _lock() or contextlib.nullcontext():
+        _remove_damaged(FOLDER)
+_LISTENER = _Listener()
+event.register("numba:compiler_lock", _LISTENER)
+event.register("numba:compile", _LISTENER)
 
 
 def compile_seconds() -> float:
     """Seconds that this process has spent on compiling kernels and on loading compiled code."""
-    return float(_CLOCK.duration) if _CLOCK.done else 0.0
-
-
-OPTIONS = {"nogil": True, "error_model": "numpy"}
-"""Numba options.  Sums are not reordered, and division by zero works as in NumPy."""
-
-
-@contextlib.contextmanager
-def _cache_folder() -> Iterator[None]:
-    """Context manager in which Numba stores new compiled code in the folder of kernel_cache.py."""
-    config = numba.config
-    before = config.CACHE_DIR, getattr(config, "CACHE_LOCATOR_CLASSES", "")
-    # A Numba version without locators uses only the folder.  Copies of the package then do not
-    # share compiled code.
-    locator = f"{BySources.__module__}.{BySources.__qualname__}"
-    config.CACHE_DIR, config.CACHE_LOCATOR_CLASSES = str(folder()), locator
-    try:
-        yield
-    finally:
-        config.CACHE_DIR, config.CACHE_LOCATOR_CLASSES = before
+    return _LISTENER.seconds
 
 
 def kernel(function: Callable | None = None, **options: object) -> Callable:
@@ -89,7 +183,28 @@ def kernel(function: Callable | None = None, **options: object) -> Callable:
     """
     if function is None:
         return lambda function: kernel(function, **options)
-    with _cache_folder():
-        dispatcher = numba.njit(**(OPTIONS | options))(function)
-        dispatcher._cache = KernelStore(function)  # as `cache=True` does with Numba's own class
-    return dispatcher
+    config = numba.config
+    before = config.CACHE_DIR, getattr(config, "CACHE_LOCATOR_CLASSES", "")
+    config.CACHE_DIR, config.CACHE_LOCATOR_CLASSES = str(FOLDER), f"{__name__}.Locator"
+    try:
+        return numba.njit(cache=FOLDER is not None, **(OPTIONS | options))(function)
+    finally:
+        config.CACHE_DIR, config.CACHE_LOCATOR_CLASSES = before
+
+
+def _import_blas() -> None:
+    """Import Numba's module that searches for BLAS, without importing all of scipy.linalg.
+
+    Numba searches for BLAS when it loads any kernel.  The import of scipy.linalg takes a fifth of
+    the CPU time of `microslip point`.
+    """
+    if "scipy.linalg" not in sys.modules:
+        bare = sys.modules["scipy.linalg"] = ModuleType("scipy.linalg")
+        bare.__path__ = [f"{path}/linalg" for path in scipy.__path__]
+        with contextlib.suppress(ImportError):
+            import numba.np.arraymath  # noqa: F401
+        for name in [name for name in sys.modules if name.startswith("scipy.linalg")]:
+            del sys.modules[name]
+
+
+_import_blas()
