@@ -22,6 +22,7 @@ SECTIONS: dict[str, type[Settings]] = {
     "`accuracy`: a point": settings.StudyPoint,
     "`accuracy`: `map`": settings.ModelMap,
     "`stability`": settings.Stability,
+    "`stability`: a block of `axes`": settings.Block,
     "`claims`": settings.Claims,
 }
 """Models of the tables by heading."""

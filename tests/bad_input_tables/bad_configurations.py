@@ -97,8 +97,9 @@ STUDIES = [
     ("accuracy.methods[1]", "1", "1: allowed is one of shipped"),
     ("stability.methods", "[euler, euler]", "euler occurs twice", "different values"),
     ("stability.tolerance", "0.5", "0.5 is not allowed", TOLERANCES),
-    ("stability.axes", "[]", "[] is not allowed", "a list"),
-    ("stability.axes[0]", "step", '"step" is not allowed; did you mean steps?', "slow-transverse"),
+    ("stability.axes", "[edge]", '["edge"] is not allowed', "a mapping of names"),
+    ("stability.axes.edge", "{motion: bore, velocity: 1, amplitude: 1}", "no key has several"),
+    ("stability.axes.edge.cells[1]", "9", "9 is not allowed", "an even number >= 4"),
     ("accuracy.levels", "7", "7 is not allowed", "<= 6"),
     (f"{POINT}.motion", None, "missing; required: motion, velocity"),
     (f"{POINT}.motion", "bores", '"bores" is not allowed; did you mean bore?', "zigzag"),
@@ -127,7 +128,7 @@ accuracy:
     tolerance: [0.01, 0.001]
 stability:
   methods: [shipped, euler]
-  axes: [edge]
+  axes: {edge: {motion: transverse, velocity: 0.01, amplitude: 0.5, cells: [8, 16]}}
 claims:
   velocity: [0.1, 1]
   amplitude_transverse: [1]
@@ -173,6 +174,8 @@ TOGETHER = [
     ({f"{T}.velocity": GRID % 1001, f"{T}.amplitude": GRID % 1000}, T, "at most 1000000"),
     ({"accuracy.map.velocity": GRID % 6000}, "accuracy.map.velocity x amplitude_transverse",
      "at most 10000"),
+    ({"stability.axes.edge.velocity": "[1, 2]"}, "stability.axes.edge",
+     "velocity and cells has several", "one key"),
     (MAP | {f"{T}.tolerance": "1e-2"}, f"{T}.tolerance", "0.01 is not allowed", "less than the"),
     ({f"{T}.error": "0.1", f"{T}.tolerance": "0.02"}, f"{T}.tolerance", "0.02", "at most 0.01"),
     (MAP | {f"{T}.velocity": "[1]"}, f"{T}.error", "two amplitudes and two velocities above 0"),

@@ -22,9 +22,7 @@ from microslip.motions.problem import Problem
 from microslip.solver import method_names
 from microslip.solver.discretise import Resolution
 from microslip.solver.methods import aspher
-from microslip.studies import ladders
-from microslip.studies.accuracy import accuracy_cost
-from microslip.studies.ladders import MODELS_OF_MOTION
+from microslip.studies import accuracy, requests
 
 os.environ.setdefault("OMP_NUM_THREADS", "1")  # read when the package is first imported
 needs_it = pytest.mark.skipif(find_spec("aspher") is None, reason="the package is not installed")
@@ -72,12 +70,12 @@ def asked(names):
     return [
         canonical.canonical_json(request)
         for point in study.points.values()
-        for _, request in accuracy_cost.trials(study, point)
+        for _, request in accuracy.trials(study, point)
     ]
 
 
 def test_nothing_is_asked_without_the_package(without):
-    assert ladders.models_for("aspher", "transverse", 0.0) == []
+    assert requests.models_for("aspher", "transverse", 0.0) == []
     assert asked(["shipped", "aspher"]) == asked(["shipped"])
 
 
@@ -91,9 +89,9 @@ def test_squares_are_asked_with_the_package(within):
 @pytest.mark.parametrize("motion", [name for name, one in MOTIONS.items() if not fields(one)])
 def test_it_applies_where_it_is_asked(motion, poisson, within):
     models = [m for m in MODELS if not trial.applies(motion, poisson, m, "aspher")]
-    assert ladders.models_for("aspher", motion, poisson) == models
+    assert requests.models_for("aspher", motion, poisson) == models
     # the slider has no rotations either
-    assert bool(models) == ("slider" in MODELS_OF_MOTION[motion])
+    assert bool(models) == ("slider" in requests.models_of(motion, 0.0))
 
 
 def test_rotation_is_refused(within):

@@ -179,7 +179,12 @@ POINTS = {
     "steady": {"motion": "continuous-bore", "velocity": 0.8},
 }
 METHODS = ["shipped", "euler", "paper", "full-newton", "midpoint", "march"]
-AXES = ["steps", "slow-bore", "critical-amplitude", "poisson", "rotation-centre", "step-length"]
+BORE = {"motion": "bore", "velocity": 0.1, "amplitude": 1}
+AXES = studies_stub.STABILITY["axes"] | {
+    "slow-bore": BORE | {"velocity": [0.001, 0.01, 0.1]},
+    "critical-amplitude": BORE | {"amplitude": [0.9, 1, 1.1], "title": "around the critical one"},
+    "rotation-centre": BORE | {"velocity": [0.5, 1, 2], "amplitude": 5},
+}
 
 
 def studies() -> dict[str, xr.Dataset]:

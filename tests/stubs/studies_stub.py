@@ -21,9 +21,14 @@ ACCURACY = {
         "tolerance": [0.01, 0.001],
     },
 }
+FIXED = {"motion": "transverse", "velocity": 0.1, "amplitude": 1}
 STABILITY = {
     "methods": ["shipped", "projected-gradient", "euler"],
-    "axes": ["poisson", "step-length", "steps"],
+    "axes": {
+        "poisson": FIXED | {"amplitude": 0.7, "poisson": [0, 0.2, 0.4], "title": "Poisson's ratio"},
+        "step-length": FIXED | {"step": [0.25, 0.5, 1, 2]},
+        "steps": FIXED | {"steps": [8, 64]},
+    },
 }
 
 

@@ -1,6 +1,9 @@
 """Verdicts on the paper's statements, from invented results of runs."""
 
+from itertools import product
+
 import numpy as np
+import pandas as pd
 import pytest
 from scipy.integrate import quad
 from scipy.optimize import brentq
@@ -9,13 +12,11 @@ from stubs.claims_stub import answered, configured, friction, result
 from microslip.datasets import netcdf
 from microslip.report import claims_page
 from microslip.studies import registry
-from microslip.studies.claims import claims as requests
 from microslip.studies.claims import verdicts
-from microslip.studies.claims.parts import PARTS
-from microslip.studies.claims.statements import STATEMENTS
 from microslip.theory import constant_stiffness, paper
 
 NOT_DECIDED, HOLDS, PARTLY, NOT = verdicts.WORDS
+OPEN, HOLD, FAIL = verdicts.OPEN, verdicts.HOLDS, verdicts.FAILS
 
 
 def judged(results=result, **changes):
@@ -37,18 +38,81 @@ def claims(tmp_path_factory):
     return netcdf.whole(path)
 
 
-# Requests
+# Verdicts from checks and parts
 
 
-def test_the_papers_velocity_is_always_among_them():
-    without = configured(velocity=[0.1, 1]).claims
-    assert requests.velocities(without) == [0.005, 0.1, 1]
-    assert requests.velocities(configured(velocity=[0.005, 1]).claims) == [0.005, 1]
-    assert {v for v, _ in requests.periods(without)} == {0.005}
+@pytest.mark.parametrize(
+    ("margin", "error", "outcome"),
+    [
+        (0.2, 0.1, HOLD),
+        (-0.2, 0.1, FAIL),
+        (0.1, 0.1, OPEN),
+        (-0.05, 0.1, OPEN),
+        (0.0, 0.0, OPEN),
+        (1e-9, 0.0, HOLD),
+        (1e9, np.inf, OPEN),
+        (np.nan, 0.0, OPEN),
+        (0.2, np.nan, OPEN),
+    ],
+)
+def test_a_margin_decides_only_if_it_is_larger_than_its_error(margin, error, outcome):
+    assert verdicts.outcomes([margin], [error]) == [outcome]
 
 
-def test_every_statement_has_parts():
-    assert {part.claim for part in PARTS if part.counts} == set(STATEMENTS)
+@pytest.mark.parametrize(
+    ("outcomes", "verdict"),
+    [
+        ([], NOT_DECIDED),
+        ([OPEN], NOT_DECIDED),
+        ([HOLD, OPEN], HOLDS),
+        ([FAIL, OPEN], NOT),
+        ([HOLD, FAIL, OPEN], PARTLY),
+    ],
+)
+def test_a_part_holds_if_no_check_fails(outcomes, verdict):
+    assert verdicts.WORDS[verdicts.of_part(outcomes)] == verdict
+
+
+def completed(parts):
+    """Yield the verdicts on a statement for all possible verdicts on its open parts."""
+    decided = [part for part in parts if part != verdicts.NOT_DECIDED]
+    possible = verdicts.WHOLLY, verdicts.PARTLY, verdicts.NOT
+    for rest in product(possible, repeat=len(parts) - len(decided)):
+        whole = {*decided, *rest}
+        yield whole.pop() if len(whole) == 1 else verdicts.PARTLY
+
+
+@pytest.mark.parametrize("count", [1, 2, 3])
+def test_a_statement_is_decided_exactly_where_its_open_parts_cannot_change_it(count):
+    for parts in product(range(4), repeat=count):
+        possible = set(completed(list(parts)))
+        expected = possible.pop() if len(possible) == 1 else verdicts.NOT_DECIDED
+        assert verdicts.of_claim(parts) == expected, parts
+    assert verdicts.of_claim([]) == verdicts.NOT_DECIDED
+
+
+def checks(*rows):
+    """Table of checks from rows (amplitude, outcomes at the velocities 0.1, 1, 10)."""
+    lines = [(a, v, o) for a, row in rows for v, o in zip((0.1, 1, 10), row, strict=False)]
+    return pd.DataFrame(lines, columns=["amplitude", "velocity", "outcome"])
+
+
+def test_the_places_where_a_part_holds_are_listed():
+    rows = (1, (HOLD, HOLD, OPEN)), (2, [HOLD] * 3), (3, (FAIL, FAIL, OPEN)), (4, [OPEN] * 3)
+    text = "amplitude 1 to 2; not at amplitude 3; open at amplitude 4"
+    assert verdicts.where(checks(*rows)) == text
+    rows = (1, (FAIL, FAIL, HOLD)), (2, (FAIL, FAIL, HOLD)), (3, (HOLD, FAIL, HOLD))
+    text = "at amplitude 1 to 2 not for velocity 0.1 to 1; at amplitude 3 not for velocity 1"
+    assert verdicts.where(checks(*rows)) == text
+    assert verdicts.where(checks((np.nan, (HOLD, FAIL)))) == "velocity 0.1; not at velocity 1"
+    assert verdicts.where(checks()) == ""
+
+
+def test_the_clearest_failure_or_the_closest_success_shows_a_part():
+    table = checks((1, (HOLD, HOLD, OPEN))).assign(margin=[0.9, 0.3, 0.05], run=list("abc"))
+    assert verdicts.shown_by(table) == "b"
+    assert verdicts.shown_by(table.assign(outcome=[FAIL, FAIL, HOLD], margin=[-1, -2, 3])) == "b"
+    assert verdicts.shown_by(table[2:]) == ""
 
 
 # Verdicts, and results that change them

@@ -6,13 +6,13 @@ from unittest.mock import Mock
 import numpy as np
 import pytest
 from scipy.integrate import quad
-from stubs.claims_stub import configured
+from stubs.claims_stub import answered, configured
 
 import microslip
 from microslip.adaptive.period import NoPeriodicState
 from microslip.adaptive.stick_area import patches
 from microslip.contact.contact import StepFailure
-from microslip.studies.claims import claims, static_limits
+from microslip.studies import evidence, registry, static_limits
 from microslip.sweeps import batch
 from microslip.theory import hertz
 from microslip.theory import paper as theory
@@ -68,24 +68,22 @@ def test_the_asymptote_is_what_the_limit_tends_to(amplitude):
     assert float(static_limits.asymptote(amplitude)) == pytest.approx(share, rel=allowed + 1e-6)
 
 
-def test_eq_33_tends_to_the_share_above_the_asymptote_that_the_dataset_says():
-    result = static_limits.variables(configured().claims, _no_runs)["static_asymptote_excess"][1]
+@pytest.fixture(scope="module")
+def data():
+    """Dataset of the claims with invented results."""
+    return registry.undivided(configured(), "claims", answered()[0])
+
+
+def test_eq_33_tends_to_the_excess_over_the_asymptote_in_the_dataset(data):
     ratio = float(theory.static_bore(9.0)) / float(static_limits.asymptote(9.0)) - 1
-    assert float(result) == pytest.approx(ratio, rel=1e-4)
+    assert float(data["static_asymptote_excess"]) == pytest.approx(ratio, rel=1e-4)
 
 
-def _no_runs(request):
-    from microslip.studies.claims.runs import Run
-
-    return Run("name", request, {"converged": False})
-
-
-def test_gaps_are_the_largest_on_the_curves():
-    data = static_limits.variables(configured().claims, _no_runs)
+def test_gaps_are_the_largest_on_the_curves(data):
     amplitude = np.linspace(0, 1, 5001)
     gap = theory.static_transverse(amplitude) - theory.static_limit_transverse(amplitude)
-    assert float(data["transverse_gap_zone"][1]) == pytest.approx(gap.max(), abs=1e-5)
-    at = float(data["transverse_gap_zone_at"][1])
+    assert float(data["transverse_gap_zone"]) == pytest.approx(gap.max(), abs=1e-5)
+    at = float(data["transverse_gap_zone_at"])
     assert at == pytest.approx(amplitude[gap.argmax()], abs=2e-3)
 
 
@@ -152,7 +150,7 @@ def test_patches_of_the_slow_bore_lie_where_theory_has_them():
 def test_the_study_asks_for_the_papers_run_as_the_paper_made_it():
     from microslip.solver.methods import paper
 
-    request = claims.paper_run("bore", 1.0)
+    request = evidence.paper_run("bore", 1.0)
     assert (request["cells"], request["steps"]) == (paper.CELLS, paper.STEPS_PER_PERIOD)
     assert float(request["tolerance"]) == paper.STRESS_TOLERANCE
     assert request["method"] == "paper"

@@ -1,4 +1,4 @@
-"""Studies: ladders, requests, measured times, fronts and exponents."""
+"""Studies: requests, jobs, measured times, fronts, profiles, and conventions of the datasets."""
 
 import json
 import math
@@ -9,10 +9,13 @@ from types import SimpleNamespace
 from unittest.mock import Mock
 
 import numpy as np
+import pandas as pd
 import pytest
+import xarray as xr
 from hypothesis import given
 from hypothesis import strategies as st
-from stubs.studies_stub import asked, configured
+from stubs import claims_stub, studies_stub
+from stubs.studies_stub import configured
 from stubs.sweep_stub import Solver
 
 import microslip
@@ -21,152 +24,92 @@ from microslip.adaptive.choice import choose_model
 from microslip.config.settings import Sweep
 from microslip.contact.contact import StepFailure
 from microslip.contact.registry import MODELS
+from microslip.datasets import netcdf
 from microslip.foundation.canonical import canonical_json
 from microslip.foundation.errors import SolverError
 from microslip.motions.by_name import MOTIONS, motion_named
 from microslip.motions.problem import Problem
 from microslip.solver.methods import paper
-from microslip.studies import ladders, registry
-from microslip.studies import requests as study_requests
-from microslip.studies.accuracy import accuracy_cost, fronts
+from microslip.studies import accuracy, registry, requests, stability
 from microslip.studies.requests import Point
-from microslip.studies.stability import stability
-from microslip.sweeps import batch, evaluate
-from microslip.sweeps import request as requests_of
+from microslip.sweeps import batch, evaluate, request
 
-# Ladders
+STUDIES = {
+    "accuracy": (studies_stub.configured, studies_stub.accuracy_result),
+    "stability": (studies_stub.configured, studies_stub.stability_result),
+    "claims": (claims_stub.configured, claims_stub.result),
+}
+MID = Point("transverse", 0.1, 0.5)
+
+
+def of_jobs(study, settings):
+    """All requests of a study as canonical JSON."""
+    return [canonical_json(one) for piece in registry.pieces(study, settings) for one in piece]
+
+
+# Models, resolutions and requests
 
 
 @pytest.mark.parametrize("poisson", [0.0, 0.3])
 @pytest.mark.parametrize("motion", [name for name, one in MOTIONS.items() if not fields(one)])
 def test_models_apply_here_exactly_where_the_solver_lets_them(motion, poisson):
     applicable = {m for m in MODELS if not single_run.applies(motion, poisson, m, "shipped")}
-    assert set(ladders.models_of(motion, poisson)) == applicable
-    assert ladders.exact_model(motion, poisson) == choose_model(
+    assert set(requests.models_of(motion, poisson)) == applicable
+    assert requests.exact_model(motion, poisson) == choose_model(
         Problem(motion_named(motion), 1.0, None if motion == "continuous-bore" else 1.0, poisson)
     )
 
 
 @pytest.mark.parametrize("model", MODELS)
-def test_ladders_climb_in_all_directions_at_once_and_tighten(model):
-    rungs = ladders.ladder(model, "shipped", 6)
-    assert [k for k, _, _ in rungs] == list(range(len(rungs)))
+def test_resolutions_increase_in_all_directions_at_once(model):
+    rungs = requests.ladder(model, "shipped", 6)
     levels = np.array([level for _, level, _ in rungs])
     assert ((np.diff(levels, axis=0) > 0) | (levels[1:] == 1)).all()
     assert (levels[:, 2] % 2 == 0).all()
     assert (np.diff([tolerance for *_, tolerance in rungs]) < 0).all()
-    assert ladders.ladder(model, "shipped", 2) == rungs[:2]
 
 
-def test_other_methods_climb_less_high_on_the_model_that_auto_takes():
+def test_other_methods_have_fewer_levels_of_the_model_that_auto_selects():
     for motion, model, count in (("transverse", "radial", 5), ("bore", "polar", 4)):
-        for method in ("full-newton", "projected-gradient:step=3"):
-            assert ladders.models_for(method, motion, 0.0) == [model]
-            assert len(ladders.ladder(model, method, 6)) == count
-    assert ladders.models_for("shipped", "bore", 0.3) == ["rigid", "polar", "cartesian"]
-    assert ladders.models_for("paper", "bore", 0.0) == ["cartesian"]
-    ((_, level, _),) = ladders.ladder("cartesian", "paper", 6)
-    assert level.cells == 32
+        assert requests.models_for("projected-gradient:step=3", motion, 0.0) == [model]
+        assert len(requests.ladder(model, "full-newton", 6)) == count
+    ((_, level, _),) = requests.ladder("cartesian", "paper", 6)
+    assert requests.models_for("paper", "bore", 0.0) == ["cartesian"] and level.cells == 32
 
 
-# Requests
-
-
-def test_references_are_ordinary_points_and_tight():
-    study = configured().accuracy
-    request = accuracy_cost.truth(study.points["mid"])
-    sweep_of_it = {"velocity": [0.1], "amplitude": [0.5], "tolerance": 1e-6}
-    (point,) = requests_of.points_of(Sweep(motion="transverse", **sweep_of_it)).requests
-    assert request == point
-    assert accuracy_cost.truth(Point("transverse", 0.1, 0.5, 0.5))["tolerance"] == "3e-5"
-    on_map = accuracy_cost.map_truth(study, study.points["mid"])
-    assert on_map["tolerance"] == "0.0001"
-
-
-@pytest.mark.parametrize("study", ["accuracy", "stability"])
-def test_requests_are_plain_and_named_apart(study):
-    requests = [json.loads(text) for text in asked(study, configured())]
-    names = {requests_of.key_of(request) for request in requests}
-    assert len(names) == len({canonical_json(request) for request in requests})
-    for request in requests:
-        assert requests_of.label(request)
-        for name in ("velocity", "tolerance"):
-            assert isinstance(request.get(name, ""), str)
+def test_a_reference_is_the_request_of_a_sweep():
+    point = {"velocity": [0.1], "amplitude": [0.5], "tolerance": 1e-6}
+    (one,) = request.points_of(Sweep(motion="transverse", **point)).requests
+    assert requests.reference(MID) == one
+    assert requests.reference(MID._replace(poisson=0.5))["tolerance"] == "3e-5"
 
 
 @pytest.mark.parametrize("study", ["accuracy", "stability"])
 def test_another_method_adds_jobs_and_changes_none(study):
-    def cuts(methods):
+    def jobs(methods):
         changed = {"methods": methods}
         pieces = registry.pieces(study, configured(changed, changed).studies[study])
         return {canonical_json(piece) for piece in pieces}
 
-    before, after = cuts(["shipped", "euler"]), cuts(["shipped", "march", "euler"])
+    before, after = jobs(["shipped", "euler"]), jobs(["shipped", "march", "euler"])
     assert before < after
     assert all('"method":"march"' in piece for piece in after - before)
 
 
-def test_what_takes_long_starts_first():
-    long, short = accuracy_cost.pieces(configured({"levels": 6}).accuracy)
-    early = [request for piece in long for request in piece]
-    assert {request["kind"] for request in early} == {"point", "trial"}
-    assert all(r["cells"] >= 64 for r in early if r["kind"] == "trial")
-    assert all(len(piece) == 1 for piece in long if piece[0]["kind"] == "point")
-    later = [request for piece in short for request in piece]
-    assert not [r for r in later if r.get("model") == "cartesian" and r.get("cells", 0) >= 64]
-
-
-# Blocks of the atlas
-
-
-def test_blocks_have_names_that_the_configuration_knows():
-    names = [axis.name for axis in stability.AXES]
-    assert configured(stability={"axes": names}).stability.axes == tuple(names)
-    study = configured(stability={"axes": ["steps", "poisson"]}).stability
-    assert [axis.name for axis in stability.axes(study)] == ["steps", "poisson"]
-    everything = configured(stability={"axes": None}).stability
-    assert stability.axes(everything) == list(stability.AXES)
-
-
-@pytest.mark.slow
-def test_cases_can_be_asked():
-    for axis, value, overrides in stability.cases(configured(stability={"axes": None}).stability):
-        request = stability.probe(configured().stability, "shipped", axis, value, overrides)
-        assert MOTIONS[request["motion"]].periodic
-        assert request["amplitude"] is not None
-        for name in ("cells", "steps"):
-            assert request[name] is None or request[name] % 2 == 0
-        if not axis.parameters:
-            assert value in overrides.values()
-        reference = stability.reference(configured().stability, overrides)
+def test_a_block_varies_one_quantity_and_step_lengths_are_for_methods_that_have_them():
+    study = configured().stability
+    for _, block, value in stability.cases(study):
+        probe = stability.probe(study, "shipped", block, value)
+        reference = stability.reference(study, block, value)
+        place = ("motion", "velocity", "amplitude", "poisson")
+        assert [probe[n] for n in place] == [reference[n] for n in place]
         assert (reference["cells"], reference["steps"]) == (None, None)
-        assert {k: reference[k] for k in ("motion", "velocity", "amplitude", "poisson")} == {
-            k: request[k] for k in ("motion", "velocity", "amplitude", "poisson")
-        }
-
-
-def test_numbers_of_a_method_are_varied_in_that_method_only():
-    study = configured(stability={"axes": ["step-length"]}).stability
-    values = {
-        method: [
-            None if request is None else request["method"]
-            for case in stability.cases(study)
-            for request in [stability.probe(study, method, *case)]
-        ]
-        for method in ("shipped", "projected-gradient", "euler")
-    }
-    assert values["shipped"] == ["shipped"] * 7
-    assert values["euler"] == [None] * 7
-    assert values["projected-gradient"][0] == "projected-gradient:step=0.25"
-    assert values["projected-gradient"][-1] == "projected-gradient:step=4"
-
-
-def test_methods_have_the_numbers_that_blocks_vary():
-    from microslip.solver.method_names import check
-
-    for axis in stability.AXES:
-        for method, parameter in axis.parameters:
-            check(f"{method}:{parameter}=1")
+        if block.varied != "step":
+            assert float(probe[block.varied]) == value
+    cases = [(block, value) for _, block, value in stability.cases(study) if block.step]
+    probes = [stability.probe(study, "projected-gradient", *case) for case in cases]
+    assert [probe["method"].partition("=")[2] for probe in probes] == ["0.25", "0.5", "1", "2"]
+    assert {stability.probe(study, "euler", *case) for case in cases} == {None}
 
 
 # Results and their times
@@ -192,44 +135,22 @@ def test_a_time_is_the_median_after_a_first_call(monkeypatch):
     assert (clock.calls, seconds) == (6, pytest.approx(0.2))
 
 
-@pytest.mark.parametrize("kind", ["trial", "choice"])
-def test_times_say_on_which_computer_they_were_measured(monkeypatch, kind):
-    Trials(monkeypatch)
-    study = configured().accuracy
-    request = {
-        "trial": trial_request(),
-        "choice": study_requests.choice(study.points["mid"], 1e-3, 1),
-    }[kind]
-    monkeypatch.setenv("OPENBLAS_NUM_THREADS", "3")
-    machine = evaluate.computed(request)["machine"]
-    assert machine["host"] == platform.node()
-    assert machine["threads"] == 3
-    listed = Path("/proc/cpuinfo")
-    if listed.exists() and "model name" in listed.read_text():
-        assert machine["cpu"] in " ".join(listed.read_text().split())
+@pytest.mark.parametrize("seconds", [1e-2, 1e-5])
+def test_short_runs_are_timed_together(monkeypatch, seconds):
+    clock = Clock(monkeypatch, seconds)
+    assert evaluate.timed(clock.run, 3)[1] == pytest.approx(seconds)
+    assert 3 * evaluate.SHORTEST <= clock.now < 3 * evaluate.LONG_ENOUGH
 
 
 def test_times_of_another_cpu_have_other_keys_and_points_do_not(monkeypatch):
     def keys_of(cpu):
-        monkeypatch.setattr(study_requests, "cpu_model", lambda: cpu)
-        pieces = registry.pieces("accuracy", configured().accuracy)
-        requests = [request for piece in pieces for request in piece]
-        return {
-            timed: {requests_of.key_of(r) for r in requests if (r["kind"] != "point") is timed}
-            for timed in (True, False)
-        }
+        monkeypatch.setattr(requests, "cpu_model", lambda: cpu)
+        every = map(json.loads, of_jobs("accuracy", configured().accuracy))
+        pairs = [(one["kind"] != "point", request.key_of(one)) for one in every]
+        return [{key for is_timed, key in pairs if is_timed is timed} for timed in (True, False)]
 
-    one, other = keys_of("AMD EPYC 7B13"), keys_of("Intel Xeon 8481C")
-    assert one[True].isdisjoint(other[True])
-    assert one[False] == other[False]
-
-
-@pytest.mark.parametrize("seconds", [1e-2, 1e-3, 1e-5])
-def test_short_runs_are_timed_together(monkeypatch, seconds):
-    clock = Clock(monkeypatch, seconds)
-    assert evaluate.timed(clock.run, 3)[1] == pytest.approx(seconds)
-    assert clock.now >= 3 * evaluate.SHORTEST
-    assert clock.now < 3 * evaluate.LONG_ENOUGH
+    (one, points), (other, same) = keys_of("AMD EPYC 7B13"), keys_of("Intel Xeon 8481C")
+    assert one.isdisjoint(other) and points == same
 
 
 class Trials(Solver):
@@ -237,7 +158,7 @@ class Trials(Solver):
 
     def __init__(self, monkeypatch, **settings):
         super().__init__(monkeypatch, **settings)
-        self.asked = []
+        self.settings = []
         for name in ("applies", "run_trial"):
             monkeypatch.setattr(f"microslip.adaptive.single_run.{name}", getattr(self, name))
 
@@ -245,47 +166,50 @@ class Trials(Solver):
         return "not here" if method == "march" else ""
 
     def run_trial(self, motion, velocity, amplitude, **settings):
-        self.asked.append(settings)
-        assert isinstance(settings["steps"], int)
+        self.settings.append(settings)
         mu = velocity / (1 + velocity + (amplitude or 0)) + 1 / settings["cells"] ** 2
-        work = np.int64(settings["cells"] * settings["angles"] * settings["steps"])
-        return {"mu_macro": mu, "converged": True, "reason": "", "effort": work, "unknowns": 4}
+        return {"mu_macro": mu, "converged": True, "reason": "", "effort": np.int64(4)}
 
 
-def trial_request(**changes):
-    study = configured().accuracy
-    requests = [r for _, r in accuracy_cost.trials(study, study.points["mid"])]
-    (request,) = [r for r in requests if r.get("method") == "euler" and r["cells"] == 8]
-    return request | changes
+def trial(**changes):
+    """Request for a trial with 8 rings."""
+    _, level, tolerance = requests.ladder("radial", "euler", 6)[1]
+    return requests.trial(MID, "radial", "euler", level, tolerance, 2) | changes
 
 
-def test_a_trial_is_run_as_asked_and_timed(monkeypatch):
+def probe(method, study=None):
+    study = study or configured().stability
+    _, block, value = stability.cases(study)[-1]
+    return stability.probe(study, method, block, value)
+
+
+@pytest.mark.parametrize("one", [trial(), requests.choice(MID, 1e-3, 1)], ids=["trial", "choice"])
+def test_times_are_stored_with_the_computer(monkeypatch, one):
+    Trials(monkeypatch)
+    monkeypatch.setenv("OPENBLAS_NUM_THREADS", "3")
+    machine = evaluate.computed(one)["machine"]
+    assert (machine["host"], machine["threads"]) == (platform.node(), 3)
+    listed = Path("/proc/cpuinfo")
+    if listed.exists() and "model name" in listed.read_text():
+        assert machine["cpu"] in " ".join(listed.read_text().split())
+
+
+def test_a_trial_is_run_with_its_settings_and_timed(monkeypatch):
     stub = Trials(monkeypatch)
-    record, _ = batch.computed(trial_request())
-    assert record["result"]["mu_macro"] == pytest.approx(0.1 / 1.6 + 1 / 64)
-    assert record["result"]["seconds"] >= 0
-    assert record["result"]["applies"] is True
-    assert stub.asked[0] == {
-        "poisson": 0.0,
-        "model": "radial",
-        "method": "euler",
-        "cells": 8,
-        "angles": 1,
-        "steps": 32,
-        "tolerance": pytest.approx(3e-5 / 2**1.5),
-    }
+    result = batch.computed(trial())[0]["result"]
+    assert result["mu_macro"] == pytest.approx(0.1 / 1.6 + 1 / 64)
+    assert result["seconds"] >= 0 and result["applies"] is True
+    how = {"poisson": 0.0, "model": "radial", "method": "euler"}
+    sizes = {"cells": 8, "angles": 1, "steps": 32, "tolerance": pytest.approx(3e-5 / 2**1.5)}
+    assert stub.settings[0] == how | sizes
 
 
-def test_what_does_not_apply_is_not_run(monkeypatch):
+def test_a_method_that_does_not_apply_is_not_run(monkeypatch):
     stub = Trials(monkeypatch)
-    result = evaluate.computed(trial_request(method="march"))
+    result = evaluate.computed(trial(method="march"))
     assert result == {"applies": False, "converged": False, "reason": "not here"}
-    request = stability.probe(
-        configured().stability, "march", stability.AXES[0], 8, stability.AXES[0].cases[0][1]
-    )
-    assert evaluate.computed(request)["applies"] is False
-    assert not stub.asked
-    assert not stub.calls
+    assert evaluate.computed(probe("march"))["applies"] is False
+    assert not stub.settings and not stub.calls
 
 
 @pytest.mark.parametrize("error", [SolverError("no"), StepFailure("diverged")])
@@ -294,42 +218,28 @@ def test_a_method_that_fails_is_data(monkeypatch, error):
     fail = Mock(side_effect=error)
     monkeypatch.setattr("microslip.adaptive.single_run.run_trial", fail)
     monkeypatch.setattr("microslip.solve", fail)
-    probe = stability.probe(
-        configured().stability, "projected-gradient", *stability.cases(configured().stability)[0]
-    )
-    for request in (trial_request(), probe):
-        result = evaluate.computed(request)
+    for one in (trial(), probe("projected-gradient")):
+        result = evaluate.computed(one)
         assert result["converged"] is False
         assert result["reason"] == f"{type(error).__name__}: {error}"
 
 
-def test_probes_hand_on_the_method_and_the_resolution(monkeypatch):
+def test_probes_pass_on_the_method_and_the_resolution(monkeypatch):
     Trials(monkeypatch)
-    fields = {"mu_macro": math.nan, "solve_time_s": 1.0}
-    solve = Mock(return_value=SimpleNamespace(to_dict=lambda: fields))
+    solve = Mock(return_value=SimpleNamespace(to_dict=lambda: {"mu_macro": math.nan}))
     monkeypatch.setattr("microslip.solve", solve)
-    study = configured(stability={"axes": ["steps"]}).stability
-    result = evaluate.computed(stability.probe(study, "euler", *stability.cases(study)[2]))
-    settings = {
-        "poisson": 0.0,
-        "model": "auto",
-        "method": "euler",
-        "tolerance": 1e-3,
-        "cells": None,
-        "steps": 32,
-        "most_work": study_requests.MOST_WORK,
-    }
-    assert solve.call_args.kwargs.items() >= settings.items()
-    assert result == {"applies": True, "mu_macro": None}
+    assert evaluate.computed(probe("euler")) == {"applies": True, "mu_macro": None}
+    settings = {"method": "euler", "tolerance": 1e-3, "cells": None, "steps": 64}
+    assert solve.call_args.kwargs.items() >= (settings | {"most_work": requests.MOST_WORK}).items()
 
 
-# Fronts, cheapest trials, exponents
+# Fronts, cheapest trials and performance profiles
 
 NUMBERS = st.sampled_from([0.0, 1.0, 2.0, 3.0, 4.0, math.nan])
 
 
 @given(st.lists(st.tuples(NUMBERS, NUMBERS), max_size=12))
-def test_a_front_is_what_nothing_beats(pairs):
+def test_trials_on_the_front_are_beaten_by_none(pairs):
     def beaten(cost, error):
         return any(
             c <= cost and e <= error and (c < cost or e < error)
@@ -339,24 +249,73 @@ def test_a_front_is_what_nothing_beats(pairs):
 
     expected = [not math.isnan(c + e) and not beaten(c, e) for c, e in pairs]
     costs, errors = [c for c, _ in pairs], [e for _, e in pairs]
-    assert list(fronts.on_front(costs, errors)) == expected
+    assert list(accuracy.on_front(costs, errors)) == expected
 
 
-def test_a_rung_is_as_good_as_the_worst_of_it_and_the_finer_ones():
-    models = ["mdr"] * 3 + ["radial"] * 3
-    error = [0.001, 0.02, 0.01, 0.1, 0.001, 0.01]
-    confirmed = fronts.confirmed(models, error, "radial")
-    assert list(confirmed) == [0.02, 0.02, math.inf, 0.1, 0.01, 0.01]
-    assert list(fronts.confirmed(["slider"], [0.0], "radial")) == [math.inf]
+def test_the_cheapest_run_is_confirmed_by_finer_runs_of_its_model():
+    names = ("place", "model", "cells", "seconds", "error")
+    rows = [(0, "mdr", 4, 1, 0.001), (0, "mdr", 8, 2, 0.02), (0, "mdr", 16, 3, 0.01)]
+    rows += [(0, "radial", 4, 4, 0.1), (0, "radial", 8, 6, 0.001), (0, "radial", 16, 9, 0.01)]
+    rows += [(1, "slider", 1, 1, 0.0), (1, "radial", 4, 6, 0.0), (1, "radial", 8, 5, 0.0)]
+    runs = pd.DataFrame(rows, columns=names)
+    chosen = {t: accuracy.cheapest(runs, "radial", t)["cells"].to_dict() for t in (0.05, 0.01)}
+    # mdr is confirmed up to 0.02 only, and 5 s count as much as 6 s
+    assert chosen == {0.05: {0: 4, 1: 4}, 0.01: {0: 8, 1: 4}}
+    assert accuracy.cheapest(runs, "radial", 1e-5)["cells"].to_dict() == {1: 4}
 
 
-def test_the_cheapest_is_within_the_tolerance():
-    cost, error = [1.0, 2.0, 3.0, math.nan], [0.1, 0.01, 0.001, 0.0]
-    for tolerance, place in {1.0: 0, 0.1: 0, 0.05: 1, 0.01: 1, 0.005: 2, 1e-4: None}.items():
-        assert fronts.cheapest(cost, error, tolerance) == place
-    assert fronts.cheapest([1.0], [math.nan], 1.0) is None
-    assert fronts.cheapest([1.2, 1.0, 3.0], [0.0, 0.0, 0.0], 1.0) == 0  # equally cheap, and coarser
-    assert fronts.cheapest([], [], 1.0) is None
+def ratios(*rows, tolerances=(1e-3,), points=("p", "q")):
+    """Ratios of trials (point, model, method, level, error, seconds)."""
+    names = ("trial_point", "trial_model", "trial_method", "trial_level", "error", "seconds")
+    runs = pd.DataFrame(rows, columns=names).assign(converged=True)
+    made = accuracy.profiles(runs, list(points), tolerances)
+    pairs = zip(made["competitor_contest"], made["competitor"], strict=True)
+    return dict(zip(pairs, made["profile_ratio"], strict=True))
+
+
+def test_a_ratio_is_the_least_time_within_the_tolerance_over_the_best():
+    result = ratios(
+        ("p", "polar", "shipped", 0, 5e-3, 1.0),
+        ("p", "polar", "shipped", 1, 5e-4, 4.0),
+        ("p", "polar", "shipped", 2, 5e-5, 9.0),
+        ("p", "radial", "shipped", 0, 1e-4, 2.0),
+        ("q", "polar", "shipped", 0, 1e-4, 3.0),
+        ("q", "radial", "shipped", 0, 1e-2, 1.0),
+        tolerances=(1e-2, 1e-3),
+    )
+    # by hand: polar needs 1 s at 1e-2 with the coarse run, and 4 s at 1e-3
+    assert result["models", "polar"].tolist() == [[1.0, 3.0], [2.0, 1.0]]
+    assert result["models", "radial"].tolist() == [[2.0, 1.0], [1.0, np.inf]]
+
+
+def test_a_coarse_run_that_is_right_by_chance_does_not_count():
+    result = ratios(
+        ("p", "polar", "shipped", 0, 1e-6, 1.0),
+        ("p", "polar", "shipped", 1, 5e-2, 2.0),
+        ("p", "polar", "shipped", 2, 1e-4, 8.0),
+        ("p", "dahl", "shipped", 0, 1e-4, 16.0),
+        ("q", "polar", "shipped", 0, np.nan, 1.0),
+    )
+    assert result["models", "polar"].tolist() == [[1.0, np.inf]]
+    assert result["models", "dahl"].tolist() == [[2.0, np.inf]]
+
+
+def test_methods_are_compared_with_the_shipped_one_where_both_were_run():
+    result = ratios(
+        ("p", "polar", "shipped", 0, 1e-4, 2.0),
+        ("p", "mdr", "shipped", 0, 1e-4, 0.1),
+        ("p", "polar", "euler", 0, 1e-4, 6.0),
+        ("p", "polar", "march", 0, 1e-4, 1.0),
+        ("p", "polar", "full-newton", 0, 1e-4, 3.0),
+        ("p", "cartesian", "paper", 0, 1e-4, 50.0),
+        ("p", "auto", "shipped", 0, 1e-4, 0.4),
+        points=("p",),
+    )
+    assert result["integrators", "euler"].item() == pytest.approx(3.0)
+    assert result["integrators", "shipped"].item() == 1.0  # not compared with mdr
+    assert result["searches", "shipped"].item() == pytest.approx(2.0)
+    assert result["solvers of a step", "full-newton"].item() == pytest.approx(1.5)
+    assert result["models", "paper"].item() == pytest.approx(500.0)
 
 
 # Under a pressure
@@ -364,25 +323,22 @@ def test_the_cheapest_is_within_the_tolerance():
 CONE = "power:exponent=1"
 
 
-def test_a_trial_and_patches_take_the_pressure_that_is_asked_for(monkeypatch):
+def test_a_trial_and_patches_use_the_pressure_of_the_request():
     """A cone has a higher pressure in the middle than a sphere, so its friction differs."""
     place = {"motion": "transverse", "velocity": "0.1", "amplitude": "0.8", "poisson": "0"}
     how = {"model": "radial", "method": "shipped", "cells": 8, "angles": 4, "steps": 16}
-    trial_of = place | how | {"kind": "run", "tolerance": "1e-4"}
-    sphere, cone = evaluate.computed(trial_of), evaluate.computed(trial_of | {"pressure": CONE})
-    assert sphere["converged"] and cone["converged"]
+    run = place | how | {"kind": "run", "tolerance": "1e-4"}
+    sphere, cone = evaluate.computed(run), evaluate.computed(run | {"pressure": CONE})
     settings_of = {"cells": 8, "steps": 16, "tolerance": None, "pressure": CONE}
     certified = microslip.solve("transverse", 0.1, 0.8, **settings_of)
     assert cone["mu_macro"] == pytest.approx(certified.mu_macro, abs=1e-4)
     assert abs(cone["mu_macro"] - sphere["mu_macro"]) > 1e-3
-    timed = evaluate.computed(trial_of | {"pressure": CONE, "kind": "trial", "repeats": 1})
-    assert timed["mu_macro"] == cone["mu_macro"]
     sizes = {"kind": "patches", "cells": 8, "angles": 4, "steps": 16}
     sphere, cone = (evaluate.computed(place | sizes | more) for more in ({}, {"pressure": CONE}))
     assert cone["converged"] and cone["moment_share"] != sphere["moment_share"]
 
 
-def test_the_papers_run_is_under_the_pressure_that_is_asked_for(monkeypatch):
+def test_the_papers_run_uses_the_pressure_of_the_request(monkeypatch):
     """The friction bounds of the squares are the loads of the pressure."""
     from microslip.pressures.by_name import pressure_named
 
@@ -401,3 +357,49 @@ def test_the_papers_run_is_under_the_pressure_that_is_asked_for(monkeypatch):
             )  # fmt: skip
         loads = pressure_named(name).cell_loads(paper.CELLS)
         assert np.array_equal(caught.value.args[0], loads)
+
+
+# Datasets of all studies
+
+
+@pytest.fixture(scope="module", params=STUDIES)
+def built(request, tmp_path_factory):
+    """Name of a study, the file of its dataset, and the requests of the dataset."""
+    study = request.param
+    configuration, results = STUDIES[study][0](), STUDIES[study][1]
+    path = tmp_path_factory.mktemp(study) / f"{study}.nc"
+    answer, calls = studies_stub.answered(results)
+    netcdf.write(path, *registry.divided(registry.undivided(configuration, study, answer), study))
+    return study, path, calls
+
+
+def test_a_dataset_uses_all_requests_of_the_jobs_and_no_others(built):
+    study, _, calls = built
+    assert set(calls) == set(of_jobs(study, STUDIES[study][0]().studies[study]))
+    for text in calls:
+        one = json.loads(text)
+        assert request.label(one)
+        assert all(isinstance(one.get(name, ""), str) for name in ("velocity", "tolerance"))
+
+
+def test_every_group_of_a_file_is_a_table(built):
+    for group in (None, *netcdf.group_names(built[1])):
+        with xr.open_dataset(built[1], group=group) as part:
+            assert len(part.to_dataframe()) == max(v.size for v in part.values()), group
+
+
+def test_conventions_and_provenance(built):
+    study, path, _ = built
+    data = netcdf.whole(path)
+    for name, variable in data.variables.items():
+        assert variable.attrs["long_name"], name
+        flags = "flag_meanings" in variable.attrs or variable.dtype == bool
+        if variable.dtype.kind in "if" and not flags:
+            assert variable.attrs["units"] in ("1", "s", "rad"), name
+        if f"{name}_error" in data.variables:
+            assert variable.attrs["ancillary_variables"] == f"{name}_error"
+    assert data.Conventions == "CF-1.11" and data.source and data.institution
+    assert len(data.source_digest) == len(data.results_digest) == 64
+    settings = getattr(STUDIES[study][0](), study)
+    assert settings.model_dump(mode="json") == json.loads(data.configuration)
+    assert data.library_versions == '{"numpy":"2.0"}'

@@ -123,7 +123,7 @@ def test_other_motions_have_datasets_and_figures_of_several(tmp_path):
 CLAIMS = {"tolerance": 0.01, "velocity": [0.1], "cells": 8}
 CLAIMS |= {"amplitude_transverse": [1], "amplitude_bore": [1]}
 SMALLER = {
-    "studies/claims/claims.py": {"PAPER_SQUARES, PAPER_STEPS = 32, 100": "= 16, 20"},
+    "studies/evidence.py": {"PAPER_SQUARES, PAPER_STEPS = 32, 100": "= 16, 20"},
     "solver/methods/paper.py": {"STEPS_PER_PERIOD = 32, 100": "= 16, 20", "STEPS = 8000": "= 400"},
 }
 """Replacements of constants in modules, which shorten the runs of the paper from 10 s to 1 s."""
@@ -170,7 +170,7 @@ METHODS = {
     },
     "stability": {
         "methods": ["shipped", "my-method"],
-        "axes": ["critical-amplitude"],
+        "axes": {"critical": studies_stub.FIXED | {"amplitude": [0.9, 1, 1.1]}},
         "tolerance": 0.01,
     },
 }

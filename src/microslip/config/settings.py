@@ -181,9 +181,11 @@ def _at(key: str, kind: Allowed, value: Any) -> Any:
         raise Refusal(str(error), f"{key}{error.key}") from None
 
 
-def _axis(low: float = 0.0, high: float = LARGEST["velocity"], above: bool = False) -> Allowed:
+def _axis(
+    low: float = 0.0, high: float = LARGEST["velocity"], step: int = 0, above: bool = False
+) -> Allowed:
     """Axis: a number, or a list of numbers and ranges; it is converted to an ascending tuple."""
-    one = _number(low, high, above=above)
+    one = _number(low, high, step, above)
 
     def convert(raw: Any) -> tuple[float, ...]:
         items = list(raw) if isinstance(raw, list | tuple) else [raw]
@@ -198,9 +200,7 @@ def _axis(low: float = 0.0, high: float = LARGEST["velocity"], above: bool = Fal
                 raise TypeError
             else:
                 values.add(_at(key, one, item))
-        for value in values:
-            one(value)  # values of a range
-        ordered = tuple(sorted(values))
+        ordered = tuple(sorted(map(one, values)))
         for left, right in pairwise(ordered):
             if right - left <= 1e-9 * right:
                 raise Refusal(f"{right:.12g} occurs twice; allowed: different values")
@@ -593,10 +593,52 @@ class Accuracy(Settings):
     """Grid for maps of the cheapest model for each tolerance."""
 
 
-_BLOCK = _one_of(
-    *("steps", "slow-transverse", "slow-bore", "critical-amplitude", "tiny-amplitude", "poisson"),
-    *("edge", "centre", "rotation-centre", "reversal", "step-length"),
-)
+class Block(Settings):
+    """Cases at which all methods run: a point of which one quantity is varied. Exactly one key is a
+    list of several numbers."""
+
+    motion: Annotated[str, _one_of("transverse", "longitudinal", "bore", "zigzag")]
+    """Name of the motion."""
+    velocity: PositiveAxis
+    """Forward velocity in the unit of the motion."""
+    amplitude: PositiveAxis
+    """Amplitude in the unit of the motion."""
+    poisson: Annotated[tuple[float, ...], _axis(0, 0.5)] = (0.0,)
+    """Poisson's ratio of the half-space."""
+    cells: Annotated[tuple[int, ...], _axis(4, LARGEST["cells"], step=2)] = ()
+    """Imposed number of rings. By default, it follows from the tolerance."""
+    steps: Annotated[tuple[int, ...], _axis(8, LARGEST["steps"], step=2)] = ()
+    """Imposed number of time steps in a period. By default, it follows from the tolerance."""
+    step: PositiveAxis = ()
+    """Parameter `step` of the methods that have it. Other methods are left out of the block."""
+    title: Title = None
+    """Heading of the block. The default is the name of the varied quantity."""
+
+    @property
+    def varied(self) -> str:
+        """Name of the varied quantity."""
+        names = ("velocity", "amplitude", "poisson", "cells", "steps", "step")
+        return " and ".join(name for name in names if len(getattr(self, name)) > 1)
+
+    @property
+    def values(self) -> tuple[float, ...]:
+        """Values of the varied quantity."""
+        return getattr(self, self.varied)
+
+    @property
+    def note(self) -> str:
+        """Values of the fixed quantities, as text."""
+        symbols = {"velocity": "v", "amplitude": "A", "poisson": "nu"}
+        values = {name: getattr(self, name)[0] for name in symbols if name != self.varied}
+        words = [f"{symbols[n]} {v:g}" for n, v in values.items() if v or n != "poisson"]
+        return ", ".join([self.motion, *words])
+
+    @model_validator(mode="after")
+    def _refuse_mismatch(self) -> Self:
+        if self.varied not in Block.model_fields:
+            message = f"{self.varied or 'no key'} has several numbers"
+            raise Refusal(f"{message}; allowed: one key with several numbers")
+        return self
 
 
 class Stability(Settings):
@@ -606,10 +648,8 @@ class Stability(Settings):
     """Methods to compare, named as under `accuracy`."""
     tolerance: Tolerance = 1e-3
     """Largest accepted absolute error of mu_macro."""
-    axes: Annotated[tuple[str, ...] | None, _or_null(_list(_BLOCK, f"a list of {_BLOCK.text}"))] = (
-        None
-    )
-    """Blocks of the atlas. Each block varies one quantity. The default is all blocks."""
+    axes: dict[Text, Block]
+    """Blocks of the atlas by name."""
 
 
 class Claims(_Grid):

@@ -30,8 +30,8 @@ NUMBERS = {"foundation/compiled.py", "sweeps/evaluate.py", "sweeps/period_codec.
 """Files in OUTER on which results depend: compilation, and conversion of the solver's output."""
 METHODS = "solver/methods/"
 """Folder whose files count only for requests that name them."""
-ENDINGS = {".py", ".html", ".css", ".js"}
-"""File name extensions of modules and of parts of pages."""
+ENDINGS = {".py", ".csv", ".html", ".css", ".js"}
+"""File name extensions of modules, of their tables, and of parts of pages."""
 
 
 class Sources:

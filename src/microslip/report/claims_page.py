@@ -16,8 +16,8 @@ import xarray as xr
 from microslip.datasets.catalogue import FORMS
 from microslip.foundation.files import write_atomically
 from microslip.report.dataset_page import provenance
-from microslip.studies.claims.static_limits import FORMULAS
-from microslip.studies.claims.verdicts import OUTCOMES, WORDS
+from microslip.studies.static_limits import FORMULAS
+from microslip.studies.verdicts import OUTCOMES, WORDS
 
 MOTIONS = {"transverse": "Transverse oscillation", "bore": "Oscillating bore"}
 
@@ -124,7 +124,7 @@ def _static(dataset: xr.Dataset, motion: str) -> SimpleNamespace:
 
     The table also contains the excess of each formula over the limit.
     """
-    names = {name: FORMS[motion][form].equation for name, (form, _) in FORMULAS[motion].items()}
+    names = {name: FORMS[motion][form].equation for name, (form, *_) in FORMULAS[motion].items()}
     gaps = [
         (equation, *(float(dataset[f"{motion}_gap_{name}{end}"]) for end in ("", "_at")))
         for name, equation in names.items()

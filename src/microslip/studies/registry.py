@@ -1,9 +1,15 @@
-"""All studies: cost of accuracy, failures of methods, and check of the paper.
+"""The studies: cost of accuracy, failures of methods, and check of the paper.
 
-Each study is a package with two main modules. The first one (`accuracy_cost`, `stability` or
-`claims`) makes the requests. It imports only light modules, because the workflow reads it at every
-start. The second one, `dataset`, builds a dataset from the results. The modules `ladders`
-(resolutions of the models) and `requests` (forms of the requests) are common to the studies.
+A study is a module with four functions and two texts:
+
+- requests(settings): pairs of a job and a request.  A job is a tuple; those that begin with a
+  smaller number start earlier;
+- values(settings, solved): values of the variables of the dataset, computed from solved requests;
+- report(dataset): lines of text that summarise the dataset;
+- TITLE and COMMENT of the dataset.
+
+The variables of all datasets are in variables.csv, and their groups in groups.csv.  The workflow
+imports the modules at every start, so they import neither the solver nor xarray at the top.
 """
 
 from __future__ import annotations
@@ -11,8 +17,10 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Iterator
 from importlib import import_module
 from types import ModuleType
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
+from microslip.foundation.canonical import canonical_json, sha256
+from microslip.studies.solved import Solved, rows_of
 from microslip.sweeps.batch import lookup
 
 if TYPE_CHECKING:
@@ -20,14 +28,20 @@ if TYPE_CHECKING:
 
     from microslip.config.settings import Configuration, Settings
 
-MODULES = {"accuracy": "accuracy_cost", "stability": "stability", "claims": "claims"}
-"""Name of each study's request module. The keys are names in the configuration."""
+TYPES = {"float": float, "int": "int32", "bool": bool, "str": str}
+"""Types of variables by name.  Any other text lists the meanings of codes."""
 
 
 def pieces(study: str, settings: Settings) -> list[list[dict]]:
-    """Return the jobs of a study, slow ones first. A job is a list of requests."""
-    slow, fast = _module(study, MODULES[study]).pieces(settings)
-    return [*slow, *fast]
+    """Return the jobs of a study, slow ones first.  A job is a list of different requests."""
+    jobs: dict[tuple, list[dict]] = {}
+    requested = set()
+    for job, request in _module(study).requests(settings):
+        text = canonical_json(request)
+        if text not in requested:
+            requested.add(text)
+            jobs.setdefault(job, []).append(request)
+    return [jobs[job] for job in sorted(jobs, key=lambda job: job[0])]
 
 
 def build(
@@ -41,21 +55,49 @@ def divided(dataset: xr.Dataset, study: str) -> tuple[xr.Dataset, dict[str, xr.D
     """Divide the dataset of a study into its root and the datasets of its groups."""
     from microslip.datasets import netcdf
 
-    return netcdf.divide(dataset, _module(study, "dataset").GROUPS)
+    rows = rows_of("groups.csv", study)
+    groups = {row["group"]: (row["title"], tuple(row["dims"].split())) for row in rows}
+    return netcdf.divide(dataset, groups)
 
 
-def undivided(configuration: Configuration, study: str, answer: Callable) -> xr.Dataset:
+def undivided(
+    configuration: Configuration, study: str, answer: Callable[[dict], dict]
+) -> xr.Dataset:
     """Build the dataset of a study with the variables of all groups.
+
+    The settings are stored as an attribute in JSON.
 
     answer: function that returns the record of a request.
     """
-    return _module(study, "dataset").build(configuration.studies[study], answer)
+    import xarray as xr
+
+    from microslip.datasets import sweep_dataset
+    from microslip.datasets.variables import flags, variable
+
+    module, settings, solved = _module(study), configuration.studies[study], Solved(answer)
+    values = module.values(settings, solved)
+    variables = {}
+    for row in rows_of("variables.csv", study):
+        name, dims, kind = row["name"], row["dims"].split(), row["kind"]
+        if name in values and kind in TYPES:
+            about: Any = row["long_name"], TYPES[kind], row["units"]
+            variables[name] = variable(dims, values[name], *about)
+        elif name in values:
+            variables[name] = flags(dims, values[name], row["long_name"], kind.split())
+    # The keys also depend on the sources of the methods.
+    more: dict[str, Any] = {"results_digest": sha256("\n".join(sorted(solved.keys)))}
+    tolerance = getattr(settings, "tolerance", None)
+    more |= {"comment": module.COMMENT} | ({} if tolerance is None else {"tolerance": tolerance})
+    attributes = sweep_dataset.provenance(
+        module.TITLE, settings.model_dump(), solved.versions, **more
+    )
+    return xr.Dataset(variables, attrs=attributes)
 
 
 def report(dataset: xr.Dataset, study: str) -> Iterator[str]:
     """Yield lines of text that summarise the dataset of a study."""
-    yield from _module(study, "dataset").report(dataset)
+    yield from _module(study).report(dataset)
 
 
-def _module(study: str, name: str) -> ModuleType:
-    return import_module(f"microslip.studies.{study}.{name}")
+def _module(study: str) -> ModuleType:
+    return import_module(f"microslip.studies.{study}")

@@ -1,33 +1,49 @@
-"""Build the requests of the studies.
+"""Requests of the studies, and the models and resolutions at which methods are compared.
 
-A request is a dict whose numbers are canonical strings, see sweeps.batches. The kinds of requests
-are:
+A request is a dict whose numbers are canonical texts, see sweeps.request.  The kinds of requests
+that all studies share are:
 
 - trial: a timed run at a point, with a model, a method and a resolution;
 - choice: a timed solve at a tolerance, with automatic selection of the model and resolution;
 - probe: an untimed solve with a given method;
-- point: a solve at a tight tolerance, used as the reference for the other requests;
+- point: a solve at a tolerance, also used as the reference for other requests.
 
-Timed requests (trial, choice) contain the name of the CPU. Therefore, times measured on
-different CPUs have different keys and are not drawn in one chart.
+Timed requests contain the name of the CPU.  Times measured on different CPUs therefore have
+different keys and are not drawn in one chart.
+
+Cells, angles and steps are refined together, so that their errors decrease together.  A method's
+file can prescribe the model and the resolution for that method.
 """
 
-from typing import NamedTuple
+from __future__ import annotations
 
-from microslip.config.settings import StudyPoint
-from microslip.foundation.canonical import number
+from typing import TYPE_CHECKING, Any, NamedTuple, Union
+
 from microslip.foundation.machine import cpu_model
-from microslip.studies.ladders import Level, exact_model
+from microslip.solver.method_names import SHIPPED, declared, missing, split
+from microslip.sweeps.evaluate import request_of
+
+if TYPE_CHECKING:
+    from microslip.config.settings import StudyPoint
 
 RINGS_TOLERANCE, TOLERANCE = 1e-6, 3e-5
 """Tolerance of a reference computed with rings (cheap), and with angular points."""
 MOST_WORK = 5_000_000
-"""Work budget of a probe (number of step solves times number of unknowns). It is several times the
+"""Work budget of a probe (number of step solves times number of unknowns).  It is several times the
 work of the shipped method."""
+
+_TRANSLATED = ("auto", "rigid", "slider", "dahl", "mdr", "radial", "polar", "cartesian")
+_ROTATED = ("auto", "rigid", "polar", "cartesian")
+MODELS_OF_MOTION = {
+    **dict.fromkeys(("transverse", "longitudinal", "zigzag"), _TRANSLATED),
+    **dict.fromkeys(("bore", "continuous-bore"), _ROTATED),
+}
+"""Models that apply to each motion.  The table is copied from contact.registry, because that module
+is slow to import."""
 
 
 class Point(NamedTuple):
-    """A motion with its dimensionless parameters. The amplitude of a steady motion is None."""
+    """A motion with its dimensionless parameters.  The amplitude of a steady motion is None."""
 
     motion: str
     velocity: float
@@ -35,44 +51,118 @@ class Point(NamedTuple):
     poisson: float = 0.0
 
 
-AnyPoint = Point | StudyPoint
+AnyPoint = Union[Point, "StudyPoint"]
 """A point of a study, or a point of the configuration."""
 
 
-def of_point(point: AnyPoint) -> dict:
-    """Return the entries of a request that describe the point."""
-    return {
-        "motion": point.motion,
-        "velocity": number(point.velocity),
-        "amplitude": None if point.amplitude is None else number(point.amplitude),
-        "poisson": number(point.poisson),
-    }
+class Level(NamedTuple):
+    """Resolution of a run: cells (rings, or squares along a side), angles on half the disc, and
+    time steps in a period."""
+
+    cells: int
+    angles: int
+    steps: int
+
+
+def _doubled(cells: int, angles: int, steps: int, count: int) -> tuple[Level, ...]:
+    """Return `count` levels.  Each number doubles from level to level, except that 1 stays 1."""
+    return tuple(
+        Level(*(1 if n == 1 else n * 2**k for n in (cells, angles, steps))) for k in range(count)
+    )
+
+
+LADDERS = {
+    "rigid": _doubled(4, 4, 16, 6),
+    "slider": _doubled(1, 1, 16, 6),
+    "dahl": _doubled(1, 1, 16, 6),
+    "mdr": _doubled(4, 1, 16, 6),
+    "radial": _doubled(4, 1, 16, 6),
+    "polar": tuple(
+        Level(n, n, steps)
+        for n, steps in ((4, 16), (6, 24), (8, 32), (12, 48), (16, 64), (24, 128))
+    ),
+    "cartesian": _doubled(8, 1, 16, 4),
+}
+"""Levels of each model, from coarse to fine.  Squares have few levels, because they are by far the
+most expensive."""
+OF_OTHER_METHODS = {"radial": 5, "polar": 4, "cartesian": 3}
+"""Number of levels per model, for all methods except the shipped method.  The other methods can be
+slow or use dense matrices."""
+COARSEST_TOLERANCE, TOLERANCE_POWER = 3e-5, 1.5
+"""Tolerance of the periodic state (force divided by mu F_z) at the first level.  It is proportional
+to 1 / steps^TOLERANCE_POWER.  At every level, the tolerance is below the discretisation error (1e-4
+to 1e-6 for rings at nu = 0)."""
+
+
+# Models and resolutions
+
+
+def models_of(motion: str, poisson: float) -> list[str]:
+    """Return the names of the models for a motion and a Poisson's ratio, coarsest first."""
+    allowed = MODELS_OF_MOTION[motion]
+    return [m for m in LADDERS if m in allowed and (m != "radial" or poisson == 0)]
+
+
+def exact_model(motion: str, poisson: float) -> str:
+    """Return the model that `model="auto"` selects: rings if they apply, else angular points."""
+    return "radial" if "radial" in models_of(motion, poisson) else "polar"
+
+
+def models_for(method: str, motion: str, poisson: float) -> list[str]:
+    """Return the models with which a method is run.
+
+    The shipped method is run with all models.  Any other method is run with the model named in its
+    file, or else with the model that `model="auto"` selects.  The list is empty if the method does
+    not support the motion, or if a package that the method requires is not installed.
+    """
+    name, _ = split(method)
+    if name == SHIPPED:
+        return models_of(motion, poisson)
+    rotates = "radial" not in MODELS_OF_MOTION[motion]
+    if missing(method) or (rotates and declared(name, "turns") is False):
+        return []
+    return [declared(name, "model") or exact_model(motion, poisson)]
+
+
+def ladder(model: str, method: str, count: int) -> list[tuple[int, Level, float]]:
+    """Return at most `count` tuples (level number, Level, tolerance) for a method."""
+    name, _ = split(method)
+    if (own := declared(name, "resolution")) is not None:
+        return [(0, Level(*own), COARSEST_TOLERANCE)]
+    levels = LADDERS[model][:count]
+    if name != SHIPPED:
+        levels = levels[: OF_OTHER_METHODS.get(model, 0)]
+    return [
+        (k, level, COARSEST_TOLERANCE * (levels[0].steps / level.steps) ** TOLERANCE_POWER)
+        for k, level in enumerate(levels)
+    ]
+
+
+# Requests
+
+
+def at(point: AnyPoint) -> dict[str, Any]:
+    """Return the arguments of a request that describe a point."""
+    return {name: getattr(point, name) for name in Point._fields}
 
 
 def trial(
     point: AnyPoint, model: str, method: str, level: Level, tolerance: float, repeats: int
 ) -> dict:
-    """Return the request for a timed run at a level of a ladder (ladders.Level).
+    """Return the request for a timed run at a level of a ladder.
 
     The number of steps of a steady motion is None.
     """
-    return of_point(point) | {
-        "kind": "trial",
-        "cpu": cpu_model(),
-        "model": model,
-        "method": method,
-        "cells": level.cells,
-        "angles": level.angles,
-        "steps": None if point.amplitude is None else level.steps,
-        "tolerance": number(tolerance),
-        "repeats": repeats,
-    }
+    steps = None if point.amplitude is None else level.steps
+    how = {"model": model, "method": method, "tolerance": tolerance, "repeats": repeats}
+    sizes = level._asdict() | {"steps": steps}
+    return request_of("trial", cpu=cpu_model(), **at(point), **how, **sizes)
 
 
 def choice(point: AnyPoint, tolerance: float, repeats: int) -> dict:
     """Return the request for a timed solve at a tolerance."""
-    kind = {"kind": "choice", "cpu": cpu_model(), "tolerance": number(tolerance)}
-    return of_point(point) | kind | {"repeats": repeats}
+    how = {"cpu": cpu_model(), "tolerance": tolerance, "repeats": repeats}
+    return request_of("choice", **at(point), **how)
 
 
 def probe(
@@ -84,20 +174,22 @@ def probe(
 ) -> dict:
     """Return the request for an untimed solve with a method and the budget MOST_WORK.
 
-    cells, steps: imposed resolution. If None, the resolution follows from the tolerance.
+    cells, steps: imposed resolution.  If None, the resolution follows from the tolerance.
     """
-    kind = {"kind": "probe", "method": method, "model": "auto", "tolerance": number(tolerance)}
-    budget = {"most_work": MOST_WORK}
-    return of_point(point) | kind | {"cells": cells, "steps": steps} | budget
+    how = {"method": method, "model": "auto", "tolerance": tolerance, "most_work": MOST_WORK}
+    return request_of("probe", **at(point), **how, cells=cells, steps=steps)
 
 
-def reference(point: AnyPoint, tolerance: float | None = None) -> dict:
-    """Return the request for the reference of a point.
+def solve(point: AnyPoint, tolerance: float, model: str = "auto", cells: int | None = None) -> dict:
+    """Return the request for a point, which equals that of a sweep.
 
-    tolerance: defaults to RINGS_TOLERANCE for rings and to TOLERANCE for other models.
+    cells: imposed number of rings or squares.  If None, it follows from the tolerance.
     """
-    if tolerance is None:
-        rings = exact_model(point.motion, point.poisson) == "radial"
-        tolerance = RINGS_TOLERANCE if rings else TOLERANCE
-    kind = {"kind": "point", "model": "auto", "tolerance": number(tolerance)}
-    return of_point(point) | kind | {"cells": None, "steps": None}
+    how = {"model": model, "tolerance": tolerance, "cells": cells, "steps": None}
+    return request_of("point", **at(point), **how)
+
+
+def reference(point: AnyPoint) -> dict:
+    """Return the request for the reference of a point, at a tight tolerance."""
+    rings = exact_model(point.motion, point.poisson) == "radial"
+    return solve(point, RINGS_TOLERANCE if rings else TOLERANCE)

@@ -43,7 +43,7 @@ def draw(dataset: xr.Dataset) -> Figure:
         own = np.flatnonzero(of_case == str(axis))
         if own.size:
             rows += [("", np.zeros(0, int))] * (2 if rows else 1)
-            heads[len(rows) - 1] = str(title), str(note)
+            heads[len(rows) - 1] = look.literal(str(title)), look.literal(str(note))
             rows += [(labels[case], outcome[case, order]) for case in own]
     count, height = len(order), ROW * len(rows)
     figure = look.new_figure(look.DOUBLE, height + FOOT + 1.2)

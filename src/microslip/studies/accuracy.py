@@ -1,0 +1,335 @@
+"""Study of the accuracy and the cost of each model and method.
+
+At each point, every model is run with the shipped method at all levels of its ladder.  Every other
+method is run at the levels of the model that `model="auto"` selects.  Each point also has a
+reference, and solves at given tolerances.  For two motions, there are also maps, with trials of all
+models on a grid of points.
+
+The dataset contains performance profiles: E. D. Dolan and J. J. More, Math. Program. 91 (2002)
+201-213, doi:10.1007/s101070100263.  A case is a point and a tolerance.  The cost of a competitor is
+the CPU time of its cheapest run within the tolerance.  The ratio of a competitor is this cost
+divided by the smallest cost in the contest.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from microslip.solver.method_names import SHIPPED, method_named
+from microslip.studies import requests as forms
+from microslip.studies.requests import AnyPoint, Point
+from microslip.studies.solved import MOTIONS, Row, Solved, names_along, number
+from microslip.theory import paper
+
+if TYPE_CHECKING:
+    import pandas as pd
+    import xarray as xr
+
+    from microslip.config.settings import Accuracy
+
+CHOICE_TOLERANCES = (1e-2, 1e-3, 1e-4)
+"""Tolerances of the timed solves at each point."""
+MAP_LEVELS, MAP_REPEATS = 5, 3
+"""Largest number of levels and of repeated measurements in a map."""
+MAP_SQUARES = 16
+"""Largest number of squares along a side in a map.  Even this mesh costs more than rings, which are
+far more accurate."""
+TRUTH_SHARE = 0.1
+"""Tolerance of a map's references, divided by the map's tightest tolerance."""
+LARGE = 64
+"""A run with at least this many squares along a side takes as long as all coarser runs together."""
+AS_CHEAP = 1.5
+"""Two measured times count as equal if their ratio is below this number."""
+MODELS = "models"
+"""Contest of the models with the shipped method, and of methods that replace the whole run."""
+
+TITLE = "Accuracy and cost of methods for the friction of a vibrated Hertz contact"
+COMMENT = (
+    "seconds are CPU times measured in the runs that made this file: medians of compiled runs, "
+    "after one run that is not timed. They depend on the computers in the group machines and vary "
+    "a little; all other values are reproducible."
+)
+
+
+# Requests
+
+
+def trials(study: Accuracy, point: AnyPoint) -> Iterator[tuple[int, dict]]:
+    """Yield (level, request) for the trials of one point, then for its solves at a tolerance.
+
+    The level of a solve is the index of its tolerance in CHOICE_TOLERANCES.
+    """
+    for method in study.methods:
+        for model in forms.models_for(method, point.motion, point.poisson):
+            for k, level, tolerance in forms.ladder(model, method, study.levels):
+                yield k, forms.trial(point, model, method, level, tolerance, study.repeats)
+    if SHIPPED in study.methods:
+        for k, tolerance in enumerate(CHOICE_TOLERANCES):
+            yield k, forms.choice(point, tolerance, study.repeats)
+
+
+def map_requests(study: Accuracy, motion: str) -> list[tuple[Point, dict, list[dict]]]:
+    """Return the points of a map, each with its reference and with the trials of all models.
+
+    The velocity varies fastest.
+    """
+    repeats, levels = min(study.repeats, MAP_REPEATS), min(study.levels, MAP_LEVELS)
+    tolerance = TRUTH_SHARE * min(study.map.tolerance)
+    return [
+        (
+            point := Point(motion, velocity, amplitude),
+            forms.solve(point, tolerance),
+            [
+                forms.trial(point, model, SHIPPED, level, run_tolerance, repeats)
+                for model in forms.models_of(motion, point.poisson)
+                for _, level, run_tolerance in forms.ladder(model, SHIPPED, levels)
+                if model != "cartesian" or level.cells <= MAP_SQUARES
+            ],
+        )
+        for amplitude in study.map.amplitude[motion]
+        for velocity in study.map.velocity
+    ]
+
+
+def requests(study: Accuracy) -> Iterator[tuple[tuple, dict]]:
+    """Yield each request with its job.  A method that is added has jobs of its own."""
+    for name, place in study.points.items():
+        if place.amplitude is not None:  # else Eq 21 is exact
+            yield (0, name, "reference"), forms.reference(place)
+        for _, request in trials(study, place):
+            method = request.get("method", SHIPPED)
+            slow = request.get("model") == "cartesian" and request["cells"] >= LARGE
+            yield (0 if slow else 1, name if method == SHIPPED else method), request
+    for motion in MOTIONS:
+        for point, truth, runs in map_requests(study, motion):
+            for request in (truth, *runs):
+                yield (1, motion, point.amplitude), request
+
+
+# The dataset
+
+
+def values(study: Accuracy, solved: Solved) -> dict[str, Any]:
+    """Return the values of the variables."""
+    import pandas as pd
+
+    points = [_point(name, point, solved) for name, point in study.points.items()]
+    runs = pd.DataFrame(
+        [
+            trial
+            for row, point in zip(points, study.points.values(), strict=True)
+            for trial in _trials(study, row, point, solved)
+        ],
+        columns=names_along("trial", "accuracy"),
+    )
+    tolerances = study.map.tolerance[::-1]  # from loose to tight
+    entries = {name: [row[name] for row in points] for name in points[0]} | dict(runs)
+    entries |= profiles(runs, list(study.points), tolerances) | {"map_tolerance": tolerances}
+    for motion in MOTIONS:
+        entries |= _map(study, motion, tolerances, solved)
+    if solved.machines:
+        for name in ("cpu", "host", "threads"):
+            entries[f"machine_{name}"] = [machine[name] for machine in solved.machines]
+    return entries
+
+
+def report(dataset: xr.Dataset) -> Iterator[str]:
+    """Yield a line for each point: the number of trials, and the reference's error estimate."""
+    for point in dataset["point"].values:
+        own = dataset["trial_point"].values == point
+        bad = int(own.sum() - dataset["converged"].values[own].sum())
+        error = float(dataset["reference_error"].sel(point=point))
+        yield (
+            f"{point}: {own.sum()} trials, {bad or 'none'} not converged, "
+            f"reference within {error:.1e}"
+        )
+
+
+def _point(name: str, point: AnyPoint, solved: Solved) -> Row:
+    """Return the row of a point."""
+    if point.amplitude is None:
+        mu, error, source = float(paper.bore_forward(point.velocity)), 0.0, "closed form, Eq 21"
+    else:
+        result = solved(forms.reference(point))
+        mu, error = number(result, "mu_macro"), number(result, "mu_macro_error")
+        source = f"model {result['model']}, tolerance {forms.reference(point)['tolerance']}"
+        source += "" if result["converged"] else f", not met: {result.get('reason') or ''}"
+    return {f"point_{key}": value for key, value in forms.at(point).items()} | {
+        "point": name,
+        "point_title": getattr(point, "title", None) or name,
+        "reference": mu,
+        "reference_error": error,
+        "reference_source": source,
+    }
+
+
+def _trials(study: Accuracy, place: Row, point: AnyPoint, solved: Solved) -> list[Row]:
+    """Return the rows of the trials at one point.  place: row of the point."""
+    rows = []
+    for level, request in trials(study, point):
+        row = solved(request)
+        if not row.get("applies", True):
+            continue
+        by_tolerance = request["kind"] == "choice"
+        mu, machine = number(row, "mu_macro"), row.get("machine")
+        rows.append(
+            {
+                "trial_point": place["point"],
+                "trial_model": "auto" if by_tolerance else request["model"],
+                "trial_method": SHIPPED if by_tolerance else request["method"],
+                "trial_level": level,
+                "trial_cells": row.get("cells") or 0,
+                "trial_angles": row.get("angles") or 0,
+                "trial_steps": row.get("steps_per_period" if by_tolerance else "steps") or 0,
+                "trial_tolerance": float(request["tolerance"]),
+                "mu_macro": mu,
+                "error": abs(mu - place["reference"]),
+                "seconds": number(row, "seconds"),
+                "effort": number(row, "effort"),
+                "converged": bool(row.get("converged")),
+                "reason": row.get("reason") or "",
+                "trial_machine": solved.machines.index(machine) if machine else -1,
+                "claimed_error": number(row, "mu_macro_error") if by_tolerance else np.nan,
+            }
+        )
+    # Errors below the reference's error count as equal.
+    floor = place["reference_error"]
+    error = [max(row["error"], floor) if row["converged"] else np.nan for row in rows]
+    for cost in ("seconds", "effort"):
+        front = on_front([row[cost] for row in rows], error)
+        for row, mark in zip(rows, front, strict=True):
+            row[f"front_{cost}"] = mark
+    return rows
+
+
+BEST = (("", "model", ""), ("_cells", "cells", 0), ("_seconds", "seconds", np.nan))
+"""Variables of a map: suffix of the name, column of the table, and value if no model is within the
+tolerance."""
+
+
+def _map(study: Accuracy, motion: str, tolerances: Sequence[float], solved: Solved) -> dict:
+    """Return the cheapest model at each point of a map, for each tolerance."""
+    import pandas as pd
+
+    rows = []
+    for place, (_, truth, runs) in enumerate(map_requests(study, motion)):
+        reference = number(solved(truth), "mu_macro")
+        for request in runs:
+            row = solved(request)
+            error = abs(number(row, "mu_macro") - reference) if row.get("converged") else np.inf
+            cost = number(row, "seconds")
+            rows.append((place, request["model"], request["cells"], cost, error))
+    table = pd.DataFrame(rows, columns=["place", "model", "cells", "seconds", "error"])
+    axes = {"amplitude": study.map.amplitude[motion], "velocity": study.map.velocity}
+    shape = len(axes["amplitude"]), len(axes["velocity"])
+    exact = forms.exact_model(motion, 0.0)
+    best = [cheapest(table, exact, t).reindex(range(shape[0] * shape[1])) for t in tolerances]
+    entries: dict[str, Any] = {f"{motion}_{name}": axis for name, axis in axes.items()}
+    for suffix, column, none in BEST:
+        chosen = [one[column].fillna(none) for one in best]
+        entries[f"{motion}_cheapest{suffix}"] = np.reshape(chosen, (-1, *shape))
+    return entries
+
+
+# Pareto fronts, cheapest runs and performance profiles
+
+
+def on_front(cost: ArrayLike, error: ArrayLike) -> np.ndarray:
+    """Return a bool array, shape (n,): True for trials on the Pareto front of cost and error.
+
+    A trial is on the front if every other trial is more expensive, less accurate, or equal in both.
+
+    cost, error: arrays of shape (n,).  Trials with values that are not finite are not on the front.
+    """
+    both = np.stack([np.asarray(cost, float), np.asarray(error, float)])
+    finite = np.isfinite(both).all(axis=0)
+    both = np.where(finite, both, np.inf)
+    other, own = both[:, :, None], both[:, None, :]
+    return finite & ~((other <= own).all(axis=0) & (other < own).any(axis=0)).any(axis=0)
+
+
+def largest_from(runs: pd.DataFrame, *series: str) -> pd.Series:
+    """Return the largest error at each level and all finer levels, NaN if the run has no error.
+
+    A coarse run's error can be small by chance, where the error changes sign.
+
+    runs: table with the column `error` and rows from coarse to fine.  series: columns with equal
+    values in the runs of a series of levels.
+    """
+    return runs["error"][::-1].groupby([runs[name] for name in series]).cummax()
+
+
+def cheapest(runs: pd.DataFrame, exact: str, tolerance: float) -> pd.DataFrame:
+    """Return the cheapest run within the tolerance, by place.
+
+    All finer runs of the same model must also be within the tolerance.  The finest run of a model
+    cannot be confirmed in this way, so it does not count.  The exception is the model `exact`,
+    which converges to the reference.  Times are uncertain, so costs within a factor AS_CHEAP of the
+    lowest cost count as equal.  The first of these runs is returned.
+
+    runs: table with the columns place, model, cells, seconds and error, from coarse to fine.
+    """
+    unconfirmed = ~runs.duplicated(["place", "model"], keep="last") & (runs["model"] != exact)
+    largest = largest_from(runs, "place", "model")
+    good = runs[(largest <= tolerance) & ~unconfirmed & np.isfinite(runs["seconds"])]
+    least = good.groupby("place")["seconds"].transform("min")
+    return good[good["seconds"] <= AS_CHEAP * least].drop_duplicates("place").set_index("place")
+
+
+def contest_of(method: str) -> str:
+    """Return the contest of a method, which depends on the part of a run that it replaces.
+
+    The result is "models" for the shipped method and for methods that replace the whole run, else
+    "integrators", "solvers of a step" or "searches".
+    """
+    parts, shipped = method_named(method), method_named(SHIPPED)
+    if method == SHIPPED or parts.run is not None:
+        return MODELS
+    if parts.dress is not None:
+        return "solvers of a step"
+    return "integrators" if parts.integrator != shipped.integrator else "searches"
+
+
+def profiles(runs: pd.DataFrame, points: list[str], tolerances: Sequence[float]) -> dict:
+    """Return the competitors of all contests, and their ratios.
+
+    A run counts only if all finer runs of its competitor and model are also within the tolerance.
+    The shipped method takes part at the points and models of its rivals.
+
+    runs: table of trials.  points: names of all points.
+    """
+    place = ["trial_point", "trial_model"]
+    runs = runs.assign(error=runs["error"].where(runs["converged"].astype(bool)))
+    runs["largest"] = largest_from(runs, "trial_method", *place)
+    contest_of_run = runs["trial_method"].map(contest_of)
+    contests: list[str] = []
+    names: list[str] = []
+    ratios = [np.empty((0, len(tolerances), len(points)))]
+    methods = sorted(set(runs["trial_method"]))
+    for contest in dict.fromkeys([MODELS, *map(contest_of, methods)] if methods else []):
+        own = contest_of_run == contest
+        shipped = runs["trial_method"] == SHIPPED
+        beside = own.groupby([runs[name] for name in place]).transform("any")
+        entrants = runs[own | (shipped & beside)]
+        is_model = shipped & (contest == MODELS)
+        competitor = entrants["trial_method"].mask(is_model, entrants["trial_model"])
+        every = list(competitor.unique())
+        if not every:
+            continue
+        costs = [
+            good["seconds"].groupby([competitor, good["trial_point"]]).min()
+            for good in (entrants[entrants["largest"] <= tolerance] for tolerance in tolerances)
+        ]
+        tables = [cost.unstack().reindex(index=every, columns=points) for cost in costs]
+        ratios.append(np.stack([(table / table.min()).fillna(np.inf) for table in tables], 1))
+        names += every
+        contests += [contest] * len(every)
+    return {
+        "competitor_contest": contests,
+        "competitor": names,
+        "profile_ratio": np.concatenate(ratios),
+    }

@@ -1,1 +1,0 @@
-"""Study of the accuracy and the cost of each model and method."""

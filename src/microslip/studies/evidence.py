@@ -1,0 +1,318 @@
+"""Evidence for the statements of the paper: requests of the runs, and tables of their values.
+
+Most runs are points at the tolerance of the study.  The others are single runs: the paper's own
+runs, transients, fields of tractions, and periods.
+
+A table of requests has rows that belong together, such as a fine and a coarse run.  A table of
+evidence has a line for each row, with the columns
+
+- amplitude, velocity: place of the first run, NaN for the amplitude of a steady motion;
+- value, error: value that is read from the runs, and its error estimate, which is infinite if a
+  run did not converge;
+- other: second value to compare with;
+- run, other_run: names of the first two results.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from microslip.config.settings import STATIC_AMPLITUDES
+from microslip.studies import requests as forms
+from microslip.studies.requests import Point, exact_model
+from microslip.studies.solved import MOTIONS, Row, Solved, number
+from microslip.sweeps.evaluate import request_of
+from microslip.sweeps.request import STARTS
+from microslip.theory import paper
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+    from microslip.config.settings import Claims
+
+PAPER_VELOCITY = 0.005
+"""Smallest velocity in the paper's maps of the two motions."""
+PAPER_SQUARES, PAPER_STEPS = 32, 100
+"""Number of squares along a side (as in the paper), and number of steps per period in our run."""
+PAPER_TOLERANCE = 1e-3
+"""Tolerance of the stresses in the paper."""
+STEADY_VELOCITIES = (0.1, 0.3, 0.5, 0.8, 1.2, 3.0)
+TRANSIENT = {"motion": "continuous-bore", "velocity": 0.8, "travel": 10.0}
+"""Transient of the continuous bore.  The forward travel is in units of u_lim, twice as far as in
+the paper's Figure 5."""
+CELLS = (32, 16)
+"""Number of rings for transients and steady tractions.  The error is the difference between the
+fine and the coarse run."""
+FIELD_VELOCITIES = (0.2, 0.5, 0.8, 1.2)
+"""Velocities of the runs for steady tractions.  At velocities up to 0.8, the centre of rotation is
+inside the contact."""
+PERIOD_STEPS = 64
+NEAR_STATIC = PAPER_VELOCITY
+"""Largest velocity at which an oscillating bore counts as near static friction."""
+STIFF_EXPONENTS = (100, 50, 25)
+"""Indenter exponents for extrapolation to a flat end.  A flat end has a constant stiffness."""
+STIFF_AMPLITUDES, STIFF_RATIOS = (0.4, 0.8), (0.02, 0.1, 0.2, 0.35, 0.5, 0.7, 0.9)
+"""Amplitudes of the indentation, and ratios of the velocity to the amplitude."""
+
+
+# Requests
+
+
+def velocities(study: Claims) -> list[float]:
+    """Return the study's velocities and the paper's smallest velocity, in ascending order."""
+    return sorted({*study.velocity, PAPER_VELOCITY})
+
+
+def limited(study: Claims, motion: str) -> list[float]:
+    """Return the amplitudes of a motion at which static friction is visible in the paper's maps."""
+    return [a for a in study.amplitude[motion] if a <= STATIC_AMPLITUDES[motion]]
+
+
+def paper_run(motion: str, amplitude: float) -> dict:
+    """Return the request for the paper's own run at its smallest velocity.
+
+    The run has 32 x 32 squares and 8,000 steps.
+    """
+    place = forms.at(Point(motion, PAPER_VELOCITY, amplitude))
+    sizes = {"cells": PAPER_SQUARES, "angles": 1, "steps": PAPER_STEPS}
+    how = {"model": "cartesian", "method": "paper", "tolerance": PAPER_TOLERANCE}
+    return request_of("run", **place, **how, **sizes)
+
+
+def requests_of(study: Claims) -> dict[str, list[list[dict]]]:
+    """Return all tables of requests by name."""
+
+    def point(*place: Any, model: str = "auto", cells: int | None = None) -> dict:
+        return forms.solve(Point(*place), study.tolerance, model, cells)
+
+    tables = {}
+    for motion in MOTIONS:
+        amplitudes = study.amplitude[motion]
+        tables[motion] = [[point(motion, v, a)] for a in amplitudes for v in velocities(study)]
+        tables[f"{motion} closed"] = [[point(motion, 0.0, a)] for a in amplitudes]
+        tables[f"{motion} limit"] = [
+            [
+                point(motion, 0.0, a),
+                point(motion, 0.0, a, model=exact_model(motion, 0.0)),
+                point(motion, 0.0, a, model="cartesian", cells=PAPER_SQUARES),
+                paper_run(motion, a),
+            ]
+            for a in limited(study, motion)
+        ]
+    largest = study.amplitude["transverse"][-1]
+    if largest > STATIC_AMPLITUDES["transverse"]:  # the whole contact slides
+        run = paper_run("transverse", largest)
+        tables["sliding"] = [[run, point("transverse", PAPER_VELOCITY, largest)]]
+    near_static = [v for v in velocities(study) if v <= NEAR_STATIC][-2:]
+    tables["periods"] = [
+        [
+            request_of(
+                "patches", **forms.at(Point("bore", v, a)), cells=n, angles=n, steps=PERIOD_STEPS
+            )
+            for n in (study.cells, 2 * (study.cells // 4))
+        ]
+        for v in near_static
+        for a in limited(study, "bore")
+    ]
+    tables["steady"] = [[point("continuous-bore", v, model="polar")] for v in STEADY_VELOCITIES]
+    tables["transients"] = [
+        [request_of("history", start=start, cells=n, **TRANSIENT) for n in CELLS]
+        for start in STARTS
+    ]
+    tables["fields"] = [
+        [request_of("field", motion="continuous-bore", velocity=v, cells=n) for n in CELLS]
+        for v in FIELD_VELOCITIES
+    ]
+    tables["flat end"] = [
+        [
+            point("normal:indentation=1", a * ratio, a) | {"pressure": f"power:exponent={n}"}
+            for n in STIFF_EXPONENTS
+        ]
+        for a in STIFF_AMPLITUDES
+        for ratio in STIFF_RATIOS
+    ]
+    return tables
+
+
+# Tables of evidence
+
+
+def tables_of(study: Claims, solved: Solved) -> dict[str, pd.DataFrame]:
+    """Return all tables of evidence by name."""
+    import pandas as pd
+
+    requests = requests_of(study)
+
+    def table(name: str, read: Callable[..., dict]) -> pd.DataFrame:
+        lines = []
+        for some in requests.get(name, []):
+            rows = [solved(request) for request in some]
+            keys = {"run": rows[0]["key"], "other_run": "".join(row["key"] for row in rows[1:2])}
+            place = {axis: number(some[0], axis) for axis in ("amplitude", "velocity")}
+            lines.append(place | keys | {"other": np.nan} | read(*rows))
+        names = ["amplitude", "velocity", "run", "other_run", "other", "value", "error"]
+        return pd.DataFrame(lines) if lines else pd.DataFrame(columns=names, dtype=float)
+
+    tables = {"steady": table("steady", point_of), "flat end": table("flat end", extrapolated)}
+    tables["steady faster"] = beside_previous(tables["steady"])
+    for motion in MOTIONS:
+        points, closed = table(motion, point_of), table(f"{motion} closed", point_of)
+        limit = table(f"{motion} limit", limit_of)
+        static = points[points["amplitude"] <= STATIC_AMPLITUDES[motion]]
+        rings = {"value": limit["rings"], "error": limit["rings_error"], "run": limit["other_run"]}
+        every = pd.concat([closed, points]).sort_values(["amplitude", "velocity"])
+        tables |= {
+            motion: points,
+            f"{motion} closed": closed,
+            f"{motion} limit": limit,
+            f"{motion} rings": limit.assign(**rings, other_run=""),
+            f"{motion} slow": static[static["velocity"] == velocities(study)[0]],
+            f"{motion} paper": static[static["velocity"] == PAPER_VELOCITY],
+            f"{motion} faster": beside_previous(every, "amplitude"),
+            f"{motion} larger": beside_previous(points, "velocity"),
+        }
+    tables["sliding"] = table("sliding", paper_run_of)
+    for name in ("force_forward", "torque"):
+        tables[name] = table("transients", lambda *rows, name=name: end_of(name, *rows))
+    for name, read in (("ratio", traction_ratio), ("angle", traction_angle)):
+        tables[name] = table("fields", lambda *rows, read=read: both_of(read, *rows))
+    for name, read in (("least stick", least_stick), ("lead", lead)):
+        tables[name] = table("periods", lambda *rows, read=read: both_of(read, *rows))
+    return tables
+
+
+def beside_previous(points: pd.DataFrame, *by: str) -> pd.DataFrame:
+    """Return all points but the first of each group, with the value of the previous point.
+
+    by: column with equal values in the points of a group.
+    """
+    groups = points.groupby(list(by)) if by else points
+    before = groups[["value", "error", "run"]].shift()
+    both = {"other": before["value"], "other_run": before["run"]}
+    points = points.assign(**both, error=points["error"] + before["error"])
+    return points[before["run"].notna()]
+
+
+# Values read from rows
+
+
+def friction(row: Row) -> tuple[float, float]:
+    """Return (mu_macro, error estimate) of a point.  The error is infinite if the point did not
+    converge."""
+    error = number(row, "mu_macro_error")
+    is_good = bool(row.get("converged")) and np.isfinite(error)
+    return number(row, "mu_macro"), error if is_good else np.inf
+
+
+def point_of(row: Row) -> dict:
+    """Return the friction of a point."""
+    value, error = friction(row)
+    return {"value": value, "error": error}
+
+
+def limit_of(closed: Row, rings: Row, squares: Row, own: Row) -> dict:
+    """Return the static limit in closed form, on rings and on squares, and the paper's own run.
+
+    The error of the closed form is an independent check: the distance from the limit on rings, plus
+    the error estimates of the two values.
+    """
+    (value, rounding), (resolved, error) = friction(closed), friction(rings)
+    return {
+        "value": value,
+        "error": rounding + error + abs(resolved - value),
+        "rings": resolved,
+        "rings_error": error,
+        "squares": number(squares, "mu_macro"),
+        "paper": number(own, "mu_macro"),
+    }
+
+
+def paper_run_of(own: Row, accurate: Row) -> dict:
+    """Return the friction of the paper's own run.  Its error is the difference from a run at the
+    study's tolerance."""
+    mu, (value, error) = number(own, "mu_macro"), friction(accurate)
+    return {"value": mu, "error": error + abs(mu - value)}
+
+
+def end_of(name: str, *rows: Row) -> dict:
+    """Return the value of a quantity at the end of a transient.
+
+    The error is the sum of two terms: the difference from a run with half as many rings, and the
+    change over the last tenth of the forward travel.
+    """
+    fine, coarse = (np.asarray(row[name], float) for row in rows)
+    tail = fine[-max(fine.size // 10, 2) :]
+    error = abs(fine[-1] - coarse[-1]) + np.abs(tail - fine[-1]).max()
+    return {"value": fine[-1], "error": error}
+
+
+def extrapolated(*rows: Row) -> dict:
+    """Return friction for a flat end, extrapolated from three indenters.
+
+    For an indenter with exponent n, the friction differs from that of a flat end by a power series
+    in 1/n.  The extrapolated value has a third-order error.  Its error estimate is the difference
+    from the first-order extrapolation.
+    """
+    (fine, error), (middle, second), (coarse, third) = map(friction, rows)
+    value = (8.0 * fine - 6.0 * middle + coarse) / 3.0
+    error = abs(value - (2.0 * fine - middle)) + (8.0 * error + 6.0 * second + third) / 3.0
+    return {"value": value, "error": error}
+
+
+def both_of(read: Callable[[Row], tuple[float, float]], fine: Row, coarse: Row) -> dict:
+    """Return a value of a run and its reference.
+
+    The error is the change of their difference in a run with half as many rings.
+
+    read: function that returns the value and the reference.
+    """
+    if not (fine.get("converged", True) and coarse.get("converged", True)):
+        return {"value": np.nan, "error": np.inf}
+    (value, other), (coarse_value, coarse_other) = read(fine), read(coarse)
+    return {
+        "value": value,
+        "error": abs((value - other) - (coarse_value - coarse_other)),
+        "other": other,
+    }
+
+
+def traction_ratio(row: Row) -> tuple[float, float]:
+    """Return the smallest ratio of traction to friction bound, and 0."""
+    size = np.hypot(row["traction_lateral"], row["traction_forward"])
+    return float((size / np.asarray(row["bound"], float)).min()), 0.0
+
+
+def traction_angle(row: Row) -> tuple[float, float]:
+    """Return the largest angle between the tractions and Eq 15 in degrees, and 0."""
+    across, along, lateral, forward = (
+        np.asarray(row[name], float)
+        for name in ("lateral_position", "forward_position", "traction_lateral", "traction_forward")
+    )
+    x, y = paper.steady_bore_traction(across, along, float(row["velocity"]))
+    angle = np.arctan2(x * forward - y * lateral, x * lateral + y * forward)
+    return float(np.degrees(np.abs(angle).max())), 0.0
+
+
+def least_stick(row: Row) -> tuple[float, float]:
+    """Return the smallest stick area in a period and the area of the smallest cell, both divided by
+    the contact area."""
+    both = np.add(row["stick_right"], row["stick_left"])
+    return float(both[1:].min()), min(row["area"]) / np.pi
+
+
+def lead(row: Row) -> tuple[float, float]:
+    """Return the lead of one side when the sticking area is smallest, and 0.
+
+    Each side must lead once.  The smaller of the two leads counts.
+    """
+    right, left = (np.asarray(row[f"stick_{side}"][1:], float) for side in ("right", "left"))
+    half = right.size // 2
+    least = int(np.argmin((right + left)[:half]))
+    first, second = (
+        (left[k] - right[k]) / total if (total := right[k] + left[k]) > 0 else 0.0
+        for k in (least, least + half)
+    )
+    return float(max(min(first, -second), min(-first, second))), 0.0

@@ -1,0 +1,75 @@
+"""Solved requests of a study, and the tables of the variables of its dataset."""
+
+from __future__ import annotations
+
+import csv
+import math
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from typing import Any
+
+from microslip.foundation.canonical import canonical_json
+
+Row = dict[str, Any]
+"""A solved request: the entries of the request and of its result, and the name `key` of the result.
+An entry of the result replaces that of the request."""
+MOTIONS = ("transverse", "bore")
+"""Motions that replace {motion} in the tables of variables and groups."""
+
+
+class Solved:
+    """Function that returns the Row of a request.
+
+    Attributes
+    ----------
+    rows : dict of str to (dict, Row)
+        Requests and their rows by the JSON text of the request, in the order of first use.
+    keys, versions : set of str
+        Names of the results, and versions of the libraries that computed them.
+    machines : list of dict
+        Computers on which times were measured.
+    """
+
+    def __init__(self, answer: Callable[[dict], dict]):
+        """answer: function that returns the record of a request, see sweeps.batch.lookup."""
+        self._answer = answer
+        self.rows: dict[str, tuple[dict, Row]] = {}
+        self.keys: set[str] = set()
+        self.versions: set[str] = set()
+        self.machines: list[dict] = []
+
+    def __call__(self, request: dict) -> Row:
+        """Return the row of a request."""
+        text = canonical_json(request)
+        if text not in self.rows:
+            record = self._answer(request)
+            result = record["result"]
+            self.rows[text] = request, request | result | {"key": record["key"]}
+            self.keys.add(record["key"])
+            self.versions.add(canonical_json(record["versions"]))
+            if result.get("machine") not in (None, *self.machines):
+                self.machines.append(result["machine"])
+        return self.rows[text][1]
+
+
+def number(row: Row, name: str) -> float:
+    """Return a number of a row, or NaN if the row has none."""
+    value = row.get(name)
+    return math.nan if value is None else float(value)
+
+
+def rows_of(table: str, study: str) -> Iterator[dict[str, str]]:
+    """Yield the rows of a table for a study.  A row with {motion} becomes one for each motion.
+
+    table: "variables.csv" or "groups.csv".
+    """
+    with open(Path(__file__).with_name(table), newline="", encoding="utf-8") as file:
+        for row in csv.DictReader(file):
+            if row["study"] == study:
+                for motion in MOTIONS if "{motion}" in row["dims"] else MOTIONS[:1]:
+                    yield {key: text.replace("{motion}", motion) for key, text in row.items()}
+
+
+def names_along(dim: str, study: str) -> list[str]:
+    """Return the names of the variables of a study whose only dimension is `dim`."""
+    return [row["name"] for row in rows_of("variables.csv", study) if row["dims"] == dim]

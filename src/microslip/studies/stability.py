@@ -1,0 +1,169 @@
+"""Study of the failures of methods: all methods are tested in the same cases.
+
+A block of the configuration varies one quantity of a base point into a range where methods fail.
+The quantity belongs to the point, to the resolution, or to a method.  A case is a value of this
+quantity.  All probes have the same tolerance.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from microslip.foundation.canonical import number as text_of_number
+from microslip.solver import method_names
+from microslip.solver.method_names import SHIPPED
+from microslip.studies import requests as forms
+from microslip.studies.requests import Point
+from microslip.studies.solved import Row, Solved, number
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+    from microslip.config.settings import Block, Stability
+
+TRUTH_SHARE = 0.1
+"""Tolerance of the references, divided by the tolerance of the probes."""
+BLOCKS_PER_JOB = 5
+"""Number of blocks in one job."""
+UNSOLVED = "a step was left unsolved"
+"""First words of `reason` if a run reached the iteration limit close to the solution of a step."""
+OUTCOMES = ("not_applicable", "converged", "slow", "wrong", "diverged")
+NOT_APPLICABLE, CONVERGED, SLOW, WRONG, DIVERGED = range(len(OUTCOMES))
+
+TITLE = "Where methods for the friction of a vibrated Hertz contact fail"
+COMMENT = "The outcome of a method is judged by the distance from the reference of the case."
+
+
+# Requests
+
+
+def cases(study: Stability) -> list[tuple[str, Block, float]]:
+    """Return (name of the block, block, value) of all cases, in the order of the dataset."""
+    return [(name, block, v) for name, block in study.axes.items() for v in block.values]
+
+
+def _point(block: Block, value: float) -> Point:
+    place = {name: getattr(block, name)[0] for name in ("velocity", "amplitude", "poisson")}
+    if block.varied in place:
+        place[block.varied] = value
+    return Point(block.motion, **place)
+
+
+def probe(study: Stability, method: str, block: Block, value: float) -> dict | None:
+    """Return the request for running a method in a case, or None if the block does not apply.
+
+    A block with step lengths applies to methods with this parameter and, for comparison, to the
+    shipped method.
+    """
+    if block.varied == "step" and method != SHIPPED:
+        name, numbers = method_names.split(method)
+        if "step" not in (method_names.declared(name, "parameters") or ()):
+            return None
+        words = (f"{k}={text_of_number(n)}" for k, n in (numbers | {"step": value}).items())
+        method = f"{name}:{','.join(words)}"
+    imposed = {name: values[0] for name in ("cells", "steps") if (values := getattr(block, name))}
+    if block.varied in imposed:
+        imposed[block.varied] = value
+    return forms.probe(_point(block, value), method, study.tolerance, **imposed)
+
+
+def reference(study: Stability, block: Block, value: float) -> dict:
+    """Return the request for the reference of a case: the shipped method without an imposed
+    resolution."""
+    return forms.solve(_point(block, value), TRUTH_SHARE * study.tolerance)
+
+
+def requests(study: Stability) -> Iterator[tuple[tuple, dict]]:
+    """Yield each request with its job.  A method that is added has jobs of its own."""
+    for name, block, value in cases(study):
+        yield (0, name), reference(study, block, value)
+    number_of = {name: index for index, name in enumerate(study.axes)}
+    for method in study.methods:
+        for name, block, value in cases(study):
+            if (request := probe(study, method, block, value)) is not None:
+                yield (1, method, number_of[name] // BLOCKS_PER_JOB), request
+
+
+# The dataset
+
+
+def outcome(
+    result: Row | None, reference: float, reference_error: float, imposed: bool = False
+) -> int:
+    """Return the outcome of a probe, an index into OUTCOMES.
+
+    A probe is not applicable if the method was not run.  It is converged if the run converged and
+    differs from the reference by at most the sum of the two error estimates.  It is wrong if the
+    run converged, but differs by more.  It is slow if the run used up its budget and reports this.
+    It is diverged if the run diverged or returned no number.
+
+    Parameters
+    ----------
+    result : dict or None
+        Result of the probe.  If the method was not run, it is None or its entry `applies` is False.
+    reference, reference_error : float
+        Reference and its error estimate, dimensionless.
+    imposed : bool
+        True if the resolution was imposed.  An imposed resolution can be too coarse for the
+        tolerance, so every run with a periodic state counts as converged.
+    """
+    if result is None or not result.get("applies", True):
+        return NOT_APPLICABLE
+    mu, error = number(result, "mu_macro"), number(result, "mu_macro_error")
+    reason = result.get("reason") or ""
+    if reason.startswith("diverged"):
+        return DIVERGED
+    if result.get("exhausted"):
+        return SLOW
+    if not np.isfinite(mu) and not reason.startswith(UNSOLVED):
+        return DIVERGED
+    if not result.get("periodic" if imposed else "converged"):
+        return SLOW
+    return CONVERGED if abs(mu - reference) <= error + reference_error else WRONG
+
+
+def values(study: Stability, solved: Solved) -> dict[str, Any]:
+    """Return the values of the variables."""
+    every, blocks = cases(study), study.axes
+    truths = [solved(reference(study, block, value)) for _, block, value in every]
+    mu = np.array([number(truth, "mu_macro") for truth in truths])
+    error = np.array([number(truth, "mu_macro_error") for truth in truths])
+    imposed = [bool(block.cells or block.steps) for _, block, _ in every]
+    probes = [[probe(study, m, block, v) for _, block, v in every] for m in study.methods]
+    results: list[list[Row]] = [
+        [{"applies": False} if request is None else solved(request) for request in row]
+        for row in probes
+    ]
+    names = {"mu_macro": "mu_macro", "claimed_error": "mu_macro_error", "work": "work"}
+    numbers = {
+        name: np.array([[number(result, key) for result in row] for row in results])
+        for name, key in names.items()
+    }
+    outcomes = [
+        [outcome(*four) for four in zip(row, mu, error, imposed, strict=True)] for row in results
+    ]
+    return numbers | {
+        "outcome": outcomes,
+        "reason": [[result.get("reason") or "" for result in row] for row in results],
+        "error": np.abs(numbers["mu_macro"] - mu),
+        "method": study.methods,
+        "method_summary": [method_names.method_named(method).summary for method in study.methods],
+        "reference": mu,
+        "reference_error": error,
+        "axis": list(blocks),
+        "axis_label": [block.title or block.varied for block in blocks.values()],
+        "axis_note": [block.note for block in blocks.values()],
+        "case_axis": [name for name, *_ in every],
+        "case_value": [value for *_, value in every],
+        "case_label": [f"{value:g}" for *_, value in every],
+    }
+
+
+def report(dataset: xr.Dataset) -> Iterator[str]:
+    """Yield a line of text for each method: the number of cases with each outcome."""
+    for method, row in zip(dataset["method"].values, dataset["outcome"].values, strict=True):
+        counts = ((OUTCOMES[i], int((row == i).sum())) for i in range(1, len(OUTCOMES)))
+        yield f"{method}: " + ", ".join(f"{count} {name}" for name, count in counts)

@@ -1,0 +1,136 @@
+"""The paper's statements and the criteria of their parts.  Statement 10 is by M. Popov (2020).
+
+A part is one aspect of a statement that numbers can confirm or refute.  statements.csv contains the
+statements in plain words, and parts.csv contains a row for each part:
+
+- counts: yes if the verdict on the statement depends on the part;
+- evidence, lines: table of evidence, and condition on its lines; all lines if it is empty;
+- formula: reference of the values, a key of FORMULAS;
+- margin: how a value is compared with its reference, a key of MARGINS;
+- limit: key of LIMITS; the text of the criterion contains its value.
+"""
+
+from __future__ import annotations
+
+import csv
+from collections.abc import Callable
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
+
+from microslip.studies import verdicts
+from microslip.studies.static_limits import asymptote
+from microslip.theory import constant_stiffness, paper
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+LIMITS = {
+    # Error of mu_macro that is just visible on a map with contours at steps of 0.1.
+    "GOOD": 0.02,
+    # Largest difference in mu_macro that counts as slight.
+    "SLIGHT": 0.05,
+    # Largest distance in mu_macro between a curve and a dashed line over it that counts as equal.
+    "AGREES": 0.01,
+    # Relative error up to which a formula is good where friction is small.
+    "RELATIVE": 0.1,
+    # Traction divided by the friction bound above which a point slips.
+    "ON_BOUND": 0.999,
+    # Largest angle in degrees between traction and slip: the tolerance of the paper.
+    "ALIGNED": 4.0,
+    # Smallest difference of the stick areas of the two halves, divided by the whole stick area.
+    "ALTERNATES": 0.5,
+    # Largest mean force, divided by mu F_z, that counts as zero.
+    "VANISHES": 1e-9,
+}
+"""What words such as slight, good or near mean in numbers."""
+
+
+class Part(NamedTuple):
+    """One aspect of a statement; the fields are the columns of parts.csv."""
+
+    claim: int
+    part: str
+    counts: bool
+    evidence: str
+    lines: str
+    formula: str
+    margin: str
+    limit: float
+    text: str
+
+    def checks(self, tables: dict[str, pd.DataFrame]) -> pd.DataFrame:
+        """Return the table of evidence with the columns against, margin and outcome.
+
+        tables: tables of evidence by name.
+        """
+        checks = tables[self.evidence]
+        checks = checks.query(self.lines) if self.lines else checks
+        checks = checks.assign(limit=self.limit)
+        checks = checks.assign(against=FORMULAS[self.formula])
+        # An error of the value can change the distances from two formulas, so it counts twice.
+        errors = 2.0 if self.margin.startswith("nearer than eq") else 1.0
+        checks = checks.assign(margin=MARGINS[self.margin], error=errors * checks["error"])
+        return checks.assign(outcome=verdicts.outcomes(checks["margin"], checks["error"]))
+
+
+Numbers = Callable[["pd.DataFrame"], Any]
+"""Function that computes references or margins from a table of evidence."""
+
+
+def _of(formula: Callable, *columns: str) -> Numbers:
+    return lambda checks: np.asarray(formula(*(checks[name].to_numpy(float) for name in columns)))
+
+
+FORMULAS = {
+    "eq6": _of(paper.large_amplitude_transverse, "velocity", "amplitude"),
+    "eq7": _of(paper.static_slider, "amplitude"),
+    "eq11": _of(paper.static_transverse, "amplitude"),
+    "eq21": _of(paper.bore_forward, "velocity"),
+    "eq22": _of(paper.bore_torque, "velocity"),
+    "eq29": _of(paper.large_amplitude_bore, "velocity"),
+    "eq33": _of(paper.static_bore, "amplitude"),
+    "printed": _of(paper.static_bore_printed, "amplitude"),
+    "asymptote": _of(asymptote, "amplitude"),
+    "eq37": _of(constant_stiffness.sum_of_powers, "amplitude", "velocity"),
+    "eq38": _of(constant_stiffness.single_power, "amplitude", "velocity"),
+    "other": _of(np.asarray, "other"),
+    "limit": _of(np.asarray, "limit"),
+}
+"""References of values by name."""
+
+
+def _distance(checks: pd.DataFrame, reference: Any = None) -> Any:
+    return np.abs(checks["value"] - (checks["against"] if reference is None else reference))
+
+
+MARGINS: dict[str, Numbers] = {
+    "above": lambda checks: checks["value"] - checks["against"],
+    "below": lambda checks: checks["against"] - checks["value"],
+    "within": lambda checks: checks["limit"] - _distance(checks),
+    "within share of value": lambda c: c["limit"] * c["value"] - _distance(c),
+    "within share of against": lambda c: c["limit"] * c["against"] - _distance(c),
+    "nearer than other": lambda c: np.abs(c["other"] - c["against"]) - _distance(c),
+    "nearer than eq7": lambda c: _distance(c, FORMULAS["eq7"](c)) - _distance(c),
+    "nearer than eq38": lambda c: _distance(c, FORMULAS["eq38"](c)) - _distance(c),
+}
+"""Margins of checks by name.  A margin is positive where the part holds."""
+
+
+def _rows(name: str) -> list[dict[str, str]]:
+    with open(Path(__file__).with_name(name), newline="", encoding="utf-8") as file:
+        return list(csv.DictReader(file))
+
+
+def _part(row: dict[str, str]) -> Part:
+    limit = LIMITS.get(row["limit"], np.nan)
+    text = row["text"].format(limit=f"{limit:g}", percent=f"{100 * limit:g}")
+    values: dict[str, Any] = row | {"claim": int(row["claim"]), "counts": row["counts"] == "yes"}
+    return Part(**values | {"limit": limit, "text": text})
+
+
+STATEMENTS = {int(row["claim"]): row["text"] for row in _rows("statements.csv")}
+"""The statements by number."""
+PARTS = {part.part: part for part in map(_part, _rows("parts.csv"))}
+"""The parts of all statements by name."""

@@ -1,0 +1,156 @@
+"""The static limit of the two oscillating motions, and the paper's formulas for it.
+
+The paper's formulas count the whole friction bound inside the stick zone, although the oscillation
+uses a part of it (see microslip.solver.static_limit).  The paper's own runs do not show the
+difference, because their velocity is too large and their resolution is too coarse.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import scipy
+from numpy.typing import ArrayLike
+
+from microslip.config.settings import STATIC_AMPLITUDES
+from microslip.studies import evidence
+from microslip.theory import hertz, paper
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+    from microslip.config.settings import Claims
+
+FORMULAS = {
+    "transverse": {
+        "slider": ("mu_static_slider", paper.static_slider),
+        "zone": ("mu_static_stick_zone", paper.static_transverse),
+    },
+    "bore": {
+        "zone": ("mu_static_stick_zone", paper.static_bore),
+        "zone_printed": ("mu_static_stick_zone_printed", paper.static_bore_printed),
+    },
+}
+"""The paper's formulas for each motion: name in datasets.catalogue, and function."""
+LIMITS = {"transverse": paper.static_limit_transverse, "bore": paper.static_limit_bore}
+"""Exact static limit of each motion."""
+CURVE_POINTS = 501
+SHARE_AMPLITUDES = {"transverse": (0.1, 0.25, 0.5, 0.75), "bore": (0.25, 0.5, 1.0, 2.0)}
+"""Amplitudes at which the fractions of the friction bound are drawn."""
+RADII = 201
+
+
+def remainder() -> float:
+    """Return the integral of the remaining friction bound for large amplitudes over c^2, where c is
+    the radius of the stick zone: 3/4 (1 - J0(pi)) with the Bessel function J0."""
+    return 0.75 * (1.0 - scipy.special.j0(np.pi))
+
+
+def asymptote(amplitude: ArrayLike) -> np.ndarray:
+    """Return the static limit of the oscillating bore for large amplitudes (small stick zones).
+
+    The radius of the stick zone is c = (4/e) exp(-D(1/2) amplitude), and the rotation uses the
+    fraction (2/pi) arcsin(r/c) of the friction bound.  Eq 33 tends to 3/2 c^2.  The result is
+    dimensionless and positive.  amplitude: array of any shape.
+    """
+    radius = 4.0 / np.e * np.exp(-hertz.D_half() * np.asarray(amplitude, float))
+    return remainder() * radius**2
+
+
+def used_share(motion: str, radius: np.ndarray, amplitude: np.ndarray) -> np.ndarray:
+    """Return the fraction of the friction bound that the oscillation uses at its turning points.
+
+    The fraction is 1 outside the stick radius.  The arguments broadcast.
+    """
+    if motion == "bore":
+        return np.asarray(hertz.lubkin_share(radius, paper.bore_stick_radius(amplitude)))
+    bound = hertz.friction_bound(radius)
+    traction = hertz.mindlin_traction(radius, amplitude)
+    return np.where(bound > 0, traction / np.where(bound > 0, bound, 1.0), 1.0)
+
+
+def left_share(motion: str, radius: np.ndarray, amplitude: np.ndarray) -> np.ndarray:
+    """Return the fraction of the friction bound that remains for the forward direction.
+
+    It is averaged over the angle.
+    """
+    used = used_share(motion, radius, amplitude)
+    if motion == "bore":
+        return 2.0 / np.pi * np.arccos(used)
+    return np.sqrt((1.0 - used) * (1.0 + used))
+
+
+# The dataset
+
+
+def values(study: Claims, tables: dict[str, pd.DataFrame]) -> dict[str, Any]:
+    """Return the values of the variables.  tables: tables of evidence."""
+    radius = np.linspace(0.0, 1.0, RADII)
+    entries: dict[str, Any] = {
+        "share_radius": radius,
+        "claims_slowest": evidence.velocities(study)[0],
+        "claims_paper_velocity": evidence.PAPER_VELOCITY,
+        "static_asymptote_excess": 1.5 / remainder() - 1.0,
+    }
+    for motion in FORMULAS:
+        shown = np.array(SHARE_AMPLITUDES[motion])
+        at = motion, radius, shown[:, None]
+        named = {"used_share": used_share(*at), "left_share": left_share(*at)}
+        named |= {"share_amplitude": shown} | _curves(motion)
+        named |= _table(
+            motion, *(tables[f"{motion} {name}"] for name in ("limit", "slow", "paper"))
+        )
+        entries |= {f"{motion}_{name}": value for name, value in named.items()}
+    return entries
+
+
+def _curves(motion: str) -> dict:
+    """Return the static limit and the formulas on a fine axis, and their largest differences."""
+    amplitude = np.linspace(0.0, STATIC_AMPLITUDES[motion], CURVE_POINTS)
+    exact = np.asarray(LIMITS[motion](amplitude))
+    entries: dict[str, Any] = {"curve_amplitude": amplitude, "curve_limit": exact}
+    for name, (_, formula) in FORMULAS[motion].items():
+        curve = np.asarray(formula(amplitude))
+        most = int(np.argmax(curve - exact))
+        entries |= {f"curve_{name}": curve, f"gap_{name}": (curve - exact)[most]}
+        entries[f"gap_{name}_at"] = amplitude[most]
+    return entries
+
+
+def _table(motion: str, limit: pd.DataFrame, march: pd.DataFrame, slow: pd.DataFrame) -> dict:
+    """Return the difference between the paper's run and the static limit.
+
+    The difference is split into a part due to the velocity and a part due to the resolution.
+
+    limit, march, slow: static limit, and friction at the smallest velocity of the study and of the
+    paper, with a line for each amplitude.
+    """
+    exact, error, squares, own = (
+        limit[name].to_numpy() for name in ("value", "error", "squares", "paper")
+    )
+    mu, mu_error = slow["value"].to_numpy(), slow["error"].to_numpy()
+    formulas = {
+        name: formula(limit["amplitude"].to_numpy())
+        for name, (_, formula) in FORMULAS[motion].items()
+    }
+    with np.errstate(invalid="ignore", divide="ignore"):
+        lost = np.where(formulas["zone"] > 0.0, 1.0 - exact / formulas["zone"], np.nan)
+    return formulas | {
+        "amplitude": limit["amplitude"],
+        "limit": exact,
+        "limit_error": error,
+        "limit_squares": squares,
+        "march": march["value"],
+        "march_error": march["error"],
+        "slow": mu,
+        "slow_error": mu_error,
+        "paper": own,
+        "paper_shift": own - exact,
+        "from_velocity": mu - exact,
+        "from_velocity_error": mu_error + error,
+        "from_resolution": own - mu,
+        "from_resolution_error": mu_error,
+        "squares_shift": squares - exact,
+        "lost": lost,
+    }

@@ -1,0 +1,105 @@
+"""Verdicts on statements, from the margins and errors of checks.
+
+A statement of the paper has parts, and a part is judged by checks.  Each check has a margin with an
+error.  A check holds if its margin is larger than the error.  It fails if the margin is negative
+and its absolute value is larger than the error.  Otherwise, the check is open.  A part holds if
+some checks hold and none fails.  A statement holds if all its parts hold.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from itertools import groupby
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+OUTCOMES = ("open", "holds", "fails")
+OPEN, HOLDS, FAILS = range(len(OUTCOMES))
+VERDICTS = ("not_decided", "holds", "holds_in_part", "does_not_hold")
+NOT_DECIDED, WHOLLY, PARTLY, NOT = range(len(VERDICTS))
+WORDS = ("not decided", "holds", "holds in part", "does not hold")
+"""Verdicts in words."""
+
+
+def outcomes(margin: ArrayLike, error: ArrayLike) -> np.ndarray:
+    """Return the outcome of each check, an index into OUTCOMES.
+
+    margin, error: arrays of one shape.  The margin is positive if the part holds.
+    """
+    margin = np.asarray(margin, float)
+    decided = np.isfinite(margin) & (np.abs(margin) > np.asarray(error, float))
+    return np.where(decided, np.where(margin > 0, HOLDS, FAILS), OPEN)
+
+
+def of_part(outcome: ArrayLike) -> int:
+    """Return the verdict on a part from the outcomes of its checks, an index into VERDICTS."""
+    holds, fails = (bool(np.any(np.equal(outcome, code))) for code in (HOLDS, FAILS))
+    if holds:
+        return PARTLY if fails else WHOLLY
+    return NOT if fails else NOT_DECIDED
+
+
+def of_claim(parts: Iterable[int]) -> int:
+    """Return the verdict on a statement from the verdicts on its parts.
+
+    A statement holds in part if one of its parts holds in part, or if some parts hold and some do
+    not.  Otherwise, one undecided part leaves the statement undecided.
+    """
+    distinct = set(parts)
+    if PARTLY in distinct or {WHOLLY, NOT} <= distinct:
+        return PARTLY
+    if NOT_DECIDED in distinct or not distinct:
+        return NOT_DECIDED
+    return distinct.pop()
+
+
+def shown_by(checks: pd.DataFrame) -> str:
+    """Return the name of the run that shows the verdict on a part; empty if no check is decided.
+
+    The run belongs to the check that fails most clearly or, if no check fails, to the check that
+    holds most narrowly.
+
+    checks: table with the columns outcome, margin and run.
+    """
+    decided = checks[checks["outcome"] != OPEN]
+    ordered = decided.sort_values(["outcome", "margin"], ascending=[False, True], kind="stable")
+    return ordered["run"].iloc[0] if len(ordered) else ""
+
+
+def where(checks: pd.DataFrame) -> str:
+    """Return a text that lists where a part holds, such as "amplitude 1 to 3; not at amplitude 5".
+
+    Checks are grouped by amplitude, or by velocity for a steady motion.  If some checks of a group
+    hold and some fail, the text lists the velocities of the failing checks.
+
+    checks: table with the columns outcome, amplitude and velocity.
+    """
+    axis = "velocity" if checks["amplitude"].isna().any() else "amplitude"
+    words = {}
+    for value, group in checks.groupby(axis):
+        codes = set(group["outcome"])
+        if {HOLDS, FAILS} <= codes:
+            fails = group["outcome"] == FAILS
+            texts = [
+                text for bad, text in _stretches(zip(group["velocity"], fails, strict=True)) if bad
+            ]
+            words[value] = f"at {axis} {{}} not for velocity {' and '.join(texts)}"
+        else:
+            word = "" if HOLDS in codes else "not at " if FAILS in codes else "open at "
+            words[value] = f"{word}{axis} {{}}"
+    return "; ".join(word.format(stretch) for word, stretch in _stretches(words.items()))
+
+
+def _stretches(labels: Iterable[tuple[float, object]]) -> Iterable[tuple]:
+    """Yield each label with the stretch of consecutive values that have it, such as "1 to 3".
+
+    labels: pairs of a value and its label.
+    """
+    for label, group in groupby(labels, key=lambda pair: pair[1]):
+        values = [value for value, _ in group]
+        yield label, f"{values[0]:g}" + (f" to {values[-1]:g}" if len(values) > 1 else "")
