@@ -129,7 +129,7 @@ class Sources:
     @cached_property
     def _results(self) -> dict[str, tuple[str, list[str]]]:
         with contextlib.suppress(OSError, ValueError):
-            return json.loads(self._store.read_bytes())
+            return dict(json.loads(self._store.read_bytes()))  # another version may store a list
         return {}
 
 
