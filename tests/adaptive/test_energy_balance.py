@@ -16,7 +16,7 @@ from microslip.adaptive.choice import choose_model
 from microslip.contact.contact import FORWARD, forces, rigid_displacement
 from microslip.contact.coulomb import project
 from microslip.contact.path import make_path
-from microslip.solver import simulate, static_run
+from microslip.solver import simulate, static_limit
 
 BENCHMARKS = Path(__file__).parents[2] / "benchmarks"
 SEED, COUNT = 46, 200
@@ -61,9 +61,9 @@ def both_energies(point, monkeypatch):
     place |= {"tolerance": max(place["tolerance"], TOLERANCE), "model": choose_model(problem)}
     work = microslip.solve(**place)
     with monkeypatch.context() as patch:
-        for module in (simulate, static_run):
+        for module in (simulate, static_limit):
             patch.setattr(module, "dissipated_energy", energy_of_slip)
-        patch.setattr(static_run, "loop_energy", work_of_loop)
+        patch.setattr(static_limit, "loop_energy", work_of_loop)
         slip = microslip.solve(**place)
     return work, slip
 

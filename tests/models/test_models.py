@@ -500,7 +500,7 @@ def test_order_of_the_integrators_in_the_periodic_mean(name):
         start, goal = forward_slip(contact), Goal(1e-7, 1e-9)
         result = find_periodic_state(PeriodMap(contact, path), start, goal)
         assert result.converged
-        return path.mean(result.forces)[0]
+        return path.mean(result.march.forces)[0]
 
     reference = mean(512, SDIRK2)
     steps = [16, 32, 64]

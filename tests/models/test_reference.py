@@ -61,4 +61,4 @@ def test_the_periodic_state_is_the_one_that_the_plain_march_ends_in():
     assert result.converged
     assert result.start == pytest.approx(expected[0], abs=1e-9)
     forces = (contact.weight * expected[:, 0]).sum(axis=(1, 2))
-    assert result.forces[:, 0] == pytest.approx(forces, abs=1e-9)
+    assert result.march.forces[:, 0] == pytest.approx(forces, abs=1e-9)

@@ -7,7 +7,7 @@ import microslip
 from microslip.contact.registry import MODELS
 from microslip.motions.named import Bore, Transverse
 from microslip.motions.problem import Problem
-from microslip.solver.static_limit import residual_part, static_state
+from microslip.solver.static_limit import lens_corner, limit_on_a_line
 from microslip.theory import hertz, paper
 
 
@@ -22,19 +22,19 @@ def oscillation(motion, amplitude, poisson=0.0):
 
 def numerical_limit(motion, amplitude, model, cells, angles=1, poisson=0.0):
     contact = contact_for(motion, amplitude, model, cells, angles, poisson)
-    residual, *_ = static_state(contact, oscillation(motion, amplitude, poisson), 1e-10)
+    residual, *_ = limit_on_a_line(contact, oscillation(motion, amplitude, poisson), 1e-10)
     return float(np.sum(contact.weight * residual[0]))
 
 
 def test_oscillating_tractions_are_those_of_mindlin_and_lubkin():
     radial = contact_for(Transverse(), 0.5, "radial", 64)
-    result = static_state(radial, oscillation(Transverse(), 0.5), 1e-11).oscillating
+    result = limit_on_a_line(radial, oscillation(Transverse(), 0.5), 1e-11).oscillating
     total = np.sum(radial.weight * result[1])
     assert result[0] == pytest.approx(0.0, abs=1e-14)
     assert total == pytest.approx(-hertz.mindlin_force(0.5), abs=3e-4)
 
     polar = contact_for(Bore(), 1.0, "polar", 32, 4)
-    forward, lateral = static_state(polar, oscillation(Bore(), 1.0), 1e-10).oscillating
+    forward, lateral = limit_on_a_line(polar, oscillation(Bore(), 1.0), 1e-10).oscillating
     torque = polar.lateral_position * forward - polar.forward_position * lateral
     assert np.sum(polar.weight * torque) == pytest.approx(-hertz.lubkin_torque(0.5), abs=3e-4)
 
@@ -52,7 +52,7 @@ def test_residual_is_the_furthest_point_of_the_lens():
             np.hypot(forward - q_forward, lateral - q_lateral),
         )
         expected = forward[allowed <= 1.0].max(initial=0.0)
-        residual = residual_part(oscillating, np.ones(1))
+        residual = lens_corner(oscillating, np.ones(1))
         if np.hypot(q_forward, q_lateral) < 1.0:
             assert residual[0, 0] == pytest.approx(expected, abs=6e-3)
         for sign in (1.0, -1.0):

@@ -10,7 +10,7 @@ from microslip.motions.problem import Problem
 from microslip.pressures.by_name import pressure_named
 from microslip.solver.discretise import Resolution
 from microslip.solver.simulate import simulate
-from microslip.solver.static_loop import largest_shift
+from microslip.solver.static_limit import largest_shift
 from microslip.theory import paper
 
 NARROW = "elliptic:forward=0.5,phase=30"
@@ -177,7 +177,7 @@ def test_poissons_ratio_and_squares_without_symmetry_are_in():
 
 
 def test_a_state_that_does_not_settle_is_no_number(monkeypatch):
-    monkeypatch.setattr("microslip.solver.static_loop.MARCHES", 1)
-    monkeypatch.setattr("microslip.solver.static_loop.MOST_ROUNDS", 1)
+    monkeypatch.setattr("microslip.solver.static_limit.MARCHES", 1)
+    monkeypatch.setattr("microslip.solver.static_limit.MOST_ROUNDS", 1)
     result = microslip.solve(NARROW, 0.0, 0.5)
     assert not result.converged and "no periodic state" in result.reason

@@ -15,7 +15,6 @@ from microslip.solver.budget import Budget, Spent
 from microslip.solver.discretise import Resolution
 from microslip.solver.run import Settings
 from microslip.solver.simulate import simulate
-from microslip.solver.static_run import edges_on_a_line, edges_on_a_loop
 from microslip.solver.stick_edge import (
     FINE_RESOLUTION,
     FINE_TOLERANCE,
@@ -23,6 +22,7 @@ from microslip.solver.stick_edge import (
     SWEPT_RESOLUTION,
     TOLERANCE,
     edge_focus,
+    stick_edges,
 )
 from microslip.theory import hertz, indenters
 
@@ -89,9 +89,9 @@ def test_a_contact_with_a_hole_sticks_on_a_ring_that_gets_narrower(motion, model
 def test_finer_rings_find_the_stick_radius_of_mindlin_from_what_coarse_ones_say(amplitude):
     motion = motion_named("transverse")
     limit, exact = Problem(motion, 0.0, amplitude, 0.0), np.sqrt(1.0 - amplitude)
-    near = edges_on_a_line(limit, "radial", LINE_RESOLUTION, TOLERANCE)
+    near = stick_edges(limit, "radial", LINE_RESOLUTION, TOLERANCE)[1]
     assert near == pytest.approx([exact], abs=5e-3)
-    result = edges_on_a_line(limit, "radial", FINE_RESOLUTION, FINE_TOLERANCE, near=near)
+    _, result = stick_edges(limit, "radial", FINE_RESOLUTION, FINE_TOLERANCE, radii=near)
     assert result == pytest.approx([exact], abs=5e-4)
 
 
@@ -102,8 +102,8 @@ def test_a_ring_that_slips_little_sticks_between_two_edges_next_to_its_own(inner
     limit = Problem(
         motion_named("transverse"), 0.0, amplitude, 0.0, pressure_named(f"ring:inner={inner}")
     )
-    near = edges_on_a_line(limit, "radial", LINE_RESOLUTION, TOLERANCE)
-    result = edges_on_a_line(limit, "radial", FINE_RESOLUTION, FINE_TOLERANCE, near=near)
+    near = stick_edges(limit, "radial", LINE_RESOLUTION, TOLERANCE)[1]
+    _, result = stick_edges(limit, "radial", FINE_RESOLUTION, FINE_TOLERANCE, radii=near)
     assert len(result) == 2  # narrow gaps between edges are scatter
     narrower = 1.0 - np.sqrt(1.0 - amplitude)  # width of the slip annulus of a sphere
     assert inner < result[0] < inner + narrower and 1.0 - narrower < result[1] < 1.0
@@ -214,7 +214,7 @@ def test_the_limit_on_a_loop_looks_for_the_edge_once(motion, amplitude):
     """A search at every resolution gives the same limit."""
     problem = Problem(motion_named(motion), 0.0, amplitude, 0.0)
     focus, resolution = edge_focus(problem, "radial"), Resolution(48, 1, 192)
-    by_itself, radii = edges_on_a_loop(problem, "radial", resolution, 1e-5, Settings())
+    by_itself, radii = stick_edges(problem, "radial", resolution, 1e-5)
     static = simulate(problem, "radial", resolution, 1e-5, settings=Settings(focus=focus))
     assert focus.radii == pytest.approx(radii, abs=5e-3)
     assert static.mu == pytest.approx(by_itself[-1].mu, abs=5e-4)

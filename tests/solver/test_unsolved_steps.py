@@ -10,10 +10,8 @@ from microslip.contact.ring_contact import RadialContact
 from microslip.foundation.errors import SolverError
 from microslip.motions.by_name import motion_named
 from microslip.motions.problem import Problem
-from microslip.solver import static_loop
 from microslip.solver.discretise import Resolution
 from microslip.solver.simulate import simulate
-from microslip.solver.snapshots import frames
 from microslip.theory import paper
 
 LOOSE = 5e-2
@@ -57,14 +55,7 @@ def test_solved_steps_have_the_limit_of_the_closed_form():
     assert abs(run.mu - paper.static_limit_transverse(0.5)) <= RINGS
 
 
-def test_the_static_limit_on_a_loop_does_not_converge(loose_steps, monkeypatch):
-    """The steps of the search are solved, those of the march that computes the tractions are
-    not."""
-
-    def without_guess(contact, path, state, tolerance, previous):
-        return frames(contact, path, state, tolerance)
-
-    monkeypatch.setattr(static_loop, "frames", without_guess)
+def test_the_static_limit_on_a_loop_does_not_converge(loose_steps):
     problem = Problem(motion_named("elliptic"), 0.0, 0.5, 0.0)
     run = simulate(problem, "radial", Resolution(12, 2, 16), 1e-4)
     assert not run.converged and run.residual > 1e-4
@@ -76,7 +67,7 @@ def test_a_history_fails(loose_steps):
 
 
 def test_a_traction_field_fails(loose_steps):
-    with pytest.raises(SolverError, match="no steady state: .* residual"):
+    with pytest.raises(SolverError, match="a step was left unsolved"):
         microslip.traction_field("continuous-bore", 0.3, cells=8)
 
 

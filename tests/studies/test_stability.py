@@ -15,7 +15,7 @@ from microslip.solver.discretise import Resolution, contact_of, path_of
 from microslip.solver.method_names import method_named
 from microslip.solver.methods.march import plain_march
 from microslip.solver.search import Goal, PeriodMap, find_periodic_state
-from microslip.solver.static_limit import static_state
+from microslip.solver.static_limit import limit_on_a_line
 
 MIDPOINT = method_named("midpoint").integrator
 
@@ -112,11 +112,11 @@ def periodic_force(velocity, share, search):
     focus = Problem(Transverse(), velocity, 0.5).focus
     contact = RadialContact.resolved(16, focus)
     path = path_of(motion, contact, 32)
-    room, oscillating, *_ = static_state(contact, motion.oscillation, 1e-12)
+    room, oscillating, *_ = limit_on_a_line(contact, motion.oscillation, 1e-12)
     goal = Goal(1e-6, 1e-9, most_marches=1000)
     state = search(PeriodMap(contact, path), oscillating + share * room, goal)
     assert state.converged
-    return path.mean(state.forces)[FORWARD]
+    return path.mean(state.march.forces)[FORWARD]
 
 
 def test_loss_of_uniqueness_without_forward_motion():

@@ -26,14 +26,11 @@ def shrink(forward: float, lateral: float, bound: float) -> float:
     return min(1.0, bound / max(size, 1e-300))
 
 
-@kernel(inline="always")
-def extended(start: float, stage: float, end: float) -> float:
-    """Value at the end of a step, extrapolated from the start of the step and from a stage at the
-    fraction `end` of the step."""
-    return stage if end == 1.0 else start + (stage - start) / end
+def project(q: np.ndarray, bound: np.ndarray) -> np.ndarray:
+    """Project tractions q (2, ...) onto |q| <= bound; bound broadcasts to the shape of q[0]."""
+    return q * np.minimum(1.0, bound / np.maximum(np.hypot(q[0], q[1]), 1e-300))
 
 
-@kernel
 def coulomb_residual(
     q: np.ndarray, slip: np.ndarray, bound: np.ndarray, weight: np.ndarray, scale: np.ndarray
 ) -> float:
@@ -42,24 +39,11 @@ def coulomb_residual(
 
     Parameters
     ----------
-    q, slip : np.ndarray, shape (2, n, m)
+    q, slip : np.ndarray, shape (2, ...)
         Forward and lateral components of tractions and slip.
-    bound, weight, scale : np.ndarray, shape (m,)
-        Friction bound, area of a point, and diagonal of the influence operator.  They do not vary
-        along axis 1 of q.
+    bound, weight, scale : np.ndarray
+        Friction bound, area of a point, and diagonal of the influence operator; they broadcast to
+        the shape of q[0].
     """
-    rows = np.zeros(q.shape[2])  # one sum for each ring, so that the compiler can vectorise
-    for j in range(q.shape[1]):
-        for i in range(q.shape[2]):
-            forward = q[0, j, i] + slip[0, j, i] / scale[i]
-            lateral = q[1, j, i] + slip[1, j, i] / scale[i]
-            f = shrink(forward, lateral, bound[i])
-            forward = forward * f - q[0, j, i]
-            lateral = lateral * f - q[1, j, i]
-            rows[i] += weight[i] * np.sqrt(forward * forward + lateral * lateral)
-    return rows.sum()
-
-
-def project(q: np.ndarray, bound: np.ndarray) -> np.ndarray:
-    """Project tractions q (2, ...) onto |q| <= bound; bound broadcasts to the shape of q[0]."""
-    return q * np.minimum(1.0, bound / np.maximum(np.hypot(q[0], q[1]), 1e-300))
+    change = project(q + slip / scale, bound) - q
+    return float(np.sum(weight * np.hypot(change[0], change[1])))

@@ -160,13 +160,14 @@ class Path:
         return np.concatenate([self.positions[:1], self.stages.reshape(-1, 3)])
 
     @cached_property
-    def share(self) -> np.ndarray:
-        """Duration of each step divided by the duration of the path, shape (steps,)."""
-        return np.diff(self.phase) / (self.phase[-1] - self.phase[0])
+    def weights(self) -> np.ndarray:
+        """Weights of the phases in a time average by the trapezoidal rule, shape (steps + 1,)."""
+        halves = 0.5 * np.diff(self.phase) / (self.phase[-1] - self.phase[0])
+        return np.append(halves, 0.0) + np.append(0.0, halves)
 
     def mean(self, values: np.ndarray) -> np.ndarray:
-        """Time average of values at the phases (first axis), by the trapezoidal rule."""
-        return 0.5 * (self.share @ values[1:] + self.share @ values[:-1])
+        """Time average of values at the phases (first axis)."""
+        return self.weights @ values
 
 
 def make_path(

@@ -10,24 +10,16 @@ have in common.  Of all cells related by these symmetries, only one is resolved 
 from __future__ import annotations
 
 import signal
+from dataclasses import replace
 
 import numpy as np
 
-from microslip.contact.contact import (
-    LATERAL,
-    MIRROR,
-    TORQUE,
-    Body,
-    Contact,
-    Guess,
-    March,
-    forces,
-    rigid_displacement,
-)
+from microslip.contact.contact import LATERAL, MIRROR, TORQUE, Body, Contact, Guess, March
 from microslip.contact.convolution import MIRROR as MIRRORED
 from microslip.contact.convolution import TURN, convolve, square_convolution, workspace
 from microslip.contact.descent import PATIENCE, descend
 from microslip.contact.path import Path
+from microslip.contact.step_march import Step, march_by_steps
 from microslip.pressures.hertz import HERTZ
 from microslip.pressures.pressure import Pressure
 
@@ -135,68 +127,13 @@ class CartesianContact(Contact):
         body: Body | None = None,
         start: np.ndarray | None = None,
     ) -> March:
-        """March along a path; see contact.Contact.
-
-        This is march.march for squares.  A stage takes milliseconds, so only the step solver is
-        compiled.
-        """
-        stages, total, end = len(path.carry), len(path.motion) - 1, path.end
-        guess = None if previous is None else previous.fields
-        if guess is None or guess.shape != (1 + total, *state.shape):
-            guess = None
-        solver, residual, iterations = StepSolver(self, tolerance), 0.0, 0
-        history, out = np.empty((1 + total, *state.shape)), np.empty((1 + path.steps, 3))
-        moves = np.zeros((1 + path.steps, 2))
-        forward = np.zeros_like(state)
-        forward[0] = 1.0
-        slips, advances, gains = [state] * stages, np.zeros(stages), np.zeros(stages)
-        at_end = history[0] = y = np.array(state, dtype=float)
-        out[0] = forces(self, state)
-        if body is not None:
-            drive, lengths = body.along(path, start)
-            moves[0] = drive[4:]
-            if not body.remembers:
-                moves[0, 0] = (body.load - out[0, 0]) / body.stiffness if body.stiffness else 0.0
-        z = self.displacement(y) - self._moved(path.motion[0]) - moves[0, 0] * forward
-        for at in range(1, 1 + total):
-            k, s = divmod(at - 1, stages)
-            b = z + self._moved(path.motion[at])
-            for j in range(s):
-                b -= path.carry[s, j] * slips[j]
-            if guess is not None:
-                y = guess[1] if at == 1 else y + guess[at] - guess[at - 1]
-            elif k > 1:
-                y = 2.0 * history[at - stages] - history[at - 2 * stages]
-            place = 0.0
-            if body is not None:
-                place, rate = moves[k] + path.carry[s, :s] @ np.stack([advances, gains], 1)[:s]
-                b += place * forward
-                length = lengths[k]
-                stiffness = body.stiffness + (body.damping + body.mass / length) / length
-                load = body.load - body.stiffness * place + body.mass * rate / length
-            if body is None:
-                step = solver.solve(b, y)
-            else:
-                step = solver.balance(b, y, stiffness, load)
-            y, slips[s], count, error, advances[s] = step
-            history[at] = y
-            iterations, residual = iterations + count, residual + error
-            if body is not None:
-                gains[s] = advances[s] / length - rate
-            if s == stages - 1:
-                b = b - slips[s] - self._moved(path.motion[at]) - place * forward
-                if body is not None:
-                    moves[k + 1] = place + advances[s], advances[s] / length
-                z = b if end == 1.0 else z + (b - z) / end
-                at_end = y if end == 1.0 else at_end + (y - at_end) / end
-                out[k + 1] = forces(self, at_end)
-        return March(at_end, out * self.resultants, residual, iterations, total, history, moves)
-
-    def _moved(self, place: np.ndarray) -> np.ndarray:
-        return rigid_displacement(self, place)
+        """March along a path; see contact.Contact."""
+        solver = DescentSolver(self, tolerance)
+        march = march_by_steps(self, solver, path, state, previous, body=body, start=start)
+        return replace(march, forces=march.forces * self.resultants)
 
 
-class StepSolver:
+class DescentSolver:
     """Solver of the Coulomb steps of a march on squares.
 
     Parameters
@@ -213,9 +150,7 @@ class StepSolver:
         rows, columns = contact.bound.shape
         self._scratch = workspace(contact.convolution), np.empty((4, rows, columns))
 
-    def solve(
-        self, b: np.ndarray, guess: np.ndarray, share: float = 1.0
-    ) -> tuple[np.ndarray, np.ndarray, int, float, float]:
+    def solve(self, b: np.ndarray, guess: np.ndarray, share: float = 1.0) -> Step:
         """Solve a step for the imposed displacement b.
 
         share: factor of the tolerance.  Returns tractions, slip, number of iterations, residual,
@@ -234,9 +169,7 @@ class StepSolver:
                 return q, slip, count, residual, 0.0
             signal.raise_signal(signal.SIGINT)
 
-    def balance(
-        self, b: np.ndarray, guess: np.ndarray, stiffness: float, load: float
-    ) -> tuple[np.ndarray, np.ndarray, int, float, float]:
+    def balance(self, b: np.ndarray, guess: np.ndarray, stiffness: float, load: float) -> Step:
         """Solve a step of a driven body, see march.py.  Returns the same values as `solve`.
 
         The secant method finds the displacement d at which the forces balance.  The forward force

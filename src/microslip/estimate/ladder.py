@@ -26,8 +26,7 @@ from microslip.foundation.arguments import SMALLEST_TOLERANCE
 from microslip.foundation.errors import InputError
 from microslip.motions.problem import Problem
 from microslip.solver.discretise import Resolution, path_of
-from microslip.solver.static_limit import at_turning_points
-from microslip.solver.static_loop import SLOW_LOOP
+from microslip.solver.static_limit import SLOW_LOOP, at_turning_points
 
 RATIO = 2
 """Ratio of the levels that are extrapolated.  The first level is multiplied by this ratio per

@@ -64,17 +64,9 @@ class Budget:
         if self._began is None and self.time_limit < math.inf:
             self._began = _seconds()
 
-    def take(self, solves: int, iterations: int, unknowns: int) -> None:
-        """Count a march; raises Spent if a limit is exceeded.
-
-        Parameters
-        ----------
-        solves, iterations : int
-            Number of step solves and of step-solver iterations in the march.
-        unknowns : int
-            Number of unknowns in each step.
-        """
-        self.taken += Effort.of(solves, iterations, unknowns)
+    def take(self, effort: Effort) -> None:
+        """Count the effort of marches; raises Spent if a limit is exceeded."""
+        self.taken += effort
         if self.taken.work > self.most_work:
             self.exhausted = "work"
             raise Spent(f"the work that the point may take, {self.most_work:.3g}, is spent")
@@ -102,5 +94,5 @@ class _Metered:
 
     def march(self, *path: Any, **settings: Any) -> March:
         march = self._contact.march(*path, **settings)
-        self._budget.take(march.solves, march.iterations, march.state.size)
+        self._budget.take(Effort.of(march.solves, march.iterations, march.state.size))
         return march

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True)
 class Effort:
-    """Computational effort of one or several runs; efforts can be added.
+    """Computational effort of one or several runs; efforts can be added and subtracted.
 
     Attributes
     ----------
@@ -35,10 +35,7 @@ class Effort:
         return Effort(solves, iterations, solves * unknowns, iterations * unknowns)
 
     def __add__(self, other: Effort) -> Effort:
-        return Effort(
-            self.solves + other.solves,
-            self.iterations + other.iterations,
-            self.work + other.work,
-            self.updates + other.updates,
-            self.retried + other.retried,
-        )
+        return Effort(*(vars(self)[name] + value for name, value in vars(other).items()))
+
+    def __sub__(self, other: Effort) -> Effort:
+        return Effort(*(vars(self)[name] - value for name, value in vars(other).items()))

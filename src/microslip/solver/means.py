@@ -40,8 +40,8 @@ def dissipated_energy(contact: Contact, path: Path, periodic: PeriodicState) -> 
     periodic : search.PeriodicState
         The periodic state.
     """
-    forces, moves = periodic.forces, np.diff(path.positions, axis=0)
-    if len(periodic.body):
-        moves[:, 0] += np.diff(periodic.body[:, 0])
-    work = 0.5 * np.vdot(forces[1:] + forces[:-1], moves)
+    march, moves = periodic.march, np.diff(path.positions, axis=0)
+    if len(march.body):
+        moves[:, 0] += np.diff(march.body[:, 0])
+    work = 0.5 * np.vdot(march.forces[1:] + march.forces[:-1], moves)
     return float(work) * 2.0 * np.pi / (path.phase[-1] - path.phase[0])

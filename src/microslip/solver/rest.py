@@ -74,143 +74,107 @@ def run_to_rest(
     contact = cast(RingContact, settings.contact(problem, model, resolution))
     assert problem.drive is not None and problem.drive.force is not None
     body = Body(0.0, 0.0, 0.0, problem.drive.force * problem.mean_load)
-    return _Walk(problem, contact, resolution.steps, body).to_rest(tolerance)
+    walk = _Walk(contact, body, STEP_SHARE * tolerance)
+    cycle = PeriodMap(
+        contact, path_of(problem, contact, resolution.steps), mirror=problem.half_period_mirror
+    )
+    interval = cycle.path.phase[-1] - cycle.path.phase[0]
+    pushed = walk.march(_still(problem), 0.0 * forward_slip(contact))
+    # from the mean position to the start of an interval of the map, where the state is mirrored
+    # once for each interval by which this start is postponed
+    end, images = cycle.path.phase[0], 0
+    while end <= 0.0:
+        end, images = end + interval, images + 1
+    steps = max(1, round(resolution.steps * end / (HALF_PERIOD[1] - HALF_PERIOD[0])))
+    phases = np.linspace(0.0, end, steps + 1)
+    ways = [
+        walk.march(make_path(problem.displacement, phases, depth=problem.depth), walk.last.state)
+    ]
+    state = walk.last.state
+    for _ in range(images):
+        state = cycle.image(state)
+    look, guess = FIRST_LOOK, None
+    for count in range(1, MOST_INTERVALS + 1):
+        ways.append(walk.march(cycle.path, state, guess))
+        guess, state = walk.last, cycle.image(walk.last.state)
+        if count == look:
+            remaining, drifts = _remaining(ways[1:], walk.residual / contact.stiffness)
+            if remaining <= tolerance or drifts:
+                break
+            look = round(look * LOOKS[look % 3 == 0])
+    residual, period = walk.residual / contact.stiffness, interval / (2.0 * np.pi)
+    reason = unsolved(walk.residual, walk.solves, walk.step_tolerance)
+    if remaining > tolerance:
+        reason = (
+            f"still moves after {count * period:g} periods, by {ways[-1]:.1e} in the last march"
+        )
+    travel = np.cumsum(ways)
+    added = travel[-1] + (0.5 * remaining if np.isfinite(remaining) else 0.0)
+    most = int(np.searchsorted(np.maximum.accumulate(travel), MOST_SHARE * added))
+    if added <= residual:  # within the residual of the steps
+        most = 0
+    return Run(
+        {
+            "displacement": float(pushed + added),
+            "pushed": float(pushed),
+            "most_after": float(most * period),
+        },
+        distance=0.5 * remaining,
+        residual=residual,
+        periods=float(count * period),
+        effort=Effort.of(walk.solves, walk.iterations, state.size),
+        reason=reason,
+        state=state,
+    )
 
 
 class _Walk:
-    """The march of a contact to its position at rest."""
+    """Marches of a contact under a force, with the sums of their residuals and iterations."""
 
-    def __init__(self, problem: Problem, contact: RingContact, steps: int, body: Body):
-        self.problem, self.contact, self.steps, self.body = problem, contact, steps, body
-        path = path_of(problem, contact, steps)
-        self.map = PeriodMap(contact, path, mirror=problem.half_period_mirror)
-        self.marches = 0
-        self.interval = path.phase[-1] - path.phase[0]
-        self.ways: list[float] = []
+    def __init__(self, contact: RingContact, body: Body, step_tolerance: float):
+        self.contact, self.body, self.step_tolerance = contact, body, step_tolerance
         self.residual, self.iterations, self.solves = 0.0, 0, 0
 
-    def to_rest(self, tolerance: float) -> Run:
-        """March to rest; `tolerance` refers to the remaining displacement."""
-        step_tolerance = STEP_SHARE * tolerance
-        state = 0.0 * forward_slip(self.contact)
-        still, pushed = self._march(self._still(), state, step_tolerance)
-        first, images = self._first_part()
-        march, first_way = self._march(first, still.state, step_tolerance)
-        state = march.state
-        for _ in range(images):
-            state = self.map.image(state)
-        look, previous = FIRST_LOOK, None
-        for turn in range(MOST_INTERVALS):
-            previous, way = self._march(self.map.path, state, step_tolerance, previous)
-            state = self.map.image(previous.state)
-            self.ways.append(way)
-            self.marches += 1
-            if turn + 1 == look:
-                remaining = self._remaining()
-                if remaining <= tolerance or self._drifts():
-                    break
-                look = round(look * LOOKS[look % 3 == 0])
-        reason = unsolved(self.residual, self.solves, step_tolerance)
-        if remaining > tolerance:
-            reason = f"still moves after {self._periods:g} periods, by {self.ways[-1]:.1e} in the "
-            reason += "last march"
-        return self._summary((pushed, first_way), remaining, reason, state)
-
-    @property
-    def _periods(self) -> float:
-        """Number of full periods marched so far."""
-        return float(self.marches * self.interval / (2.0 * np.pi))
-
-    def _still(self) -> Path:
-        """Path without oscillation.  One step suffices, since slip only grows with the force."""
-        of_phase, depth = self.problem.depth, None
-        if of_phase is not None:
-
-            def depth(phase: np.ndarray) -> np.ndarray:
-                return of_phase(0.0 * phase)
-
-        def displacement(phase: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-            return 0.0 * phase, 0.0 * phase, 0.0 * phase
-
-        return make_path(displacement, np.array([0.0, 1.0]), EULER, depth)
-
-    def _first_part(self) -> tuple[Path, int]:
-        """Path from the mean position to the start of an interval of the map.
-
-        Also returns the number of intervals by which this start was postponed.  The state is
-        mirrored once for each of these intervals.
-        """
-        end, images = self.map.path.phase[0], 0
-        while end <= 0.0:
-            end, images = end + self.interval, images + 1
-        steps = max(1, round(self.steps * end / (HALF_PERIOD[1] - HALF_PERIOD[0])))
-        phases = np.linspace(0.0, end, steps + 1)
-        return make_path(self.problem.displacement, phases, depth=self.problem.depth), images
-
-    def _march(
-        self,
-        path: Path,
-        state: np.ndarray,
-        step_tolerance: float,
-        previous: March | None = None,
-    ) -> tuple[March, float]:
-        """March along a path; returns the march and the displacement of the contact.
+    def march(self, path: Path, state: np.ndarray, guess: March | None = None) -> float:
+        """March along a path, and return the displacement of the contact.
 
         Raises StepFailure if the tractions diverge.
         """
-        march = self.contact.march(path, state, step_tolerance, previous, body=self.body)
+        march = self.contact.march(path, state, self.step_tolerance, guess, body=self.body)
         if not np.isfinite(march.state).all():
             raise StepFailure("diverged: tractions are not finite")
         self.residual += march.residual
         self.iterations += march.iterations
         self.solves += march.solves
-        return march, float(march.body[-1, 0] - march.body[0, 0])
+        self.last = march
+        return float(march.body[-1, 0] - march.body[0, 0])
 
-    def _drifts(self) -> bool:
-        """Whether the contact keeps moving at a nearly constant velocity."""
-        before, last = self._last_two()
-        return len(self.ways) >= LONG and last > DRIFTING * before
 
-    def _remaining(self) -> float:
-        """Upper bound on the remaining displacement, extrapolated as a geometric series.
+def _still(problem: Problem) -> Path:
+    """Path without oscillation.  One step suffices, since slip only grows with the force."""
+    of_phase = problem.depth
+    depth = None if of_phase is None else lambda phase: of_phase(0.0 * phase)
+    return make_path(lambda phase: (0.0 * phase,) * 3, np.array([0.0, 1.0]), EULER, depth)
 
-        The terms of the series are the displacements between doublings of the number of intervals.
-        The bound is infinite if the ratio of the last two terms is above SLOWEST_RATIO.
-        """
-        before, last = self._last_two()
-        # at rest within the residual of the steps
-        if last <= self.residual / self.contact.stiffness:
-            return last
-        ratio = last / before if before > 0.0 else np.inf
-        return last * ratio / (1.0 - ratio) if ratio < SLOWEST_RATIO else np.inf
 
-    def _last_two(self) -> tuple[float, float]:
-        """Displacements in the last two doublings of the number of intervals."""
-        count = len(self.ways)
-        before, last = sum(self.ways[count // 4 : count // 2]), sum(self.ways[count // 2 :])
-        return max(before, 0.0), max(last, 0.0)
+def _remaining(ways: list[float], rounding: float) -> tuple[float, bool]:
+    """Upper bound on the remaining displacement, and whether the contact keeps drifting.
 
-    def _summary(
-        self, parts: tuple[float, float], remaining: float, reason: str, state: np.ndarray
-    ) -> Run:
-        pushed, first_way = parts
-        travel = np.cumsum([first_way, *self.ways])
-        added = travel[-1] + (0.5 * remaining if np.isfinite(remaining) else 0.0)
-        most = int(np.searchsorted(np.maximum.accumulate(travel), MOST_SHARE * added))
-        if added <= self.residual / self.contact.stiffness:  # within the residual of the steps
-            most = 0
-        periods = self.interval / (2.0 * np.pi)
-        values = {
-            "displacement": float(pushed + added),
-            "pushed": float(pushed),
-            "most_after": float(most * periods),
-        }
-        return Run(
-            values,
-            distance=0.5 * remaining,
-            residual=self.residual / self.contact.stiffness,
-            periods=self._periods,
-            effort=Effort.of(self.solves, self.iterations, state.size),
-            reason=reason,
-            state=state,
-        )
+    The displacements between doublings of the number of intervals are extrapolated as a geometric
+    series.  The bound is infinite if the ratio of the last two is above SLOWEST_RATIO.
+
+    Parameters
+    ----------
+    ways : list of float
+        Displacement in each interval.
+    rounding : float
+        Displacement within the residual of the steps, at which the contact is at rest.
+    """
+    count = len(ways)
+    before = max(sum(ways[count // 4 : count // 2]), 0.0)
+    last = max(sum(ways[count // 2 :]), 0.0)
+    drifts = count >= LONG and last > DRIFTING * before
+    if last <= rounding:
+        return last, drifts
+    ratio = last / before if before > 0.0 else np.inf
+    return last * ratio / (1.0 - ratio) if ratio < SLOWEST_RATIO else np.inf, drifts

@@ -16,8 +16,8 @@ stiffness is the rise of the mean force with the displacement.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from typing import Any, NamedTuple, cast
+from dataclasses import dataclass, replace
+from typing import NamedTuple, cast
 
 import numpy as np
 
@@ -49,6 +49,7 @@ CAUTION = 0.3
 ratio, the search would overshoot."""
 AT_REST = np.zeros(2)
 """Position x and rate x' of a contact without a driven body."""
+NO_BODY = Body(0.0, 0.0, 0.0, 0.0)
 
 
 class Goal(NamedTuple):
@@ -77,40 +78,34 @@ class PeriodicState:
 
     Attributes
     ----------
-    forces : np.ndarray, shape (steps + 1, 3)
-        Forces at the phases of the last (half) period.
+    march : March
+        March over the last (half) period.
     start : np.ndarray
-        Tractions at the beginning of the last (half) period.
+        Tractions at the beginning of this (half) period.
     residual : float
         Upper bound on the change of the state by the plain map, as a force divided by mu F_z.
     distance : float
         Estimated distance from the fixed point, as a force divided by mu F_z.
-    solver_residual : float
-        Residual of the step solver summed over the stages of the last (half) period.
     marches : int
         Number of marches.
-    iterations, solves : int
-        Number of iterations of the step solver and number of stages, summed over all marches.
+    iterations : int
+        Number of iterations of the step solver, summed over all marches.
     converged : bool
         Whether the distance is within the tolerance.
-    body : np.ndarray, shape (steps + 1, 2)
-        x and x' of a driven body at the phases of the last (half) period.
-    fields : np.ndarray or None
-        contact.March.fields of the last (half) period, used as the initial guess for a march from
-        `start`.
     """
 
-    forces: np.ndarray
+    march: March
     start: np.ndarray
     residual: float
     distance: float
-    solver_residual: float
     marches: int
     iterations: int
-    solves: int
     converged: bool
-    body: np.ndarray
-    fields: np.ndarray | None = None
+
+    @property
+    def solves(self) -> int:
+        """Number of stages, summed over all marches."""
+        return self.marches * self.march.solves
 
 
 @dataclass(frozen=True)
@@ -143,7 +138,10 @@ class DriftRate:
         """Error of a mean force if the plain map still changes the state by the force `change`."""
         if self.gain == np.inf:
             return 0.0
-        return largest_excess(force, self.static_force, self.full) * change / self.gain
+        excess = abs(force - self.static_force)
+        if np.isnan(excess):  # the limit can be any force from 0 to full slip
+            excess = max(abs(force), abs(self.full - force))
+        return excess * change / self.gain
 
     @property
     def sticking(self) -> float:
@@ -151,15 +149,10 @@ class DriftRate:
         return self.static_force if np.isnan(self.least) else self.least
 
 
-def largest_excess(force: float, static_force: float, full: float) -> float:
-    """Largest possible difference between a mean force and the static limit, which can be NaN."""
-    if np.isnan(static_force):  # the limit can be any force from 0 to full slip
-        return max(abs(force), abs(full - force))
-    return abs(force - static_force)
-
-
 class PeriodMap:
     """The map of a contact's state over a path.
+
+    A state is an array of all tractions, followed by x and x' of a driven body (0 without a body).
 
     Parameters
     ----------
@@ -172,113 +165,99 @@ class PeriodMap:
         Data for slow motions, or None if the motion is not slow.
     mirror : bool
         Whether the other half of the period is the lateral mirror image of the path.
+    body : contact.Body or None
+        The driven body and its drive; None if the contact follows the path.
+    slope : float
+        Largest rise of the mean forward force if the body advances by one unit of x per interval.
     """
 
-    driven = False
-
     def __init__(
-        self, contact: Contact, path: Path, drift_rate: DriftRate | None = None, mirror: bool = True
+        self,
+        contact: Contact,
+        path: Path,
+        drift_rate: DriftRate | None = None,
+        mirror: bool = True,
+        body: Body | None = None,
+        slope: float = np.inf,
     ):
         self.contact, self.path, self.mirror = contact, path, mirror
-        self.drift_rate, shape = drift_rate or DriftRate(), contact.forward_position.shape
-        scale = np.sqrt(np.broadcast_to(contact.weight * contact.compliance, shape))
-        self.metric = np.append(np.tile(scale.ravel(), 2), np.zeros(2))
+        self.drift_rate, self.driven = drift_rate or DriftRate(), body is not None
+        self.shape, self.body = (2, *contact.forward_position.shape), body or NO_BODY
+        self.factors, self.weights, self.spread = np.ones(2), np.zeros(2), np.zeros(1)
+        if self.driven:
+            self._scale_body(slope)
+        scale = np.sqrt(np.broadcast_to(contact.weight * contact.compliance, self.shape))
+        self.metric = np.append(scale, np.sqrt(self.weights))
 
-    def image(self, state: np.ndarray) -> np.ndarray:
+    def _scale_body(self, slope: float) -> None:
+        contact, body = self.contact, self.body
+        bound = np.broadcast_to(contact.bound, self.shape[1:])
+        load = float(np.sum(contact.weight * bound))
+        # without contact at the start of a period there are no tractions to correct
+        self.spread = bound / load if load > 0.0 else 0.0 * bound
+        interval, stiffness = self.path.phase[-1] - self.path.phase[0], contact.stiffness
+        mass = min(body.mass, stiffness * interval**2)
+        slow = max(1.0, body.damping / (stiffness * interval))
+        if body.stiffness > 0.0:
+            self.factors[0] = max(1.0, min(CAUTION * stiffness, slope) / body.stiffness * slow)
+        if body.mass > 0.0:
+            self.factors[1] = max(1.0, body.mass / (mass * slow))
+        self.weights[:] = body.stiffness * min(1.0, body.stiffness / stiffness), mass
+
+    def march(self, state: np.ndarray, tolerance: float, previous: March | None) -> March:
+        """March along the path; `previous` is a march from a similar state."""
+        tractions = state[:-2].reshape(self.shape)
+        if not self.driven:
+            return self.contact.march(self.path, tractions, tolerance, previous)
+        contact = cast(RingContact, self.contact)  # or another contact that supports drives
+        body, start = self.body, state[-2:]
+        return contact.march(self.path, tractions, tolerance, previous, body=body, start=start)
+
+    def image(self, tractions: np.ndarray) -> np.ndarray:
         """Convert the tractions at the end of an interval to those at the start of the next
         interval.
 
         The map is linear.
         """
-        return self.contact.mirrored(state) if self.mirror else state
+        return self.contact.mirrored(tractions) if self.mirror else tractions
 
-    def drive(self, place: np.ndarray) -> dict[str, Any]:
-        """Arguments of Contact.march for a body at (x, x')."""
-        return {}
+    def step(self, state: np.ndarray, march: March) -> tuple[np.ndarray, np.ndarray]:
+        """State at the start of the next interval, and the change of the state.
 
-    def norm(self, change: np.ndarray, moved: np.ndarray) -> float:
-        """Upper bound on the force due to changes of the tractions and of (x, x')."""
-        return energy_norm(self.contact, change)
+        The changes of x and x' are scaled up.
+        """
+        tractions, moved = self.image(march.state), AT_REST
+        if self.body.remembers:
+            moved = self.factors * (march.body[-1] - march.body[0])
+        elif self.factors[0] > 1.0:
+            # from the motion of the body, more accurate than from the forces of the steps
+            advance = self.factors[0] * (march.body[-1, 0] - march.body[0, 0])
+            force = march.forces[0, 0] - self.body.stiffness * advance
+            tractions = tractions.copy()
+            tractions[0] += (force - march.forces[-1, 0]) * self.spread
+        image = np.append(tractions, state[-2:] + moved)
+        change = image - state
+        change[-2:] = moved  # without a rounding error
+        return image, change
 
-    def following(self, march: March) -> tuple[np.ndarray, np.ndarray]:
-        """Tractions at the start of the next interval, and the extrapolated change of (x, x')."""
-        return self.image(march.state), AT_REST
+    def norm(self, change: np.ndarray) -> float:
+        """Upper bound on the force due to a change of the state."""
+        tractions, body = change[:-2].reshape(self.shape), self.body
+        force, held = energy_norm(self.contact, tractions), 0.0
+        if body.remembers:
+            held = float(self.weights @ change[-2:] ** 2)
+        elif body.stiffness > 0.0:
+            advance = float(np.sum(self.contact.weight * tractions[0])) / body.stiffness
+            held = self.weights[0] * advance**2
+        return float(np.sqrt(force**2 + self.contact.stiffness * held)) if held else force
 
     def gained(self, march: March, change: np.ndarray, residual: float) -> float:
         """Change of the state by the plain map, as a force."""
-        return residual
-
-
-class DrivenMap(PeriodMap):
-    """Map of the state of a driven contact: tractions, and (x, x') of the body.
-
-    Parameters
-    ----------
-    body : contact.Body
-        The body and its drive.
-    slope : float
-        Largest rise of the mean forward force if the body advances by one unit of x per interval.
-    contact, path, drift_rate, mirror
-        See PeriodMap.
-    """
-
-    contact: RingContact
-    driven = True
-
-    def __init__(
-        self,
-        contact: RingContact,
-        path: Path,
-        body: Body,
-        drift_rate: DriftRate | None = None,
-        mirror: bool = True,
-        slope: float = np.inf,
-    ):
-        super().__init__(contact, path, drift_rate, mirror)
-        self.body = body
-        bound = np.broadcast_to(contact.bound, contact.forward_position.shape)
-        load = float(np.sum(contact.weight * bound))
-        # without contact at the start of a period there are no tractions to correct
-        self.spread = bound / load if load > 0.0 else 0.0 * bound
-        interval, stiffness = path.phase[-1] - path.phase[0], contact.stiffness
-        mass = min(body.mass, stiffness * interval**2)
-        slow = max(1.0, body.damping / (stiffness * interval))
-        place = rate = 1.0
-        if body.stiffness > 0.0:
-            place = max(1.0, min(CAUTION * stiffness, slope) / body.stiffness * slow)
-        if body.mass > 0.0:
-            rate = max(1.0, body.mass / (mass * slow))
-        self.factors = np.array([place, rate])
-        self.weights = np.array([body.stiffness * min(1.0, body.stiffness / stiffness), mass])
-        self.metric[-2:] = np.sqrt(self.weights)
-
-    def drive(self, place: np.ndarray) -> dict[str, Any]:
-        return {"body": self.body, "start": place}
-
-    def norm(self, change: np.ndarray, moved: np.ndarray) -> float:
-        force, body = energy_norm(self.contact, change), self.body
-        held = 0.0
-        if body.remembers:
-            held = float(self.weights @ moved**2)
-        elif body.stiffness > 0.0:
-            advance = float(np.sum(self.contact.weight * change[0])) / body.stiffness
-            held = self.weights[0] * advance**2
-        return float(np.sqrt(force**2 + self.contact.stiffness * held))
-
-    def following(self, march: March) -> tuple[np.ndarray, np.ndarray]:
-        image, change = self.image(march.state), march.body[-1] - march.body[0]
-        if self.body.remembers:
-            return image, self.factors * change
-        if self.factors[0] > 1.0:
-            # from the motion of the body, more accurate than from the forces of the steps
-            force = march.forces[0, 0] - self.factors[0] * self.body.stiffness * change[0]
-            image = image.copy()
-            image[0] += (force - march.forces[-1, 0]) * self.spread
-        return image, AT_REST
-
-    def gained(self, march: March, change: np.ndarray, residual: float) -> float:
+        if not self.driven:
+            return residual
         advance = abs(march.body[-1, 0] - march.body[0, 0])
-        return float(advance * self.contact.stiffness + energy_norm(self.contact, change))
+        tractions = change[:-2].reshape(self.shape)
+        return float(advance * self.contact.stiffness + energy_norm(self.contact, tractions))
 
 
 def find_periodic_state(
@@ -312,16 +291,15 @@ def find_periodic_state(
         return _direct_state(period_map, goal)
     loosest, tightest = LOOSEST_NEAR if goal.near else LOOSEST, goal.step_tolerance
     inner = max(tightest, min(loosest, NOISE * rate.gain / path.solves))
-    state = above = np.array(start, dtype=float, order="C")
-    pairs, count = np.empty((2, DEPTH + 1, state.size + 2)), 0
+    state = above = np.append(start, place)
+    pairs, count = np.empty((2, DEPTH + 1, state.size)), 0
     last, forgets, returns, iterations, sticking = np.inf, True, 0, 0, rate.sticking
-    previous = best = None
+    march, best = None, None
     for marches in range(1, goal.most_marches + 1):
-        march = previous = contact.march(path, state, inner, previous, **period_map.drive(place))
+        march = period_map.march(state, inner, march)
         iterations += march.iterations
-        image, moved = period_map.following(march)
-        change = image - state
-        residual = period_map.norm(change, moved)
+        image, change = period_map.step(state, march)
+        residual = period_map.norm(change)
         if not np.isfinite(residual):
             raise StepFailure("diverged: tractions are not finite")
         solved = inner <= tightest
@@ -332,65 +310,37 @@ def find_periodic_state(
         back = stuck and not period_map.driven and returns < MOST_RETURNS
         returns = returns + 1 if back else returns if stuck else 0
         above = above if stuck else state
-        proposal = np.append(image, place + moved)
         if back:  # halfway
-            count, proposal = 0, np.append(0.5 * (state + above), place)
+            count, following = 0, 0.5 * (state + above)
         else:
-            count = remember(pairs, count, proposal, np.append(change, moved))
+            count, following = remember(pairs, count, image, change), image
             if not forgets:
-                accelerated(pairs, count, period_map.metric, proposal := np.empty_like(proposal))
-        following, there = proposal[:-2].reshape(state.shape), proposal[-2:]
+                accelerated(pairs, count, period_map.metric, following := np.empty_like(image))
         if path.end == 1.0:
-            following = project(following, contact.bound)
-        distance = max(period_map.norm(following - state, there - place), residual)
+            tractions = project(following[:-2].reshape(period_map.shape), contact.bound)
+            following[:-2] = tractions.ravel()
+        distance = max(period_map.norm(following - state), residual)
         distance = max(distance, rate.error(mean, period_map.gained(march, change, residual)))
         near_enough = distance <= goal.tolerance
         converged = solved and near_enough
         if near_enough:  # solve the steps of the next march to the final tolerance
             inner = tightest
-        if converged or best is None or distance < best[0]:
-            best = distance, residual, state, march
+        if converged or best is None or distance < best.distance:
+            start = state[:-2].reshape(period_map.shape)
+            best = PeriodicState(march, start, residual, distance, marches, iterations, converged)
         if converged:
             break
-        state, place = following, there
+        state = following
     assert best is not None  # there is at least one march
-    distance, residual, state, march = best
-    counts = {"marches": marches, "iterations": iterations}
-    return result_of(march, state, distance, residual, converged=converged, **counts)
-
-
-def result_of(
-    march: March,
-    start: np.ndarray,
-    distance: float,
-    residual: float,
-    *,
-    marches: int,
-    iterations: int,
-    converged: bool,
-) -> PeriodicState:
-    """Build the PeriodicState of a march; the other arguments are its attributes."""
-    return PeriodicState(
-        forces=march.forces,
-        start=start,
-        residual=residual,
-        distance=float(distance),
-        solver_residual=march.residual,
-        marches=marches,
-        iterations=iterations,
-        solves=marches * march.solves,
-        converged=bool(converged),
-        body=march.body,
-        fields=march.fields,
-    )
+    return replace(best, marches=marches, iterations=iterations)
 
 
 def _direct_state(period_map: PeriodMap, goal: Goal) -> PeriodicState:
     """The PeriodicState of a contact with a direct solution, checked by one march."""
-    contact, path = cast(DirectContact, period_map.contact), period_map.path
-    start = contact.periodic_state(path, period_map.mirror)
-    march = contact.march(path, start, goal.step_tolerance)
-    distance = energy_norm(contact, period_map.image(march.state) - start)
-    counts = {"marches": 1, "iterations": march.iterations}
+    contact = cast(DirectContact, period_map.contact)
+    start = contact.periodic_state(period_map.path, period_map.mirror)
+    state = np.append(start, AT_REST)
+    march = period_map.march(state, goal.step_tolerance, None)
+    distance = period_map.norm(period_map.step(state, march)[1])
     converged = distance <= goal.tolerance
-    return result_of(march, start, distance, distance, converged=converged, **counts)
+    return PeriodicState(march, start, distance, distance, 1, march.iterations, converged)

@@ -10,13 +10,12 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import replace
-from typing import NamedTuple, cast
+from typing import NamedTuple
 
 import numpy as np
 
-from microslip.contact.contact import FORWARD, Body, StepFailure, forces, forward_slip
+from microslip.contact.contact import Body, StepFailure, forward_slip
 from microslip.contact.coulomb import project
-from microslip.contact.ring_contact import RingContact
 from microslip.motions.problem import Problem
 from microslip.solver.discretise import Resolution, path_of
 from microslip.solver.effort import Effort
@@ -27,16 +26,14 @@ from microslip.solver.search import (
     AT_REST,
     MOST_MARCHES,
     DriftRate,
-    DrivenMap,
     Goal,
     PeriodicState,
     PeriodMap,
     find_periodic_state,
 )
-from microslip.solver.static_limit import static_state
-from microslip.solver.static_loop import SLOW_LOOP, loop_limit
-from microslip.solver.static_run import static_run
+from microslip.solver.static_limit import SLOW_LOOP, limit_on_a_line, limit_on_a_loop
 from microslip.solver.steady import steady_state
+from microslip.solver.stick_edge import static_run
 from microslip.solver.tolerances import STEP_SHARE, periods_of, step_share
 
 SLOW_EXCESS, LARGEST_EXCESS = 4.0, 0.6
@@ -114,15 +111,7 @@ def simulate(
         if problem.velocity == 0.0 and drive is not None and drive.force is not None:
             return run_to_rest(problem, model, resolution, tolerance, settings)
         kind = _Prescribed if drive is None else _Driven
-        search = kind(problem, model, resolution, tolerance, settings)
-        find = method.search or find_periodic_state
-        for start in search.starts(guess):
-            most = MARCHES_FROM_COARSER if start.near else search.most_marches
-            goal = Goal(search.tolerance, search.step_tolerance, most, start.near)
-            search.searches.append(find(search.map(start), start.state, goal, start.place))
-            if search.searches[-1].converged:
-                break
-        return search.result()
+        return kind(problem, model, resolution, tolerance, settings).run(guess)
     except StepFailure as failure:
         return failed_run(str(failure))
 
@@ -155,6 +144,7 @@ class _Search:
     """
 
     most_marches = MOST_MARCHES
+    body: Body | None = None
 
     def __init__(
         self,
@@ -165,40 +155,49 @@ class _Search:
         settings: Settings,
     ):
         self.problem, self.model, self.resolution = problem, model, resolution
-        self.settings, self.method = settings, settings.method
+        self.settings, self.method, self.relative = settings, settings.method, tolerance
         self.contact = settings.contact(problem, model, resolution)
         self.path = path_of(problem, self.contact, resolution.steps, self.method.integrator)
         self.interval = self.path.phase[-1] - self.path.phase[0]
         self.rate = self.contact.stiffness * problem.drift
-        self.relative, self.unit = tolerance, self.force_of_result()
-        self.tolerance = tolerance * self.unit
-        share = step_share(self.rate, resolution.steps, settings.tighter)
-        self.step_tolerance = share * self.tolerance
+        self.unit = problem.mean_load
         self.static_force = self.least = np.nan
         self.searches: list[PeriodicState] = []
         self.earlier: list[Run] = []
 
-    def force_of_result(self) -> float:
-        """The attribute `unit`."""
-        return self.problem.mean_load
-
-    def drift_rate(self) -> DriftRate:
-        """Drift rate of a motion whose velocity is known."""
-        gain = self.rate * self.interval
-        return DriftRate(self.static_force, self.problem.mean_load, gain, self.least)
-
-    def map(self, start: Start) -> PeriodMap:
-        """The map for a search from a start."""
-        mirror = self.problem.half_period_mirror
-        return PeriodMap(self.contact, self.path, self.drift_rate(), mirror)
+    def run(self, guess: Run | None) -> Run:
+        """Search from one initial state after the other, and return the Run."""
+        find = self.method.search or find_periodic_state
+        tolerance = self.relative * self.unit
+        share = step_share(self.rate, self.resolution.steps, self.settings.tighter)
+        self.tolerance, self.step_tolerance = tolerance, share * tolerance
+        for start in self.starts(guess):
+            most = MARCHES_FROM_COARSER if start.near else self.most_marches
+            goal = Goal(tolerance, self.step_tolerance, most, start.near)
+            self.searches.append(find(self.map(start), start.state, goal, start.place))
+            if self.searches[-1].converged:
+                break
+        return self.result()
 
     def starts(self, guess: Run | None) -> Iterator[Start]:
         """Initial states, best first."""
         raise NotImplementedError
 
+    def map(self, start: Start) -> PeriodMap:
+        """The map for a search from a start."""
+        full, drift_rate, slope = self.problem.mean_load, None, np.inf
+        if self.body is None or self.body.stiffness > 0.0:  # the velocity is known
+            gain = self.rate * self.interval
+            drift_rate = DriftRate(self.static_force, full, gain, self.least)
+        if self.body is not None and self.body.stiffness > 0.0:
+            # 1 - mu decreases at most as fast as 1 / velocity^2, the rate at large velocities
+            slope = 2.0 * (1.0 - start.friction) * full / (self.problem.drift * self.interval)
+        mirror = self.problem.half_period_mirror
+        return PeriodMap(self.contact, self.path, drift_rate, mirror, self.body, slope)
+
     def values(self, periodic: PeriodicState) -> dict[str, float]:
         """Values of a Run."""
-        mean = mean_forces(self.contact, self.problem, self.path, periodic.forces)
+        mean = mean_forces(self.contact, self.problem, self.path, periodic.march.forces)
         return {
             "friction": float(mean[0]) / self.problem.mean_load,
             "torque": float(mean[2]) / self.problem.pressure.torque,
@@ -207,9 +206,9 @@ class _Search:
 
     def result(self) -> Run:
         """The Run of the last search, with the effort of all searches."""
-        periodic, count = self.searches[-1], sum(one.marches for one in self.searches)
-        periods = periods_of(count, self.problem)
-        reason = unsolved(periodic.solver_residual, self.path.solves, self.step_tolerance)
+        periodic, march = self.searches[-1], self.searches[-1].march
+        periods = periods_of(sum(one.marches for one in self.searches), self.problem)
+        reason = unsolved(march.residual, self.path.solves, self.step_tolerance)
         if not periodic.converged:
             reason = f"no periodic state within {periods:g} periods: {periodic.distance:.1e} left"
         solves = sum(one.solves for one in self.searches)
@@ -218,12 +217,12 @@ class _Search:
         return Run(
             self.values(periodic),
             distance=periodic.distance / self.unit,
-            residual=periodic.solver_residual / self.unit,
+            residual=march.residual / self.unit,
             periods=periods + sum(one.periods for one in self.earlier),
             effort=sum((one.effort for one in self.earlier), effort),
             reason=reason,
             state=periodic.start,
-            place=periodic.body[0] if len(periodic.body) else AT_REST,
+            place=march.body[0] if len(march.body) else AT_REST,
             static_force=self.static_force,
         )
 
@@ -238,22 +237,20 @@ class _Prescribed(_Search):
             self.static_force = 0.0
         problem, contact, start = self.problem, self.contact, None
         if guess is not None and guess.state is not None and guess.converged:
-            start = guess.state
-            if start.shape != (2, *contact.forward_position.shape):
-                start = contact.prolonged(start)
-        if guess is not None and start is not None:
-            self.static_force = guess.static_force
-            near = start is not guess.state
-            yield Start(project(start, contact.bound) if near else start, near=near)
+            near = guess.state.shape != (2, *contact.forward_position.shape)
+            start = contact.prolonged(guess.state) if near else guess.state
+            if start is not None:
+                self.static_force = guess.static_force
+                yield Start(project(start, contact.bound) if near else start, near=near)
         slipping = forward_slip(contact)
         if self.method.prepared:
             start, rise = slipping, problem.drift ** (2.0 / 3.0)
             if contact.sticks and problem.straight:
-                limit = static_state(contact, problem.oscillation, self.step_tolerance)
+                limit = limit_on_a_line(contact, problem.oscillation, self.step_tolerance)
                 if not unsolved(limit.solver_residual, limit.solves, self.step_tolerance):
-                    self.static_force = float(forces(contact, limit.residual)[FORWARD])
+                    self.static_force = limit.force
                 excess = min(SLOW_EXCESS * rise, LARGEST_EXCESS)
-                start = limit.residual + limit.oscillating + excess * slipping
+                start = limit.shift + limit.oscillating + excess * slipping
             elif contact.sticks and problem.drift < SLOW_LOOP:
                 # a factor of SLOW_EXCESS would prevent convergence at the smallest drifts
                 start = self._limit_of_a_loop(rise) + rise * slipping
@@ -269,66 +266,59 @@ class _Prescribed(_Search):
         rest = replace(self.problem, velocity=0.0)
         path = path_of(rest, self.contact, self.resolution.steps, self.method.integrator)
         tolerance = max(rise, self.tolerance)
-        limit = loop_limit(self.contact, rest, path, tolerance, STEP_SHARE * tolerance)
+        limit = limit_on_a_loop(self.contact, rest, path, tolerance, STEP_SHARE * tolerance)
+        assert limit.periodic is not None  # true for a loop
         self.searches.append(limit.periodic)
         self.least = limit.force
-        return limit.periodic.start + limit.shift
+        return limit.oscillating + limit.shift
 
 
 class _Driven(_Search):
-    """Search under a prescribed force or on a spring."""
+    """Search under a prescribed force or on a spring.
 
-    contact: RingContact
+    For a spring, the result is a force.  For a prescribed force, the result is a velocity, and
+    there are two estimates of its unit.  The first divides the force by the stiffness and by the
+    length of the interval.  The second divides the unbalanced force by the rise of friction with
+    the velocity.  The smaller force is used.
+    """
+
     most_marches = DRIVEN_MARCHES
+    body: Body
 
-    @property
-    def body(self) -> Body:
-        """The driven body."""
-        drive = self.problem.drive
+    def __init__(
+        self,
+        problem: Problem,
+        model: str,
+        resolution: Resolution,
+        tolerance: float,
+        settings: Settings,
+    ):
+        super().__init__(problem, model, resolution, tolerance, settings)
+        drive, load = problem.drive, problem.mean_load
         assert drive is not None  # true for all driven contacts
-        load = -drive.damping * self.problem.drift
-        if drive.force is not None:
-            load += drive.force * self.problem.mean_load
-        return Body(drive.stiffness, drive.damping, drive.mass, load)
-
-    def force_of_result(self) -> float:
-        """For a spring, the result is a force.  For a prescribed force, the result is a velocity,
-        and there are two estimates.  The first divides the force by the stiffness and by the length
-        of the interval.  The second divides the unbalanced force by the rise of friction with the
-        velocity.  The smaller force is used."""
-        problem = self.problem
-        if problem.drive is None or problem.drive.force is None:
-            return problem.mean_load
-        stuck = self.contact.stiffness * self.interval * problem.unit_drift
-        return min(stuck, self.settings.slope * problem.mean_load)
-
-    def map(self, start: Start) -> DrivenMap:
-        drift_rate, slope, full, problem = None, np.inf, self.problem.mean_load, self.problem
-        if self.body.stiffness > 0.0:
-            drift_rate = self.drift_rate()
-            # 1 - mu decreases at most as fast as 1 / velocity^2, the rate at large velocities
-            slope = 2.0 * (1.0 - start.friction) * full / (problem.drift * self.interval)
-        mirror = problem.half_period_mirror
-        contact = cast(RingContact, self.contact)  # or a contact that counts its marches
-        return DrivenMap(contact, self.path, self.body, drift_rate, mirror, slope)
+        self.force = None if drive.force is None else drive.force * load
+        constant = (self.force or 0.0) - drive.damping * problem.drift
+        self.body = Body(drive.stiffness, drive.damping, drive.mass, constant)
+        if self.force is not None:
+            stuck = self.contact.stiffness * self.interval * problem.unit_drift
+            self.unit = min(stuck, settings.slope * load)
 
     def starts(self, guess: Run | None) -> Iterator[Start]:
+        slipping = forward_slip(self.contact)
         for one in self._similar_runs(guess):
-            if one.converged and one.state is not None and one.state.shape == self._shape:
+            if one.converged and one.state is not None and one.state.shape == slipping.shape:
                 self.static_force = one.static_force
                 yield Start(one.state, one.place, friction=one.mu)
-        prescribed = self._at_prescribed_velocity()
+        there = replace(self.problem, drive=None)
+        share = max(self.tolerance, LOOSEST_START) / self.problem.mean_load
+        prescribed = simulate(there, self.model, self.resolution, share, settings=self.settings)
         self.earlier.append(prescribed)
-        self.static_force, slipping = prescribed.static_force, forward_slip(self.contact)
+        self.static_force = prescribed.static_force
         if prescribed.state is not None:
             mean = prescribed.mu * self.problem.mean_load
             yield self._start(prescribed.state, mean, prescribed.mu)
-        full = float(forces(self.contact, slipping)[FORWARD])
+        full = float(np.sum(self.contact.weight * slipping[0]))
         yield self._start(slipping, full, prescribed.mu)
-
-    @property
-    def _shape(self) -> tuple[int, ...]:
-        return (2, *self.contact.forward_position.shape)
 
     def _similar_runs(self, guess: Run | None) -> Iterator[Run]:
         """The guess, and a Run with COARSENING times fewer steps."""
@@ -336,31 +326,22 @@ class _Driven(_Search):
             yield guess
         if self.resolution.steps >= PREPARED_FROM:
             fewer = replace(self.resolution, steps=self.resolution.steps // COARSENING)
-            coarse = simulate(
-                self.problem, self.model, fewer, self.relative, settings=self.settings
-            )
-            self.earlier.append(coarse)
-            yield coarse
-
-    def _at_prescribed_velocity(self) -> Run:
-        """The Run without a drive, at the prescribed velocity of the problem."""
-        there = replace(self.problem, drive=None)
-        share = max(self.tolerance, LOOSEST_START) / self.problem.mean_load
-        return simulate(there, self.model, self.resolution, share, settings=self.settings)
+            place = self.problem, self.model, fewer, self.relative
+            self.earlier.append(simulate(*place, settings=self.settings))
+            yield self.earlier[-1]
 
     def _start(self, tractions: np.ndarray, mean: float, friction: float) -> Start:
         """Build a Start from tractions whose mean force over a period is about `mean`."""
-        drive = self.problem.drive
-        if drive is not None and drive.force is not None:
-            force = drive.force * self.problem.mean_load
-            if mean > 0.0 and 0.0 <= force < MOST_SCALED * mean:
-                tractions = tractions * (force / mean)
+        if self.force is not None:
+            if mean > 0.0 and 0.0 <= self.force < MOST_SCALED * mean:
+                tractions = tractions * (self.force / mean)
             tractions = project(tractions, self.contact.bound)
         body = self.body
         place = (body.load - mean) / body.stiffness if body.stiffness else 0.0
         return Start(tractions, np.array([place, 0.0]), friction=friction)
 
     def values(self, periodic: PeriodicState) -> dict[str, float]:
-        rate = float(periodic.body[-1, 0] - periodic.body[0, 0]) / self.interval
+        moved = periodic.march.body[:, 0]
+        rate = float(moved[-1] - moved[0]) / self.interval
         velocity = self.problem.velocity + rate / self.problem.unit_drift
         return super().values(periodic) | {"velocity": velocity}

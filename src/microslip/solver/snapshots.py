@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from typing import NamedTuple, cast
 
 import numpy as np
 
-from microslip.contact.contact import Contact, GrowingContact, Guess
+from microslip.contact.contact import Contact, GrowingContact, Guess, March
 from microslip.contact.coulomb import project
 from microslip.contact.path import Path
 
@@ -40,46 +39,25 @@ def frames(
     tolerance: float,
     previous: Guess | None = None,
 ) -> Frames:
-    """March along a path and return tractions and forces at every phase.
+    """March along a path from a state, and return tractions and forces at every phase.
 
-    Parameters
-    ----------
-    contact : contact.Contact
-        The contact.
-    path : path.Path
-        Path of the march.
-    state : np.ndarray
-        Tractions at the first phase.
-    tolerance : float
-        Tolerance of a step, as a force divided by mu F_z.
-    previous : contact.March or None
-        Initial guess, see contact.Contact.march.
-
-    Returns
-    -------
-    Frames
-        Tractions and forces, shape (steps + 1, ...).
+    The arguments are those of contact.Contact.march, for a contact whose marches have `fields`.
     """
     march = contact.march(path, state, tolerance, previous)
-    if march.fields is not None and path.end == 1.0:
-        stages = np.moveaxis(march.fields[:: path.stages.shape[1]], 1, 0)
-        at_phases = np.moveaxis(project(stages, bounds_at_phases(contact, path)), 1, 0)
-        return Frames(at_phases, march.forces, march.residual, march.solves)
-    tractions, residual, solves = [state], 0.0, 0
-    forces: list[np.ndarray] = []
-    for k in range(path.steps):
-        step = replace(
-            path,
-            phase=path.phase[k : k + 2],
-            positions=path.positions[k : k + 2],
-            stages=path.stages[k : k + 1],
-        )
-        march = contact.march(step, tractions[-1], tolerance)
-        tractions.append(march.state)
-        forces += list(march.forces[1 if forces else 0 :])
-        residual += march.residual
-        solves += march.solves
-    return Frames(np.array(tractions), np.array(forces), residual, solves)
+    tractions = tractions_at_phases(contact, path, march)
+    return Frames(tractions, march.forces, march.residual, march.solves)
+
+
+def tractions_at_phases(contact: Contact, path: Path, march: March) -> np.ndarray:
+    """Tractions of a march at every phase of its path, shape (steps + 1, 2, ...)."""
+    assert march.fields is not None  # true for contacts whose points can stick
+    stages = np.moveaxis(march.fields[:: path.stages.shape[1]], 1, 0)
+    tractions = np.moveaxis(project(stages, bounds_at_phases(contact, path)), 1, 0)
+    if path.end < 1.0:  # extrapolate from the stage of each step
+        tractions[0] = march.fields[0]
+        for before, at in zip(tractions, tractions[1:], strict=False):
+            at += (1.0 / path.end - 1.0) * (at - before)
+    return tractions
 
 
 def bounds_at_phases(contact: Contact, path: Path) -> np.ndarray:

@@ -1,26 +1,25 @@
-"""The steady state of a motion without oscillation, found by marching."""
+"""The steady state of a motion without oscillation, the fixed point of a march over any stretch."""
 
 from __future__ import annotations
 
 import numpy as np
 
-from microslip.contact.contact import FORWARD, TORQUE, Contact, energy_norm, forward_slip
+from microslip.contact.contact import FORWARD, TORQUE, Contact, forward_slip
 from microslip.contact.path import EULER, make_path
 from microslip.motions.problem import Problem
 from microslip.solver.effort import Effort
-from microslip.solver.run import Run
+from microslip.solver.run import Run, unsolved
+from microslip.solver.search import Goal, PeriodMap, find_periodic_state
 from microslip.solver.tolerances import STEP_SHARE
 
 STEADY_STRETCH = 8
-"""Number of steps in a stretch.  The state is checked after each stretch."""
+"""Number of steps in a stretch."""
 STEADY_TRAVEL = 0.5
 """Largest rigid displacement of a steady motion in one step, in u_lim."""
-MAX_STRETCHES = 200
-"""Largest number of stretches."""
 
 
 def steady_state(contact: Contact, problem: Problem, tolerance: float) -> Run:
-    """March a steady motion until its tractions no longer change.
+    """Find the steady state of a motion without oscillation.
 
     Parameters
     ----------
@@ -34,37 +33,24 @@ def steady_state(contact: Contact, problem: Problem, tolerance: float) -> Run:
     Returns
     -------
     Run
-        Forces and tractions at the end of the march, and the residual of the last stretch.  The run
-        is not converged if the tractions still change after MAX_STRETCHES stretches.
+        Forces and tractions of the steady state.
     """
-    step_tolerance = STEP_SHARE * tolerance
     step = STEADY_TRAVEL / max(1.0, problem.velocity)
-    state, iterations, solves = forward_slip(contact), 0, 0
-    previous = distance = np.inf
-    for stretch in range(MAX_STRETCHES):
-        phase = step * STEADY_STRETCH * stretch + step * np.arange(STEADY_STRETCH + 1)
-        march = contact.march(make_path(problem.displacement, phase, EULER), state, step_tolerance)
-        change = energy_norm(contact, march.state - state)
-        state = march.state
-        iterations += march.iterations
-        solves += march.solves
-        # the remaining changes are a geometric series
-        if np.isfinite(previous):
-            ratio = min(change / previous, 0.9) if previous > 0.0 else 0.0
-            distance = change / (1.0 - ratio)
-        previous = change
-        if distance <= tolerance:
-            break
-    solved = march.residual <= march.solves * step_tolerance
-    values = {
-        "friction": float(march.forces[-1, FORWARD]),
-        "torque": float(march.forces[-1, TORQUE]) / problem.pressure.torque,
-    }
+    path = make_path(problem.displacement, step * np.arange(STEADY_STRETCH + 1.0), EULER)
+    goal = Goal(tolerance, STEP_SHARE * tolerance)
+    steady = find_periodic_state(
+        PeriodMap(contact, path, mirror=False), forward_slip(contact), goal
+    )
+    march = steady.march
+    reason = unsolved(march.residual, march.solves, goal.step_tolerance)
     return Run(
-        values,
-        distance=float(distance),
+        {
+            "friction": float(march.forces[-1, FORWARD]),
+            "torque": float(march.forces[-1, TORQUE]) / problem.pressure.torque,
+        },
+        distance=steady.distance,
         residual=march.residual,
-        effort=Effort.of(solves, iterations, state.size),
-        reason="" if distance <= tolerance and solved else f"no steady state: {distance:.1e} left",
-        state=state,
+        effort=Effort.of(steady.solves, steady.iterations, steady.start.size),
+        reason=reason if steady.converged else f"no steady state: {steady.distance:.1e} left",
+        state=march.state,
     )

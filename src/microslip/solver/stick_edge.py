@@ -1,29 +1,32 @@
-"""Radius of the slip front in slow motions, computed by a coarse run of the static limit.
+"""Edges of the stick zone in slow motions, computed by coarse runs of the static limit.
 
-The run is needed for pressures without a closed form.  For rotating indenters, the radius is also
-the root of an integral (indenters.torsion_stick_radius); a test compares both results.
+No formula gives the edges for motions on a loop, or for pressures without a closed form.  For
+rotating indenters, the radius is also the root of an integral (indenters.torsion_stick_radius); a
+test compares both results.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable
+from contextlib import suppress
 from dataclasses import replace
-from functools import lru_cache, partial
+from functools import partial
 
-from microslip.contact.contact import StepFailure
+import numpy as np
+
+from microslip.contact.contact import Contact, StepFailure
 from microslip.contact.rings import Focus
 from microslip.motions.problem import Problem
 from microslip.pressures.hertz import HERTZ
 from microslip.solver.budget import Budget
-from microslip.solver.discretise import Resolution, focus_strength
-from microslip.solver.run import Settings
-from microslip.solver.static_limit import at_turning_points
-from microslip.solver.static_loop import SLOW_LOOP
-from microslip.solver.static_run import edges_on_a_line, edges_on_a_loop
+from microslip.solver.discretise import STRONGEST_FOCUS, Resolution, focus_strength
+from microslip.solver.effort import Effort
+from microslip.solver.run import AS_SHIPPED, Run, Settings
+from microslip.solver.static_limit import SLOW_LOOP, at_turning_points, limit_run
 
 SLOW_LINE = 0.01
 """The stick zone of the static limit determines the state of a motion on a line if the drift is
-below this value, in u_lim per radian of phase.  For loops, see static_loop.SLOW_LOOP."""
+below this value, in u_lim per radian of phase.  For loops, see static_limit.SLOW_LOOP."""
 LOOP_RESOLUTION, SWEPT_RESOLUTION = Resolution(24, 4, 32), Resolution(24, 4, 96)
 TOLERANCE = 1e-3
 """Resolutions and tolerance of the search for motions on a loop.  Under an oscillating load, the
@@ -35,6 +38,16 @@ accurate to 1e-4."""
 FINE_TOLERANCE = 1e-5
 """Tolerance at FINE_RESOLUTION.  With a larger tolerance, some sticking rings appear to slip, and
 the search does not converge."""
+MOST_PASSES = 4
+"""Largest number of runs in the search for the edges of the stick zone."""
+MOST_EDGES = 4
+"""Largest number of edges of the stick zone.  If there are more, they are treated as scatter."""
+SLIVER = 1e-3
+"""Two edges closer than this fraction of the contact radius are treated as scatter.  If there is
+little slip, the shift is almost 0 in the rings on either side of an edge."""
+_EDGES: dict[Problem, tuple[tuple[float, ...], Effort]] = {}
+MOST_STORED = 64
+"""Number of static limits whose edges are stored, with the effort of their search."""
 
 
 def edge_focus(
@@ -49,6 +62,9 @@ def edge_focus(
     amplitude, because slip on a circle never stops.  The stick zone of a contact with a hole is a
     ring with two edges.  Under an oscillating load, the edges are computed for the static limit
     only.
+
+    The effort of a search is charged to every point that uses its result.  So the work left for a
+    point does not depend on earlier points.
 
     Parameters
     ----------
@@ -83,71 +99,110 @@ def edge_focus(
     if not needed:
         return None
     # at nu = 0, since Poisson's ratio hardly changes the edges
-    limit = replace(problem, velocity=0.0, poisson=0.0, drive=None)
-    radii = _search_of(limit).within(budget or Budget(), progress)
+    limit, budget = replace(problem, velocity=0.0, poisson=0.0, drive=None), budget or Budget()
+    if limit in _EDGES:
+        radii, effort = _EDGES[limit]
+        budget.take(effort)
+    else:
+        before, radii = budget.taken, ()
+        with suppress(StepFailure):
+            radii = _edges_of(limit, Settings(budget=budget), progress)
+        if len(_EDGES) >= MOST_STORED:
+            _EDGES.pop(next(iter(_EDGES)))
+        _EDGES[limit] = radii, budget.taken - before
     return Focus(radii, focus_strength(drift)) if radii else None
 
 
-class _EdgeSearch:
-    """Search for the stick zone's edges in a static limit.  The search is done only once.
+def _edges_of(limit: Problem, settings: Settings, progress: Callable | None) -> tuple[float, ...]:
+    """Radii of the edges for a problem at velocity 0."""
+    motion, model = limit.motion, "polar" if limit.motion.rotates else "radial"
+    edges = partial(stick_edges, limit, model, settings=settings, progress=progress)
+    if not at_turning_points(limit):
+        resolution = SWEPT_RESOLUTION if motion.loads else LOOP_RESOLUTION
+        resolution = replace(resolution, steps=resolution.steps * motion.cycles)
+        return edges(resolution, TOLERANCE)[1]
+    if limit.focus is not None and not motion.rotates:
+        return ()  # the edge has a closed form for this motion and pressure
+    radii = edges(LINE_RESOLUTION, TOLERANCE)[1]
+    if radii and not motion.rotates:
+        radii = edges(FINE_RESOLUTION, FINE_TOLERANCE, radii=radii)[1]
+    return radii
 
-    `radii` are the edges' radii divided by the contact radius, or None before the search.  The
-    effort of the search is charged to every point that uses the result.  So the work left for a
-    point does not depend on earlier points.
+
+def static_run(
+    problem: Problem, model: str, resolution: Resolution, tolerance: float, settings: Settings
+) -> Run:
+    """Compute the static limit at one resolution; for arguments and result, see simulate.simulate.
+
+    The velocity of the problem is 0.
     """
-
-    def __init__(self, limit: Problem):
-        self.limit = limit
-        self.radii: tuple[float, ...] | None = None
-        self.marches: list[tuple[int, int, int]] = []
-
-    def within(self, budget: Budget, progress: Callable | None) -> tuple[float, ...]:
-        """Return the radii; raises Spent if the budget is exceeded."""
-        if self.radii is None:
-            metered = _Recorder(budget)
-            try:
-                self.radii = self._edges(Settings(budget=metered), progress)
-            except StepFailure:
-                self.radii = ()
-            self.marches = metered.marches
-        else:
-            for march in self.marches:
-                budget.take(*march)
-        return self.radii
-
-    def _edges(self, settings: Settings, progress: Callable | None) -> tuple[float, ...]:
-        limit, motion = self.limit, self.limit.motion
-        model = "polar" if motion.rotates else "radial"
-        if not at_turning_points(limit):
-            resolution = SWEPT_RESOLUTION if motion.loads else LOOP_RESOLUTION
-            resolution = replace(resolution, steps=resolution.steps * motion.cycles)
-            return edges_on_a_loop(limit, model, resolution, TOLERANCE, settings, progress)[1]
-        if limit.focus is not None and not motion.rotates:
-            return ()  # the edge has a closed form for this motion and pressure
-        search = partial(edges_on_a_line, limit, model, settings=settings, progress=progress)
-        radii = search(LINE_RESOLUTION, TOLERANCE)
-        if radii and not motion.rotates:
-            radii = search(FINE_RESOLUTION, FINE_TOLERANCE, near=radii)
-        return radii
+    if at_turning_points(problem) or settings.focus is not None:  # the edges are known
+        contact = settings.contact(problem, model, resolution)
+        return limit_run(contact, problem, resolution, tolerance, settings)[0]
+    runs, _ = stick_edges(problem, model, resolution, tolerance, settings=settings)
+    effort = sum((one.effort for one in runs), Effort())
+    return replace(runs[-1], periods=sum(one.periods for one in runs), effort=effort)
 
 
-class _Recorder(Budget):
-    """A budget that charges each march to another budget and records the effort."""
+def stick_edges(
+    problem: Problem,
+    model: str,
+    resolution: Resolution,
+    tolerance: float,
+    *,
+    settings: Settings = AS_SHIPPED,
+    progress: Callable[[Resolution], object] | None = None,
+    radii: tuple[float, ...] = (),
+) -> tuple[list[Run], tuple[float, ...]]:
+    """Find the radii of the stick zone's edges, on rings graded towards these edges.
 
-    def __init__(self, budget: Budget):
-        super().__init__()
-        self.budget = budget
-        self.marches: list[tuple[int, int, int]] = []
+    Repeats the run on new rings until the radii stay the same, or at most MOST_PASSES times.
 
-    def start(self) -> None:
-        self.budget.start()
+    Parameters
+    ----------
+    problem, model, resolution, tolerance, settings
+        See `static_run`.
+    progress : callable or None
+        Called before every run, with the run's Resolution.
+    radii : tuple of float
+        Approximate radii; empty if they are unknown.
 
-    def take(self, solves: int, iterations: int, unknowns: int) -> None:
-        self.budget.take(solves, iterations, unknowns)
-        self.marches.append((solves, iterations, unknowns))
+    Returns
+    -------
+    runs : list of Run
+        The runs; the last one is the result.
+    radii : tuple of float
+        The radii.  There are none if the whole contact sticks or slips, or if the contact has no
+        rings.
+    """
+    runs: list[Run] = []
+    for _ in range(MOST_PASSES):
+        if progress is not None:
+            progress(resolution)
+        before, focus = radii, Focus(radii, STRONGEST_FOCUS) if radii else None
+        contact = settings.contact(problem, model, resolution, focus)
+        run, sticks = limit_run(contact, problem, resolution, tolerance, settings)
+        runs.append(run)
+        radii = _stick_radii(contact, sticks)
+        if not radii or radii == before:
+            break
+    return runs, radii
 
 
-@lru_cache(maxsize=64)
-def _search_of(limit: Problem) -> _EdgeSearch:
-    """The _EdgeSearch of a static limit."""
-    return _EdgeSearch(limit)
+def _stick_radii(contact: Contact, sticks: np.ndarray | None) -> tuple[float, ...]:
+    """Radii between rings that stick and rings that slip; a ring sticks if most of its points do.
+
+    Pairs closer than SLIVER are removed.  Returns only the outermost radius if there are more than
+    MOST_EDGES radii, and no radius if `sticks` is None.
+    """
+    edges = contact.edges
+    if sticks is None or edges is None:
+        return ()
+    sticks = (sticks.mean(axis=0) if sticks.ndim > 1 else sticks) > 0.5
+    radii = [float(radius) for radius in edges[1:-1][np.diff(sticks)]]
+    while len(radii) > 1:
+        closest = int(np.argmin(np.diff(radii)))
+        if radii[closest + 1] - radii[closest] > SLIVER:
+            break
+        del radii[closest : closest + 2]
+    return tuple(radii if len(radii) <= MOST_EDGES else radii[-1:])

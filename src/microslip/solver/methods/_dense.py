@@ -1,11 +1,12 @@
 """A contact with a dense influence matrix and a replaceable step solver.
 
-The step solver is a compiled function
+The step solver is a function
 
-    solve(points: Points, stage: Stage, settings) -> (iterations, residual)
+    solve(points: Points, b, q, tolerance, settings) -> (q, slip, iterations, residual)
 
-where `settings` is the return value of `prepare(matrix, scale, **parameters)`.  The residual is
-defined by coulomb.coulomb_residual.
+for the imposed displacement b and a guess q of the tractions, arrays of shape (2, K).  `settings`
+is the return value of `prepare(points, **parameters)`.  The residual is that of
+coulomb.coulomb_residual.
 """
 
 from __future__ import annotations
@@ -15,35 +16,25 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from microslip.contact.contact import (
-    Contact,
-    Guess,
-    March,
-    StepFailure,
-    forces,
-    rigid_displacement,
-)
-from microslip.contact.coulomb import coulomb_residual, shrink
+from microslip.contact.contact import Contact, Guess, March, StepFailure
+from microslip.contact.coulomb import coulomb_residual
 from microslip.contact.path import Path
-from microslip.foundation.compiled import kernel
+from microslip.contact.step_march import Step, march_by_steps
 
 FAR_FROM_SOLVED = 1e-2
 """Residual of a step, divided by mu F_z, above which the solver is considered diverged."""
-MAX_DESCENTS = 3000
-"""Largest number of gradient steps in `descend`."""
+Solve = Callable[..., tuple[np.ndarray, np.ndarray, int, float]]
 
 
 class Points(NamedTuple):
-    """Data on the K points of a contact, for compiled code.
+    """The K points of a contact.
 
     Attributes
     ----------
     matrix : np.ndarray, shape (2 K, 2 K)
         Influence matrix A, forward components first.
-    scale : np.ndarray, shape (K,)
-        Diagonal of A for the forward components.
-    bound, weight : np.ndarray, shape (K,)
-        Friction bound and area of each point.
+    scale, bound, weight : np.ndarray, shape (K,)
+        Diagonal of A for the forward components, friction bound and area of each point.
     """
 
     matrix: np.ndarray
@@ -51,157 +42,64 @@ class Points(NamedTuple):
     bound: np.ndarray
     weight: np.ndarray
 
-
-class Stage(NamedTuple):
-    """Data on one stage, for compiled code.
-
-    Attributes
-    ----------
-    b : np.ndarray, shape (2, K)
-        Imposed displacement.
-    q : np.ndarray, shape (2, K)
-        Tractions.  The initial guess is overwritten with the solution.
-    slip : np.ndarray, shape (2, K)
-        Slip b - A q, written by the solver.
-    tolerance : float
-        Largest accepted residual, as a force divided by mu F_z.
-    """
-
-    b: np.ndarray
-    q: np.ndarray
-    slip: np.ndarray
-    tolerance: float
-
-
-def nothing(matrix: np.ndarray, scale: np.ndarray) -> float:
-    """Stand-in for `prepare` if the step solver has no settings."""
-    return 0.0
+    def judged(self, b: np.ndarray, q: np.ndarray) -> tuple[np.ndarray, float]:
+        """Slip b - A q, and the residual of the step."""
+        slip = b - (self.matrix @ q.ravel()).reshape(b.shape)
+        return slip, coulomb_residual(q, slip, self.bound, self.weight, self.scale)
 
 
 class DenseContact:
     """A contact (see contact.Contact) whose steps are solved by `solve`."""
 
     def __init__(
-        self, contact: Contact, solve: Callable, prepare: Callable = nothing, **parameters: float
+        self, contact: Contact, solve: Solve, prepare: Callable | None = None, **parameters: float
     ):
-        self.contact, self.solve = contact, solve
-        self.shape = (2, *contact.forward_position.shape)
-        flat = (
-            np.broadcast_to(values, self.shape[1:]).ravel().astype(float)
-            for values in (contact.compliance, contact.bound, contact.weight)
-        )
-        self.points = Points(_matrix(contact, self.shape), *flat)
-        try:
-            self.settings = prepare(self.points.matrix, self.points.scale, **parameters)
-        except np.linalg.LinAlgError as error:
-            raise StepFailure(f"the method does not apply: {error}") from error
+        self.contact, self._solve = contact, solve
+        shape = contact.forward_position.shape
+        units = np.eye(2 * int(np.prod(shape))).reshape(-1, 2, *shape)
+        matrix = np.stack([contact.displacement(unit).ravel() for unit in units], axis=1)
+        fields = (contact.compliance, contact.bound, contact.weight)
+        self.points = Points(matrix, *(np.broadcast_to(one, shape).ravel() for one in fields))
+        self.settings = None if prepare is None else prepare(self.points, **parameters)
+        self.tolerance, self.last = 0.0, np.zeros(2 * len(self.points.bound))
 
     def __getattr__(self, name: str) -> Any:
         return getattr(self.contact, name)
 
     def march(
-        self,
-        path: Path,
-        state: np.ndarray,
-        tolerance: float,
-        previous: Guess | None = None,
+        self, path: Path, state: np.ndarray, tolerance: float, previous: Guess | None = None
     ) -> March:
         """March along a path, see Contact; raises StepFailure if a step is not solved."""
-        q = state.reshape(2, -1).copy()
-        at_end, z = q.copy(), self._elastic(q) - self._rigid(path.positions[0])
-        all_forces = np.empty((path.steps + 1, 3))
-        all_forces[0] = forces(self.contact, at_end.reshape(self.shape))
-        slips = np.empty((path.stages.shape[1], *q.shape))
-        total, iterations = 0.0, 0
-        for k, stages in enumerate(path.stages):
-            for s, position in enumerate(stages):
-                rigid = self._rigid(position)
-                b = z + rigid - np.tensordot(path.carry[s, :s], slips[:s], 1)
-                count, residual = self._solved(b, q, slips[s], tolerance)
-                iterations, total = iterations + count, total + residual
-            now = b - slips[-1] - rigid
-            z = z + (now - z) / path.end
-            at_end = q.copy() if path.end == 1.0 else at_end + (q - at_end) / path.end
-            all_forces[k + 1] = forces(self.contact, at_end.reshape(self.shape))
-        solves = path.solves
-        return March(at_end.reshape(self.shape), all_forces, total, iterations, solves)
+        self.tolerance, self.last = tolerance, state
+        return march_by_steps(self.contact, self, path, state, previous)
 
-    def _solved(
-        self, b: np.ndarray, q: np.ndarray, slip: np.ndarray, tolerance: float
-    ) -> tuple[int, float]:
+    def solve(self, b: np.ndarray, guess: np.ndarray) -> Step:
+        """Solve a step, see step_march.StepSolver.  The initial guess is the solution of the last
+        step, since some methods fail from an extrapolated guess."""
         try:
-            count, residual = self.solve(self.points, Stage(b, q, slip, tolerance), self.settings)
+            q, slip, count, residual = self._solve(
+                self.points,
+                b.reshape(2, -1),
+                self.last.reshape(2, -1),
+                self.tolerance,
+                self.settings,
+            )
+            self.last = q
         except np.linalg.LinAlgError as error:
             raise StepFailure(f"diverged: {error}") from error
-        if not residual <= tolerance:  # also true for NaN
+        if not residual <= self.tolerance:  # also true for NaN
             far = not residual <= FAR_FROM_SOLVED
             raise StepFailure(
                 f"{'diverged: ' if far else ''}a step was left unsolved after {count} iterations: "
                 f"residual {residual:.1e}"
             )
-        return count, residual
+        return q.reshape(b.shape), slip.reshape(b.shape), count, residual, 0.0
 
-    def _elastic(self, q: np.ndarray) -> np.ndarray:
-        return self.contact.displacement(q.reshape(self.shape)).reshape(2, -1)
-
-    def _rigid(self, position: np.ndarray) -> np.ndarray:
-        return rigid_displacement(self.contact, position).reshape(2, -1)
+    def balance(self, b: np.ndarray, guess: np.ndarray, stiffness: float, load: float) -> Step:
+        """Driven bodies are not supported."""
+        raise NotImplementedError
 
 
-def dense(solve: Callable, prepare: Callable = nothing) -> Callable:
+def dense(solve: Solve, prepare: Callable | None = None) -> Callable:
     """Make a function for Method.dress: `dress(contact, **parameters)` returns a DenseContact."""
     return lambda contact, **parameters: DenseContact(contact, solve, prepare, **parameters)
-
-
-def safe_length(matrix: np.ndarray) -> float:
-    """Inverse of the largest eigenvalue; gradient steps of this length always lower the energy."""
-    return 1.0 / np.abs(np.linalg.eigvals(matrix)).max()
-
-
-def _matrix(contact: Contact, shape: tuple[int, ...]) -> np.ndarray:
-    """Influence matrix of a contact; `shape` is the shape of its states."""
-    size = int(np.prod(shape))
-    columns = np.empty((size, size))
-    unit = np.zeros(size)
-    for k in range(size):
-        unit[k] = 1.0
-        columns[k] = contact.displacement(unit.reshape(shape)).ravel()
-        unit[k] = 0.0
-    return np.ascontiguousarray(columns.T)
-
-
-@kernel
-def judge(points: Points, b: np.ndarray, q: np.ndarray, slip: np.ndarray) -> float:
-    """Compute slip = b - A q, arrays of shape (2, K), and return the residual of the step."""
-    product, n = points.matrix @ q.ravel(), q.shape[1]
-    for c in range(2):  # loops, since array assignments take seconds to compile
-        for i in range(n):
-            slip[c, i] = b[c, i] - product[c * n + i]
-    shape = (2, 1, q.shape[1])
-    rows = q.reshape(shape), slip.reshape(shape)
-    return coulomb_residual(rows[0], rows[1], points.bound, points.weight, points.scale)
-
-
-@kernel
-def project_in_place(q: np.ndarray, bound: np.ndarray) -> None:
-    """Project the tractions q, shape (2, K), onto the disc of radius `bound` at every point."""
-    for i in range(q.shape[1]):
-        f = shrink(q[0, i], q[1, i], bound[i])
-        q[0, i] *= f
-        q[1, i] *= f
-
-
-@kernel
-def descend(points: Points, stage: Stage, length: np.ndarray) -> tuple[int, float]:
-    """Solve a step by projected gradient steps; `length[k]` is the fixed step length at point k."""
-    b, q, slip, tolerance = stage
-    residual = judge(points, b, q, slip)
-    for iteration in range(MAX_DESCENTS):
-        if residual <= tolerance:
-            return iteration, residual
-        for c in range(2):
-            for i in range(q.shape[1]):
-                q[c, i] += length[i] * slip[c, i]
-        project_in_place(q, points.bound)
-        residual = judge(points, b, q, slip)
-    return MAX_DESCENTS, residual

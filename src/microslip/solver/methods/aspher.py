@@ -27,7 +27,7 @@ import math
 import numpy as np
 
 from microslip.contact.convolution import square_convolution
-from microslip.contact.coulomb import project
+from microslip.contact.coulomb import coulomb_residual
 from microslip.contact.path import EULER, Path
 from microslip.motions.problem import Problem
 from microslip.solver.discretise import Resolution, path_of
@@ -79,9 +79,9 @@ class Solver:
         self.solves += 1
         self.failed += not (step.converged and step.proj_residual <= ACCEPTED)
         q, slip = np.stack([step.qx, step.qy]), np.stack([step.slip_x, step.slip_y])
-        remaining = project(q + slip / self.scale, self.bound) - q
-        force, residual = q[0].sum(), np.hypot(*remaining).sum()
-        return float(force) * self.size**2, float(residual) * self.size**2
+        weight = np.full_like(self.bound, self.size**2)
+        residual = coulomb_residual(q, slip, self.bound, weight, np.array(self.scale))
+        return float(q[0].sum()) * self.size**2, residual
 
 
 def half_period(solver: Solver, path: Path, number: int) -> tuple[np.ndarray, float]:

@@ -8,64 +8,37 @@ from __future__ import annotations
 
 import numpy as np
 
-from microslip.foundation.compiled import kernel
+from microslip.contact.coulomb import project
 from microslip.solver.method import Method
-from microslip.solver.methods._dense import Points, Stage, dense, judge, project_in_place
+from microslip.solver.methods._dense import Points, dense
 
 MAX_ITERATIONS = 60
 
 
-@kernel
-def _copy(out: np.ndarray, values: np.ndarray) -> None:
-    """Copy `values` to `out`, both of shape (2, K).  Array assignments take seconds to compile."""
-    for c in range(2):
-        for i in range(out.shape[1]):
-            out[c, i] = values[c, i]
-
-
-@kernel
-def _solve(points: Points, stage: Stage, settings: float) -> tuple[int, float]:
-    b, q, slip, tolerance = stage
-    matrix, scale, bound = points.matrix, points.scale, points.bound
-    n = q.shape[1]
-    system, right = np.empty_like(matrix), np.empty(2 * n)
-    trial, trial_slip = q.copy(), np.empty_like(q)
-    residual = judge(points, b, trial, trial_slip)
-    for iteration in range(MAX_ITERATIONS):
-        if residual <= tolerance:
-            _copy(q, trial)
-            _copy(slip, trial_slip)
-            return iteration, residual
-        for i in range(n):
-            x = trial[0, i] + trial_slip[0, i] / scale[i]
-            y = trial[1, i] + trial_slip[1, i] / scale[i]
-            size = np.sqrt(x * x + y * y)
-            if size <= bound[i]:  # sticks: no slip
-                for c in range(2):
-                    for j in range(2 * n):
-                        system[c * n + i, j] = matrix[c * n + i, j]
-                    right[c * n + i] = b[c, i]
-                continue
-            # slips: dq = D (dq + dslip / scale), D the derivative of the projection
-            x, y, f = x / size, y / size, bound[i] / size
-            d = ((f * y * y, -f * x * y), (-f * x * y, f * x * x))
-            ends = (bound[i] * x, bound[i] * y)
-            for c in range(2):
-                row = c * n + i
-                for j in range(2 * n):
-                    system[row, j] = d[c][0] * matrix[i, j] + d[c][1] * matrix[n + i, j]
-                    system[row, j] /= scale[i]
-                system[row, i] -= d[c][0]
-                system[row, n + i] -= d[c][1]
-                system[row, row] += 1.0
-                right[row] = ends[c] - d[c][0] * trial[0, i] - d[c][1] * trial[1, i]
-                right[row] += (d[c][0] * (b[0, i] - trial_slip[0, i])) / scale[i]
-                right[row] += (d[c][1] * (b[1, i] - trial_slip[1, i])) / scale[i]
-        trial = np.linalg.solve(system, right).reshape((2, n))
-        residual = judge(points, b, trial, trial_slip)
-    project_in_place(trial, bound)
-    _copy(q, trial)
-    return MAX_ITERATIONS, judge(points, b, q, slip)
+def _solve(
+    points: Points, b: np.ndarray, q: np.ndarray, tolerance: float, settings: None
+) -> tuple[np.ndarray, np.ndarray, int, float]:
+    matrix, count = points.matrix, 0
+    slip, residual = points.judged(b, q)
+    while residual > tolerance and count < MAX_ITERATIONS:
+        target = q + slip / points.scale
+        size = np.maximum(np.hypot(*target), 1e-300)
+        # slipping points: dq = D (dq + dslip / scale), D the derivative of the projection
+        across = np.stack([-target[1], target[0]]) / size
+        derivative = points.bound / size * across[:, None] * across
+        blocks = np.einsum("cdk,kl->cdkl", derivative, np.eye(len(size)))
+        factor = np.moveaxis(blocks, 1, 2).reshape(matrix.shape)
+        system = np.eye(len(matrix)) - factor + (factor / np.tile(points.scale, 2)) @ matrix
+        known = np.einsum("cdk,dk->ck", derivative, (b - slip) / points.scale - q)
+        right = project(target, points.bound) + known
+        sticks = np.tile(size <= points.bound, 2)
+        system[sticks], right = matrix[sticks], np.where(size <= points.bound, b, right)
+        q, count = np.linalg.solve(system, right.ravel()).reshape(b.shape), count + 1
+        slip, residual = points.judged(b, q)
+    if not residual <= tolerance:
+        q = project(q, points.bound)
+        slip, residual = points.judged(b, q)
+    return q, slip, count, residual
 
 
 METHOD = Method("semismooth Newton, full steps", dress=dense(_solve))

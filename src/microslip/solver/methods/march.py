@@ -6,7 +6,7 @@ import numpy as np
 
 from microslip.contact.contact import StepFailure
 from microslip.solver.method import Method
-from microslip.solver.search import AT_REST, Goal, PeriodicState, PeriodMap, result_of
+from microslip.solver.search import AT_REST, Goal, PeriodicState, PeriodMap
 
 SLOWEST = 1.0 - 1e-6
 """Largest ratio of two successive changes used in an extrapolation.  Rounding can make it 1."""
@@ -20,25 +20,24 @@ def plain_march(
     The remaining changes are extrapolated as a geometric series, using the ratio of the last two
     changes.
     """
-    contact, path = period_map.contact, period_map.path
-    state, previous, last, distance, iterations = start, None, np.nan, np.inf, 0
+    state, march, last, distance, iterations = np.append(start, place), None, np.nan, np.inf, 0
     for marches in range(1, goal.most_marches + 1):
-        march = previous = contact.march(path, state, goal.step_tolerance, previous)
+        march = period_map.march(state, goal.step_tolerance, march)
         iterations += march.iterations
-        image, moved = period_map.following(march)
-        residual = period_map.norm(image - state, moved)
+        image, change = period_map.step(state, march)
+        residual = period_map.norm(change)
         if not np.isfinite(residual):
             raise StepFailure("diverged: tractions are not finite")
         if marches > 1:
             ratio = min(residual / last, SLOWEST) if last > 0.0 else 0.0
-            mean = float(path.mean(march.forces[:, 0]))
+            mean = float(period_map.path.mean(march.forces[:, 0]))
             distance = max(residual / (1.0 - ratio), period_map.drift_rate.error(mean, residual))
-        converged = distance <= goal.tolerance
-        if converged or marches == goal.most_marches:
+        if distance <= goal.tolerance or marches == goal.most_marches:
             break
         state, last = image, residual
-    counts = {"marches": marches, "iterations": iterations}
-    return result_of(march, state, distance, residual, converged=converged, **counts)
+    assert march is not None  # there is at least one march
+    start, converged = state[:-2].reshape(period_map.shape), distance <= goal.tolerance
+    return PeriodicState(march, start, residual, distance, marches, iterations, converged)
 
 
 METHOD = Method("plain march to the periodic state", search=plain_march, prepared=False)

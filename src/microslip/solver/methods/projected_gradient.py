@@ -8,17 +8,31 @@ from __future__ import annotations
 
 import numpy as np
 
+from microslip.contact.coulomb import project
 from microslip.solver.method import Method
-from microslip.solver.methods._dense import dense, descend, safe_length
+from microslip.solver.methods._dense import Points, dense
+
+MAX_ITERATIONS = 3000
 
 
-def _lengths(matrix: np.ndarray, scale: np.ndarray, step: float) -> np.ndarray:
-    """Step length of every point; `step` is in units of the inverse of the largest eigenvalue."""
-    return np.full_like(scale, step * safe_length(matrix))
+def _length(points: Points, step: float) -> float:
+    """Length of a gradient step; `step` is in units of the inverse of the largest eigenvalue."""
+    return step / float(np.abs(np.linalg.eigvals(points.matrix)).max())
+
+
+def _solve(
+    points: Points, b: np.ndarray, q: np.ndarray, tolerance: float, length: float
+) -> tuple[np.ndarray, np.ndarray, int, float]:
+    q, count = project(q, points.bound), 0
+    slip, residual = points.judged(b, q)
+    while residual > tolerance and count < MAX_ITERATIONS:
+        q, count = project(q + length * slip, points.bound), count + 1
+        slip, residual = points.judged(b, q)
+    return q, slip, count, residual
 
 
 METHOD = Method(
     "projected gradient, fixed step",
-    dress=dense(descend, _lengths),
+    dress=dense(_solve, _length),
     parameters={"step": 1.0},
 )
