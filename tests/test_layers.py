@@ -13,7 +13,7 @@ RULE = (
 )
 ROOMS = RULE.split(" < ")
 PHYSICS = ROOMS[1 : ROOMS.index("si")]
-FROM_FILES = {"from_file", "grid_csv", "grid_netcdf", "grid_units"}
+FROM_FILES = {"grid_file"}
 """Modules of the pressure from a file, the only physics with paths."""
 LISTS_FILES = Path("solver", "method_names.py")
 """Module that lists the files of methods without importing them."""
@@ -79,8 +79,9 @@ def test_physics_knows_no_files_workflow_or_plots():
 def test_nothing_else_in_the_physics_knows_where_files_are():
     named = ("foundation", "named_files")
     users = {path for path in MODULES if any(name[:2] == named for name in imported(path)[0])}
-    readers = {Path(room, "from_file.py") for room in ("pressures", "motions")}
-    assert {p for p in users if p.parts[0] in PHYSICS} == readers
+    readers = {"motions/by_name.py", "motions/from_file.py"}
+    readers |= {"pressures/by_name.py", "pressures/grid_file.py"}
+    assert {path.as_posix() for path in users if path.parts[0] in PHYSICS} == readers
 
 
 def test_type_checkers_find_the_type_hints():

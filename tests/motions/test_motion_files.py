@@ -106,7 +106,7 @@ def test_bad_files_are_refused_in_one_line(tmp_path, capsys, content, problem):
     ("name", "problem"),
     [
         ("file:", "allowed is a file, as in file:"),
-        ("file", "allowed after it is a colon and a name: file:NAME"),
+        ("file", "file:NAME"),
         ("file:none.csv", "none.csv cannot be read: No such file"),
         ("file:sha256=0123456789abcdef", "no file with this content is known here"),
     ],

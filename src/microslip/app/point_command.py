@@ -17,7 +17,8 @@ if TYPE_CHECKING:
 FILE = (
     "  The path of a CSV file follows the name after a colon, as in file:stroke.csv.  The file has "
     "one or more of the columns forward, lateral, angle, and load or indentation.  Its rows are "
-    "equally spaced in time and cover one period, without the end point."
+    "equally spaced in time and cover one period, without the end point.  The path of a Python "
+    "file with a class of your own stands alone, as in mine/soft_square.py:share=0.5."
 )
 """Help text about motion files."""
 F_Z = "; F_z is the load without oscillation (the reference load)"
@@ -75,7 +76,8 @@ def fill(parser: argparse.ArgumentParser, text: str = "") -> None:
 
     text: the motion on the command line, as in elliptic:forward=0.5.
     """
-    from microslip.motions.by_name import BROKEN, MOTIONS
+    from microslip.foundation.named_files import speaks_of_module
+    from microslip.motions.by_name import MOTIONS
     from microslip.motions.samples import Sampled
 
     parser.description = (
@@ -83,9 +85,7 @@ def fill(parser: argparse.ArgumentParser, text: str = "") -> None:
         "mu_macro is a ratio: 1 if the vibration has no effect, 0 if no friction remains.  The "
         f"apparent coefficient of friction is mu_apparent = mu mu_macro.  {SPIN}"
     )
-    requested = text.partition(":")[0]
-    if reason := BROKEN.get(requested.replace("-", "_")):
-        parser.error(f"MOTION = {text!r}: {reason}")
+    requested = "file" if speaks_of_module(text) else text.partition(":")[0]
     motions = parser.add_subparsers(dest="motion", required=True, metavar="MOTION")
     records: dict[str, type[Motion]] = {**MOTIONS, "file": Sampled}
     for name, record in records.items():

@@ -15,6 +15,7 @@ from pydantic_core import ErrorDetails
 from microslip.config.settings import DRIVES, Configuration, Refusal, Sweep, short_json
 from microslip.foundation import named_files
 from microslip.foundation.errors import InputError
+from microslip.foundation.files import content_of
 from microslip.foundation.spec import near_miss
 
 MOST_BYTES = 1_000_000
@@ -109,7 +110,7 @@ def read_yaml(path: str | os.PathLike) -> dict:
     twice.  The message is one line with the file and the line number.
     """
     try:
-        content = named_files.content_of(path, MOST_BYTES)
+        content = content_of(path, MOST_BYTES)
         text = content.decode("utf-8-sig")
         mapping = yaml.load(text, Loader)
     except OSError as error:
@@ -285,7 +286,7 @@ def _file_in(name: Any, role: str, folders: Iterable) -> named_files.NamedFile |
 
     Raises InputError if the file is missing.
     """
-    if not named_files.speaks_of_file(name):
+    if not (named_files.speaks_of_file(name) or named_files.speaks_of_module(name)):
         return None
     file = named_files.parse(name, role)
     if file.digest and file.path:  # an earlier call found the file

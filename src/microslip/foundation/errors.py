@@ -4,6 +4,8 @@ folder."""
 from __future__ import annotations
 
 import errno
+import os
+from traceback import extract_tb
 
 NO_WRITING = (errno.ENOSPC, errno.EDQUOT, errno.EROFS)
 """Operating system errors whose message already makes the remedy clear."""
@@ -62,3 +64,14 @@ def shown(value: object) -> str:
         text = f"<{type(value).__name__} that cannot be written: {type(error).__name__}>"
     half = LONGEST // 2
     return text if len(text) <= LONGEST else f"{text[:half]}...{text[-half:]}"
+
+
+def described(error: BaseException, path: str | os.PathLike) -> str:
+    """One line with the type of an error, the line number in the file at `path`, and the
+    message."""
+    frames = (f for f in extract_tb(error.__traceback__) if f.filename == str(path))
+    lines, message = [frame.lineno for frame in frames], str(error)
+    if isinstance(error, SyntaxError) and error.filename == str(path):
+        lines, message = [error.lineno], error.msg
+    where = f" in line {lines[-1]}" if lines else ""
+    return " ".join(f"{type(error).__name__}{where}: {message}".split())

@@ -1,9 +1,14 @@
-"""File names such as "file:pad.csv,grid=samples", and functions that read these files.
+"""Texts that name motions and pressures, and files with data or classes.
 
-A result depends on the content of a file and not on its path.  So the digest of the content
-replaces the path in the name of a pressure or a motion:
-"file:sha256=0123456789abcdef,grid=samples".  A process stores the path for each digest.  `remember`
-stores paths from another process.
+    bore, elliptic:phase=90          a class of the package, with the numbers of its fields
+    mine/soft_square.py:share=0.5    the class in a Python file
+    file:pad.csv,grid=samples        a data file, with options
+
+A result depends on the content of a file and not on its folder.  So the name of a motion or a
+pressure contains a digest: "soft_square.py:sha256=0123456789abcdef,share=0.5" or
+"file:sha256=0123456789abcdef,grid=samples".  The digest of a Python file covers the files that it
+imports from its folder.  A process stores the path for each digest.  `remember` stores paths from
+another process.
 
 The module imports nothing slow, because each start of the workflow imports the module.
 """
@@ -11,20 +16,28 @@ The module imports nothing slow, because each start of the workflow imports the 
 from __future__ import annotations
 
 import hashlib
+import importlib
 import os
 import re
-from collections.abc import Callable, Iterable
-from dataclasses import dataclass, replace
+import sys
+from collections.abc import Callable, Iterable, Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass, fields, replace
+from functools import lru_cache
 from pathlib import Path
-from typing import Generic, TypeGuard, TypeVar
+from types import ModuleType
+from typing import Any, Generic, TypeGuard, TypeVar, cast
 
+from microslip.foundation import spec
 from microslip.foundation.csv_table import check_format
-from microslip.foundation.errors import InputError
+from microslip.foundation.errors import InputError, described
 from microslip.foundation.files import MOST_BYTES, content_of
+from microslip.foundation.source_digest import Sources
 
 T = TypeVar("T")
 
 PREFIX = "file:"
+PYTHON = re.compile(r"(?:file:)?(.*\.py)(?::(.*))?", re.S)
 GRID = "cells"
 """Default meaning of the values of a grid, see pressures.grid.READINGS."""
 DIGITS = 16
@@ -36,12 +49,8 @@ EXAMPLE = "a file, as in file:measured.csv or file:measured.csv,decimal=comma"
 HINT = (
     "grid=cells or grid=samples, and pitch=0.5 mm, for pressures; decimal=comma or encoding=cp1252"
 )
-PACKED = {
-    b"\x1f\x8b": "gzip",
-    b"PK\x03\x04": "zip, as spreadsheets are",
-    b"BZh": "bzip2",
-    b"\xfd7zXZ": "xz",
-}
+PACKED = {b"\x1f\x8b": "gzip", b"PK\x03\x04": "zip, as spreadsheets are", b"BZh": "bzip2"}
+PACKED[b"\xfd7zXZ"] = "xz"
 """First bytes of a compressed file -> its format."""
 LARGEST_CACHE = 8
 """Number of objects that a FileReader keeps."""
@@ -58,101 +67,69 @@ class NamedFile:
     ----------
     path : str
         Path in the name.  It is empty if the name contains only the digest.
-    grid : str
-        Meaning of the values of the grid, see pressures.grid.READINGS.
     digest : str
         First DIGITS hexadecimal digits of the SHA-256 of the content.  It is empty if unknown.
+    numbers : str
+        Numbers for the class in a Python file, such as "share=0.5".
+    grid, pitch : str
+        Meaning of the values of a grid, and distance between the cells of a matrix; see
+        pressures.grid_file.
     decimal, encoding : str
-        Decimal mark (a key of DECIMALS) and encoding of the file.
-    pitch : str
-        Distance between the cells of a matrix of pressures, see pressures.grid_units.read_pitch.
-        It is empty for a file with coordinates.
+        Decimal mark (a key of DECIMALS) and encoding of a data file.
     """
 
     path: str
-    grid: str = GRID
     digest: str = ""
+    numbers: str = ""
+    grid: str = GRID
+    pitch: str = ""
     decimal: str = "point"
     encoding: str = "utf-8"
-    pitch: str = ""
 
     @property
     def name(self) -> str:
-        """The name in results.  It contains no path, so that files with equal content have equal
-        names."""
-        return self._text(f"sha256={self.digest}")
+        """The name in results.  It does not contain the folder, so that files with equal content
+        have equal names."""
+        return self._text("", os.path.basename(self.path))
 
     @property
     def placed(self) -> str:
         """The name with the path and the digest, for another process that reads the file."""
-        return self._text(f"{self.path},sha256={self.digest}")
+        return self._text(f"{self.path},", self.path)
 
-    def _text(self, file: str) -> str:
-        usual = NamedFile("")
-        options = {name: getattr(self, name) for name in ("grid", "pitch", "decimal", "encoding")}
-        unusual = [f",{k}={v}" for k, v in options.items() if v != getattr(usual, k)]
-        return f"{PREFIX}{file}" + "".join(unusual)
-
-
-class FileReader(Generic[T]):
-    """Reads objects from files by name.  The most recent objects are stored, so that files with
-    equal content share one object.
-
-    Parameters
-    ----------
-    argument : str
-        Name of the argument, for messages.
-    create : callable
-        create(file, content) -> object.  Raises ValueError for content in another format.
-    """
-
-    def __init__(self, argument: str, create: Callable[[NamedFile, bytes], T]):
-        self.argument, self.create = argument, create
-        self._cache: dict[str, T] = {}
-
-    def __call__(self, name: str) -> T:
-        """Return the object for a name such as "file:measured.csv".
-
-        Raises
-        ------
-        InputError
-            If the file does not exist, has another format, or does not match the digest in the
-            name.
-        """
-        file, content = read(name, self.argument)
-        if file.name not in self._cache:
-            try:
-                self._cache[file.name] = self._created(file, content)
-            except ValueError as error:
-                problem = str(error).replace("decimal = ','", "decimal=comma after the path")
-                raise InputError(self.argument, name, f"{file.path}: {problem}") from None
-            if len(self._cache) > LARGEST_CACHE:
-                del self._cache[next(iter(self._cache))]
-        return self._cache[file.name]
-
-    def _created(self, file: NamedFile, content: bytes) -> T:
-        for begins, kind in PACKED.items():
-            if content.startswith(begins):
-                raise ValueError(f"packed ({kind}); allowed: CSV or netCDF as it is")
-        check_format(DECIMALS[file.decimal], file.encoding)
-        return self.create(file, content)
+    def _text(self, data: str, module: str) -> str:
+        sha256 = f"sha256={self.digest}"
+        if self.path.endswith(".py"):
+            return f"{module}:{sha256}{self.numbers and f',{self.numbers}'}"
+        options = {one.name: one.default for one in fields(self)[3:]}
+        unusual = (f",{k}={getattr(self, k)}" for k, v in options.items() if getattr(self, k) != v)
+        return f"{PREFIX}{data}{sha256}{''.join(unusual)}"
 
 
 def speaks_of_file(name: object) -> TypeGuard[str]:
-    """True if the name of a pressure or a motion is the name of a file."""
-    return isinstance(name, str) and name.startswith(PREFIX)
+    """True if the name of a pressure or a motion is the name of a data file."""
+    return isinstance(name, str) and name.startswith(PREFIX) and not speaks_of_module(name)
+
+
+def speaks_of_module(name: object) -> TypeGuard[str]:
+    """True if the name of a pressure or a motion is the name of a Python file."""
+    return isinstance(name, str) and PYTHON.fullmatch(name) is not None
 
 
 def parse(name: str, argument: str = "file") -> NamedFile:
     """Parse the name of a file.  Raises InputError about the argument if the name has another
     form."""
+    if match := PYTHON.fullmatch(name):
+        words = (match[2] or "").split(",")
+        digest = next((w.removeprefix("sha256=") for w in words if w.startswith("sha256=")), "")
+        numbers = ",".join(word for word in words if not word.startswith("sha256="))
+        return NamedFile(match[1], digest, numbers)
     path, options = name.removeprefix(PREFIX), {}
     while match := OPTIONS.search(path):
         if match[1] in options:
             raise InputError(argument, name, f"{match[1]} occurs twice; allowed: once")
         options[match[1]], path = match[2], path[: match.start()]
-    digest = options.pop("sha256", "")
-    file = NamedFile(path, digest=digest, **options)
+    file = NamedFile(path, options.pop("sha256", ""), **options)
     if file.decimal not in DECIMALS:
         raise InputError(argument, name, "allowed for decimal is point or comma")
     if not (file.path or file.digest) or "\0" in path:
@@ -184,8 +161,17 @@ def read(
     """
     file = parse(name, argument)
     place = _place(name, argument, file, folders)
-    content = _content(name, argument, place)
-    digest = hashlib.sha256(content).hexdigest()[:DIGITS]
+    try:
+        if not place.is_file():  # a pipe might never end
+            raise ValueError("a folder" if place.is_dir() else "not a regular file")
+        content = content_of(place, MOST_BYTES)
+    except (OSError, ValueError) as error:
+        reason = getattr(error, "strerror", None) or error
+        raise InputError(argument, name, f"{place} cannot be read: {reason}") from None
+    digest = (
+        _digest_of_module(place) if place.suffix == ".py" else hashlib.sha256(content).hexdigest()
+    )
+    digest = digest[:DIGITS]
     if file.digest not in ("", digest):
         raise InputError(argument, name, f"{place} has changed: its sha256 begins with {digest}")
     PLACES[digest] = place
@@ -195,28 +181,25 @@ def read(
 def remember(names: Iterable[str]) -> None:
     """Store the file paths from names that contain a path and a digest.  Other names are
     ignored."""
-    for file in map(parse, filter(speaks_of_file, names)):
-        if file.digest and file.path:
+    for file in (parse(name) for name in names if speaks_of_file(name) or speaks_of_module(name)):
+        if file.digest and os.path.isabs(file.path):
             PLACES[file.digest] = Path(file.path)
 
 
 def base_name(name: str) -> str:
     """Base name of a file, for messages; "" if this process has not stored the path."""
-    if not speaks_of_file(name):
+    if not (speaks_of_file(name) or speaks_of_module(name)):
         return ""
     file = parse(name)
     return Path(file.path or PLACES.get(file.digest, "")).name
 
 
 def _place(name: str, argument: str, file: NamedFile, folders: Iterable[str | os.PathLike]) -> Path:
+    if file.digest in PLACES and not os.path.isabs(file.path):
+        return PLACES[file.digest]
     if not file.path:
-        if file.digest in PLACES:
-            return PLACES[file.digest]
-        raise InputError(
-            argument,
-            name,
-            "no file with this content is known here; allowed is its path, as in file:measured.csv",
-        )
+        problem = "no file with this content is known here; allowed is its path"
+        raise InputError(argument, name, f"{problem}, as in file:measured.csv")
     here = Path.cwd()
     # an absolute path is the same in every folder
     places = list(dict.fromkeys(Path(here, folder, file.path) for folder in (*folders, here)))
@@ -224,7 +207,7 @@ def _place(name: str, argument: str, file: NamedFile, folders: Iterable[str | os
         try:
             if os.path.lexists(place):
                 return place
-        except OSError:  # a name that the system does not accept
+        except (OSError, ValueError):  # a name that the system does not accept
             pass
     looked = ", ".join(str(place) for place in places)
     hint = f"; allowed after the path: {HINT}" if "," in file.path else ""
@@ -233,13 +216,188 @@ def _place(name: str, argument: str, file: NamedFile, folders: Iterable[str | os
     )
 
 
-def _content(name: str, argument: str, place: Path) -> bytes:
+# Data files
+
+
+class FileReader(Generic[T]):
+    """Reads objects from data files by name.  The most recent objects are stored, so that files
+    with equal content share one object.
+
+    Parameters
+    ----------
+    argument : str
+        Name of the argument, for messages.
+    create : callable
+        create(file, content) -> object.  Raises ValueError for content in another format.
+    """
+
+    def __init__(self, argument: str, create: Callable[[NamedFile, bytes], T]):
+        self.argument, self.create = argument, create
+        self._cache: dict[str, T] = {}
+
+    def __call__(self, name: str) -> T:
+        """Return the object for a name such as "file:measured.csv".
+
+        Raises
+        ------
+        InputError
+            If the file does not exist, has another format, or does not match the digest in the
+            name.
+        """
+        file, content = read(name, self.argument)
+        if file.name not in self._cache:
+            try:
+                packed = next(
+                    (kind for first, kind in PACKED.items() if content.startswith(first)), ""
+                )
+                if packed:
+                    raise ValueError(f"packed ({packed}); allowed: CSV or netCDF as it is")
+                check_format(DECIMALS[file.decimal], file.encoding)
+                self._cache[file.name] = self.create(file, content)
+            except ValueError as error:
+                problem = str(error).replace("decimal = ','", "decimal=comma after the path")
+                raise InputError(self.argument, name, f"{file.path}: {problem}") from None
+            if len(self._cache) > LARGEST_CACHE:
+                del self._cache[next(iter(self._cache))]
+        return self._cache[file.name]
+
+
+# Python files
+
+
+def _sources_of(path: Path) -> tuple[Sources, set[str]]:
+    """The files of a folder, and the names of a file and of the files there that it imports."""
+    sources = Sources(path.parent, "")
+    return sources, sources.closure([path.name])
+
+
+def _digest_of_module(path: Path) -> str:
+    sources, names = _sources_of(path)
+    return sources.digest(names)
+
+
+@contextmanager
+def _importing_from(path: Path) -> Iterator[None]:
+    """Context manager in which the files beside a file can be imported.
+
+    Afterwards, sys.modules is as before: files in two folders can have the same name, and an
+    edited file is run again.
+    """
+    beside = {name.partition("/")[0].removesuffix(".py") for name in _sources_of(path)[1]}
+
+    def pop() -> dict[str, ModuleType]:
+        names = [name for name in sys.modules if name.partition(".")[0] in beside]
+        return {name: sys.modules.pop(name) for name in names}
+
+    others, writes = pop(), sys.dont_write_bytecode
+    sys.path.insert(0, str(path.parent))
+    sys.dont_write_bytecode = True
+    importlib.invalidate_caches()
     try:
-        if place.is_file():
-            return content_of(place, MOST_BYTES)
-        reason = "a folder" if place.is_dir() else "not a regular file"  # a pipe might never end
-    except OSError as error:
-        reason = str(error.strerror)
-    except ValueError as error:
-        reason = str(error)
-    raise InputError(argument, name, f"{place} cannot be read: {reason}") from None
+        yield
+    finally:
+        sys.path.remove(str(path.parent))
+        sys.dont_write_bytecode = writes
+        pop()
+        sys.modules.update(others)
+
+
+@lru_cache(maxsize=32)
+def _class_in(file: NamedFile, base: type) -> type:
+    """The subclass of `base` in a Python file.  Raises ValueError if there is none, or if there are
+    several."""
+    path = Path(file.path)
+    name = f"microslip_{file.digest}_{path.stem}"
+    module = sys.modules[name] = ModuleType(name)
+    module.__file__ = str(path)
+    try:
+        with _importing_from(path):
+            exec(compile(path.read_bytes(), path, "exec"), module.__dict__)
+    except (Exception, SystemExit) as error:  # a user's code may raise anything
+        raise ValueError(f"cannot be imported: {described(error, path)}") from error
+    own = [one for one in vars(module).values() if isinstance(one, type)]
+    own = [one for one in own if issubclass(one, base) and one.__module__ == name]
+    last = [one for one in own if not any(one in other.__mro__[1:] for other in own)]
+    if len(last) != 1:
+        names = f": {', '.join(one.__name__ for one in last)}" if last else ""
+        problem = f"it has {len(last)} subclasses of microslip.{base.__name__}{names}"
+        raise ValueError(f"{problem}; allowed is one in a file")
+    setattr(last[0], spec.TEXT_NAME, file.name)
+    return last[0]
+
+
+# Both, and the classes of the package
+
+
+class Family(Generic[T]):
+    """Motions or pressures by their texts.
+
+    Parameters
+    ----------
+    argument : str
+        Name of the argument in messages.
+    base : type
+        Base class.
+    classes : iterable of types
+        Classes of the package, in the order in which they are listed to users.
+    create : callable
+        create(file, content) -> object, for data files; see FileReader.
+
+    Attributes
+    ----------
+    classes : dict of str to type
+        Classes of the package by name.
+    """
+
+    def __init__(
+        self,
+        argument: str,
+        base: type[T],
+        classes: Iterable[type[T]],
+        create: Callable[[NamedFile, bytes], T],
+    ):
+        self.argument, self.base = argument, base
+        self.classes = {spec.name_of(one): one for one in classes}
+        self._read_data = FileReader(argument, create)
+
+    def __call__(self, text: str) -> T:
+        """Return the object for a text such as "power:exponent=1" or "file:measured.csv".
+
+        Raises
+        ------
+        InputError
+            If the name is unknown, if its file cannot be used, or if the class lacks a parameter or
+            refuses its value.
+        """
+        if speaks_of_file(text):
+            return self._read_data(text)
+        names = [*self.classes, "file:NAME", "NAME.py"]
+        if not isinstance(text, str) or text == "file":
+            raise InputError(self.argument, text, f"allowed is one of {', '.join(names)}")
+        path: str | Path = ""
+        if speaks_of_module(text):
+            file, _ = read(text, self.argument)
+            path, words = file.path, file.numbers
+            try:
+                cls: Any = _class_in(replace(file, numbers=""), cast(type, self.base))
+            except ValueError as error:
+                raise InputError(self.argument, text, f"{path}: {error}") from None
+            example = f"{Path(path).name}:key=0.5"
+            numbers = spec.numbers_in(words, text, self.argument, example) if words else {}
+        else:
+            name, numbers = spec.split(text, self.argument, names)
+            cls = self.classes[name]
+        spec.refuse_unknown(text, self.argument, numbers, [field.name for field in fields(cls)])
+        try:
+            return _shared_object(cls, *sorted(numbers.items()))
+        except InputError as error:  # its text omits default values
+            raise InputError(self.argument, text, error.allowed) from None
+        except Exception as error:  # in a user's file
+            raise InputError(self.argument, text, f"{path}: {described(error, path)}") from error
+
+
+@lru_cache(maxsize=128)
+def _shared_object(cls: Callable[..., T], *numbers: tuple[str, float]) -> T:
+    """Return the object for these numbers.  Equal numbers share one object, including its cached
+    properties."""
+    return cls(**dict(numbers))

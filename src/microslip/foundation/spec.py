@@ -16,6 +16,8 @@ NUMBER = re.compile(
     r"[+-]?(([0-9]+\.?[0-9]*|\.[0-9]+)(e[+-]?[0-9]+)?|inf|infinity|nan)", re.ASCII | re.IGNORECASE
 )
 WHOLE = re.compile(r"[+-]?[0-9]{1,18}", re.ASCII)
+TEXT_NAME = "text_name"
+"""Attribute with the name of a class in a user's file."""
 MINUS = "\N{MINUS SIGN}"
 
 
@@ -171,7 +173,8 @@ def refuse_counts(text: str, what: str, counts: Mapping[str, float], most: int) 
 
 def name_of(cls: type) -> str:
     """Name of a class in texts, such as "continuous-bore" for ContinuousBore."""
-    return re.sub(r"(?<=[a-z0-9])(?=[A-Z])", "-", cls.__name__).lower()
+    name = re.sub(r"(?<=[a-z0-9])(?=[A-Z])", "-", cls.__name__).lower()
+    return vars(cls).get(TEXT_NAME, name)
 
 
 def text_of(record: Any) -> str:
@@ -180,7 +183,6 @@ def text_of(record: Any) -> str:
 
     The numbers have 12 digits.
     """
-    numbers = {field.name: getattr(record, field.name) for field in fields(record)}
-    usual = {field.name: field.default for field in fields(record)}
-    words = ",".join(f"{k}={v:.12g}" for k, v in numbers.items() if v != usual[k])
-    return f"{name_of(type(record))}:{words}" if words else name_of(type(record))
+    name, usual = name_of(type(record)), {field.name: field.default for field in fields(record)}
+    words = (f"{k}={getattr(record, k):.12g}" for k, v in usual.items() if getattr(record, k) != v)
+    return name + "".join(f"{',' if k or ':' in name else ':'}{w}" for k, w in enumerate(words))

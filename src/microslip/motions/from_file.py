@@ -16,7 +16,7 @@ from dataclasses import replace
 import numpy as np
 
 from microslip.foundation.csv_table import Table, read_table
-from microslip.foundation.named_files import DECIMALS, GRID, FileReader, NamedFile
+from microslip.foundation.named_files import DECIMALS, GRID, NamedFile
 from microslip.motions.samples import NORMAL, PLANE, Sampled, uneven_row
 
 COLUMNS = (*PLANE, *NORMAL)
@@ -61,7 +61,8 @@ def read_period(
     return table, columns
 
 
-def _of_content(file: NamedFile, content: bytes) -> Sampled:
+def create_samples(file: NamedFile, content: bytes) -> Sampled:
+    """Create the motion in a data file.  Raises ValueError if the content has another format."""
     table, columns = read_period(file, content)
     for name in columns.keys() & set(COLUMNS):
         if table.units[name]:
@@ -71,8 +72,3 @@ def _of_content(file: NamedFile, content: bytes) -> Sampled:
             )
     samples = Sampled.of_columns({name: columns.get(name) for name in COLUMNS})
     return replace(samples, text=file.name)
-
-
-read_motion = FileReader("motion", _of_content)
-"""Function that returns the motion for a text such as "file:stroke.csv".  In the name of the
-motion, a digest of the file's content replaces the path."""

@@ -1,22 +1,19 @@
-"""Registry of pressures by name.
-
-A pressure is a class in a file of the folder `pressures` (see pressure.py).  A text such as
-"file:measured.csv" stands for a pressure in a data file (see from_file.py).
-"""
+"""Pressures by name."""
 
 from __future__ import annotations
 
-from microslip import pressures
-from microslip.foundation.families import Registry
-from microslip.pressures.from_file import read_pressure
+from microslip.foundation.named_files import Family
+from microslip.pressures.ellipse import Ellipse
+from microslip.pressures.grid_file import create_pressure
+from microslip.pressures.hertz import Hertz
+from microslip.pressures.power import Power
 from microslip.pressures.pressure import Pressure
+from microslip.pressures.punch import Punch
+from microslip.pressures.ring import Ring
 
-_REGISTRY = Registry(pressures, Pressure, "pressure", first=("hertz",), from_file=read_pressure)
-PRESSURES = _REGISTRY.classes
-"""Name -> subclass of Pressure."""
-BROKEN = _REGISTRY.broken
-"""Name -> path and error, for files that cannot be used."""
-find = _REGISTRY.find
-pressure_named = _REGISTRY.parse
-"""Function that returns the pressure for a text such as "power:exponent=1" or
-"file:measured.csv"."""
+CLASSES = Hertz, Ellipse, Power, Punch, Ring
+pressure_named = Family("pressure", Pressure, CLASSES, create_pressure)
+"""Function that returns the pressure for a text such as "power:exponent=1", "file:measured.csv" or
+"mine/blunt.py"."""
+PRESSURES = pressure_named.classes
+"""Name -> subclass of Pressure, for the pressures of the package."""

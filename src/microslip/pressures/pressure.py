@@ -28,7 +28,10 @@ from microslip.foundation import spec
 from microslip.foundation.errors import InputError
 from microslip.pressures.cell_loads import round_loads
 from microslip.pressures.grid import READINGS, Grid, read_grids
-from microslip.pressures.grid_units import NO_UNITS, Units
+
+Units = tuple[float | None, float | None]
+"""Unit of the coordinates in m, and unit of the pressure in Pa; None for dimensionless values."""
+NO_UNITS: Units = None, None
 
 
 @dataclass(frozen=True)
@@ -260,7 +263,7 @@ class Measured(Pressure):
     grid : grid.Grid
         The values.
     units : tuple
-        Units of the coordinates and of the values, see grid_units.Units.
+        Units of the coordinates and of the values, see Units.
     """
 
     text: str

@@ -19,8 +19,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from microslip.foundation import spec
-from microslip.foundation.errors import InputError
-from microslip.foundation.families import described
+from microslip.foundation.errors import InputError, described
 from microslip.solver import methods
 
 if TYPE_CHECKING:

@@ -1,0 +1,258 @@
+"""Pressures in data files: values on a regular grid (see grid.py), in CSV or netCDF.
+
+A CSV file has the columns forward, lateral and pressure, and a line for each point.  A netCDF file
+has a variable `pressure` with the coordinates `forward` and `lateral`.  By default, a value is the
+mean over the cell around its point, as sensors measure it.  With ",grid=samples" after the path,
+values apply at the points and are interpolated bilinearly.
+
+",pitch=0.5 mm" after the path reads a matrix of pressures, as programs for pressure sensors and
+pressure films write it: forward increases from line to line, lateral from cell to cell.
+",decimal=comma" and ",encoding=cp1252" describe the format of a CSV file.
+"""
+
+from __future__ import annotations
+
+import math
+import re
+from collections.abc import Mapping, Sequence
+from pathlib import PurePath
+from typing import Any
+
+import numpy as np
+
+from microslip.foundation.csv_table import lines_of, read_table
+from microslip.foundation.named_files import DECIMALS, NamedFile
+from microslip.foundation.units import read
+from microslip.pressures.grid import READINGS
+from microslip.pressures.pressure import Measured, Units
+
+SI = {"forward": "m", "lateral": "m", "pressure": "Pa"}
+"""SI unit of each column."""
+MOST_POINTS = 1_000_000
+SAME = 1e-9
+"""Coordinates count as equal if they differ by less than this fraction of their range."""
+FULL = "allowed: every point of a regular grid once"
+HEADING = (
+    "forward,lateral,pressure in any order, with units such as forward [mm] if at all; or a matrix "
+    "of pressures alone, with pitch=0.5 mm after the path"
+)
+MATRIX = (
+    "allowed: a header without numbers in columns, then one row of the matrix in each line up to "
+    "the end of the file, with decimal=comma after the path for decimal commas"
+)
+NUMBER = re.compile(r"[+-]?(\d+[.,]?\d*|[.,]\d+)([eE][+-]?\d+)?|nan|inf|B", re.I | re.A)
+"""Pattern of a cell of a matrix.  B is a cell outside the sensor in Tekscan files."""
+END = "@@"
+"""Last line of Tekscan files."""
+LEAST_COORDINATES = 4
+"""Smallest number of evenly spaced values that count as coordinates.  Three pressures can be evenly
+spaced by chance."""
+EVEN = 0.05
+"""Largest difference between the steps of evenly spaced coordinates, divided by the first step.  It
+allows for coordinates rounded to 1/40 of their step."""
+PITCH = re.compile(r"\d+\.?\d*(?:[eE][+-]?\d+)?|\.\d+", re.A)
+ALLOWED_PITCH = "allowed: a length such as 0.5 mm, or forward x lateral as in 0.5 mm x 0.6 mm"
+NETCDF = (".nc", ".nc4", ".cdf")
+"""File name extensions of netCDF."""
+BEGINNINGS = (b"\x89HDF", b"CDF\x01", b"CDF\x02", b"CDF\x05")
+"""First bytes of netCDF files."""
+LARGEST_CHUNK = 100_000_000
+"""Largest chunk in bytes.  HDF5 reads whole chunks; the default chunks of netCDF have up to 16
+MB."""
+VARIABLES = "allowed: a variable pressure with the dimensions and coordinates forward and lateral"
+
+Values = tuple[Sequence[np.ndarray], Mapping[str, str | None]]
+"""Coordinates (n,) and (m,), pressures (n, m), and the unit of each."""
+
+
+def create_pressure(file: NamedFile, content: bytes) -> Measured:
+    """Create the pressure in a data file.  Raises ValueError if the content has another format."""
+    if file.grid not in READINGS:
+        raise ValueError(f"allowed for grid is one of {', '.join(READINGS)}")
+    if content.startswith(BEGINNINGS):
+        if file.pitch:
+            raise ValueError("pitch is for a matrix in a CSV file; allowed for netCDF: coordinates")
+        values, units = _netcdf(content)
+    elif PurePath(file.path).suffix.lower() in NETCDF:
+        raise ValueError("not a netCDF file that can be read: it does not begin as one does")
+    else:
+        values, units = (_matrix if file.pitch else _points)(file, content)
+    forward, lateral, pressure = values
+    ratio, in_si = _factors(units)
+    return Measured.on_grid(file.name, forward, ratio * lateral, pressure, file.grid, in_si)
+
+
+def _factors(units: Mapping[str, str | None]) -> tuple[float, Units]:
+    """Ratio of the lateral to the forward unit of length, and the Units."""
+    factors: dict[str, float | None] = {}
+    for name, si in SI.items():
+        unit = units[name] or ""
+        try:
+            factors[name] = None if unit in ("", "1", "-") else read(f"1 {unit}", si).si
+        except ValueError:
+            example = "MPa" if si == "Pa" else "mm"
+            problem = f"{name} [{unit[:40]}] is no known unit"
+            raise ValueError(f"{problem}; allowed: one such as [{example}], or none") from None
+    forward, lateral, pressure = factors.values()
+    if (forward is None) != (lateral is None):
+        name = "lateral" if forward is None else "forward"
+        raise ValueError(f"{name} alone has a unit; allowed: one for both coordinates or none")
+    return (lateral or 1.0) / (forward or 1.0), (forward, pressure)
+
+
+def _refuse_many(count: int) -> None:
+    if count > MOST_POINTS:
+        raise ValueError(f"{count} points; allowed: at most {MOST_POINTS}")
+
+
+# CSV
+
+
+def _points(file: NamedFile, content: bytes) -> Values:
+    """Read a table with one point of the grid in each line."""
+    form: Any = {"decimal": DECIMALS[file.decimal], "encoding": file.encoding}
+    table = read_table(content, SI, complete=HEADING, **form)
+    columns = {name: np.array(one) for name, one in table.numbers({"pressure": 0.0}).items()}
+    if not table.lines:
+        raise ValueError("no points; allowed: a line with three numbers for each point of a grid")
+    (forward, i), (lateral, j) = _distinct(columns["forward"]), _distinct(columns["lateral"])
+    shape = f"{len(forward)} x {len(lateral)}"
+    if max(len(i), len(forward) * len(lateral)) > MOST_POINTS:
+        raise ValueError(f"{len(i)} points for a grid of {shape}; allowed: at most {MOST_POINTS}")
+    count = np.zeros((len(forward), len(lateral)), int)
+    np.add.at(count, (i, j), 1)
+    for a, b in np.argwhere(count != 1)[:1]:
+        lines = [table.lines[k] for k in np.flatnonzero((i == a) & (j == b))]
+        place = f"forward {forward[a]:g}, lateral {lateral[b]:g}"
+        where = f"lines {' and '.join(map(str, lines))} are" if lines else "no line is"
+        raise ValueError(f"{where} the point {place} of a grid of {shape}; {FULL}")
+    values = np.empty(count.shape)
+    values[i, j] = columns["pressure"]
+    return (forward, lateral, values), table.units
+
+
+def _distinct(column: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Distinct coordinates in increasing order, (n,), and the index of each point among them."""
+    values, which = np.unique(column, return_inverse=True)
+    group = np.concatenate([[0], np.cumsum(np.diff(values) > SAME * np.ptp(values))])
+    return values[np.unique(group, return_index=True)[1]], group[which.reshape(-1)]
+
+
+def _matrix(file: NamedFile, content: bytes) -> Values:
+    """Read a matrix of pressures.  Its cells become a table with one column."""
+    forward, lateral, unit = _pitch(file.pitch)
+    lines = lines_of(content, file.encoding)
+    while lines and lines[-1].strip(";,\t ") in ("", END):
+        lines.pop()
+    marks, rows = zip(*(_split(line, file.decimal) for line in lines or [""]), strict=True)
+    is_row = [any(row) and all(map(NUMBER.fullmatch, filter(None, row))) for row in rows]
+    if True not in is_row:
+        raise ValueError(f"no row of numbers; {MATRIX}")
+    start = is_row.index(True)
+    width = max(
+        max((k + 1 for k, cell in enumerate(row) if cell), default=0) for row in rows[start:]
+    )
+    for k, (line, row) in enumerate(zip(lines, rows, strict=True)):
+        numbers, cells = sum(map(bool, map(NUMBER.fullmatch, row))), row[:width]
+        problem = ""
+        counts = numbers > 1 or numbers and len(row) == len(rows[start])
+        if k < start and counts and marks[k] == marks[start]:
+            problem = f"{line[:40]!r} has numbers"
+        elif k >= start and (not any(row) or line.startswith("#")):
+            problem = "no row of the matrix"
+        elif k >= start and "" in cells:
+            problem = f"cell {cells.index('') + 1} is empty; allowed: 0 where nothing presses"
+        elif k >= start and len(cells) < width:
+            problem = f"{len(cells)} cells, but {width} in another line"
+        if problem:
+            raise ValueError(f"line {k + 1}: {problem}; {MATRIX}")
+    flat = ["0" if cell == "B" else cell for row in rows[start:] for cell in row[:width]]
+    _refuse_many(len(flat))
+    mark = "," if marks[start] == "," else ";"
+    text = "\n".join([f"pressure{mark}no", *(f"{cell}{mark}0" for cell in flat)])
+    names, decimal = {"pressure": "", "no": ""}, DECIMALS[file.decimal]
+    try:
+        columns = read_table(text.encode(), names, decimal=decimal).numbers({"pressure": 0.0})
+    except ValueError as error:
+        _, line, problem = re.split(r"line (\d+)", str(error), maxsplit=1)
+        place, column = divmod(int(line) - 2, width)
+        raise ValueError(f"line {start + place + 1}, cell {column + 1}{problem}") from None
+    values = np.array(columns["pressure"]).reshape(-1, width)
+    n, m = values.shape
+    if min(n, m) < 2:
+        raise ValueError(f"a matrix of {n} x {m}; allowed: two rows and two columns, or more")
+    for side, edge in (("row", values[0]), ("column", values[:, 0])):
+        steps = np.diff(edge[1:])
+        is_even = len(steps) + 1 >= LEAST_COORDINATES and np.ptp(steps) <= EVEN * abs(steps[0])
+        if is_even and steps[0] != 0.0:
+            allowed = "allowed: pressures alone, or columns forward,lateral,pressure without pitch"
+            raise ValueError(f"the numbers of the first {side} look like coordinates; {allowed}")
+    return (np.arange(n) * forward, np.arange(m) * lateral, values), unit
+
+
+def _split(line: str, decimal: str) -> tuple[str | None, list[str]]:
+    """Separator and cells of a line of a matrix."""
+    marks = ";\t," if decimal == "point" else ";\t"
+    separator = next(filter(line.__contains__, marks), None)
+    return separator, [cell.strip().strip("\"'").strip() for cell in line.split(separator)]
+
+
+def _pitch(text: str) -> tuple[float, float, Mapping[str, str | None]]:
+    """Forward and lateral distance between the cells of a matrix, in their own units, and the
+    units.
+
+    text: a length such as "0.5 mm" for both distances, or "0.5 mm x 0.6 mm".
+    """
+    parts = [(PITCH.match(part.strip()), part.strip()) for part in text.split(" x ")]
+    lengths = [(float(one[0]), part[one.end() :].strip()) for one, part in parts if one]
+    if not len(lengths) == len(parts) <= 2 or not all(0.0 < one < math.inf for one, _ in lengths):
+        raise ValueError(f"pitch is {text[:40]!r}; {ALLOWED_PITCH}")
+    (forward, unit), (lateral, other) = lengths[0], lengths[-1]
+    return forward, lateral, {"forward": unit, "lateral": other, "pressure": None}
+
+
+# netCDF
+
+
+def _netcdf(content: bytes) -> Values:
+    """Read a netCDF file.  Sizes are checked before values are read into memory."""
+    import netCDF4  # only here, because it takes a while to load
+
+    try:
+        with netCDF4.Dataset("pressure", memory=content) as data:
+            return _variables(data)
+    except (OSError, RuntimeError, AttributeError, TypeError) as error:
+        reason = " ".join(str(error).split())[:120]
+        raise ValueError(f"not a netCDF file that can be read: {reason}") from None
+
+
+def _variables(data: Any) -> Values:
+    units: dict[str, str | None] = {}
+    values: list[np.ndarray] = []
+    for name in SI:
+        if name not in data.variables:
+            raise ValueError(f"there is no variable {name}; {VARIABLES}")
+        variable = data[name]
+        expected = {"forward", "lateral"} if name == "pressure" else {name}
+        if set(variable.dimensions) != expected:
+            dimensions = ", ".join(variable.dimensions) or "none"
+            raise ValueError(f"{name} has the dimensions {dimensions}; {VARIABLES}")
+        if getattr(variable.dtype, "kind", "") not in ("i", "u", "f"):
+            raise ValueError(f"{name} holds {variable.dtype}; allowed: numbers")
+        _refuse_many(variable.size)
+        chunk = variable.chunking()  # None in netCDF 3 files
+        if isinstance(chunk, list) and math.prod(chunk) * variable.dtype.itemsize > LARGEST_CHUNK:
+            shape = " x ".join(map(str, chunk))
+            allowed = f"allowed: chunks of at most {LARGEST_CHUNK / 1e6:g} MB"
+            raise ValueError(f"{name} is stored in chunks of {shape}; {allowed}")
+        attributes = {key.lower(): variable.getncattr(key) for key in variable.ncattrs()}
+        units[name] = attributes.get("units", attributes.get("unit"))
+        if not isinstance(units[name], str | None):
+            raise ValueError(f"{name} has the units {units[name]}; allowed: a text")
+        values.append(np.ma.filled(np.ma.asarray(variable[:], float), np.nan))
+    if not values[2].size:
+        raise ValueError("no points; allowed: two or more along each coordinate")
+    forward, lateral, pressure = values
+    pressure = pressure if data["pressure"].dimensions[0] == "forward" else pressure.T
+    along, across = np.argsort(forward), np.argsort(lateral)
+    return (forward[along], lateral[across], pressure[np.ix_(along, across)]), units
