@@ -5,8 +5,8 @@
 
 Each folder contains the certified maps of a run (snakemake certified). Random points are uniform in
 log velocity and in amplitude and, for a map over Poisson's ratio, also in this ratio. The points
-were not used to make a map or to choose map_cells.SHARE. Their references have a smaller tolerance
-than the motion's most accurate map. A point is covered if the map's error is at most the map's
+were not used to make a map or to choose map_refinement.SHARE. Their references have a smaller
+tolerance than the motion's most accurate map. A point is covered if the map's error is at most its
 error estimate plus the reference's error estimate. The output file stores the references, so that
 the next run can reuse them.
 
@@ -32,7 +32,7 @@ from tqdm import tqdm
 
 import microslip
 from microslip.datasets.cells import cells_of
-from microslip.sweeps.map_cells import surpluses_of
+from microslip.sweeps.map_refinement import surpluses_of
 
 TRUTH = {"transverse": 0.1, "bore": 0.2}
 """Tolerance of a motion's references, divided by the smallest error of the motion's maps."""

@@ -109,9 +109,8 @@ def test_a_job_continues_from_the_journal_of_a_killed_one(solver, tmp_path, monk
 
 
 def test_a_journal_is_used_by_another_batch_and_stays_until_its_points_are_in_one(solver, tmp_path):
-    other = batch.Journal(tmp_path / "other.jsonl")
-    for one in points(amplitude=[1, 3]):
-        other.append(batch.computed(one)[0])
+    with batch.Job(tmp_path / "other.jsonl") as killed:
+        killed.solve(points(amplitude=[1, 3]))
     assert batch.solve(points(), tmp_path / "batch.jsonl")["computed"] == 4
     assert len(journals(tmp_path)) == 1
     assert batch.solve(points(amplitude=[1, 3]), tmp_path / "other.jsonl")["computed"] == 0

@@ -36,7 +36,7 @@ BUILDERS = {
     "explorer": ("report/explorer", "sweeps/period_codec.py"),
 }
 """Modules and folders that make a kind of product, besides those that they import."""
-MAP_CODE = ("sweeps/map_refinement.py", "sweeps/map_cells.py", "sweeps/map_coordinates.py")
+MAP_CODE = ("sweeps/map_refinement.py", "sweeps/map_coordinates.py")
 """Modules that choose the points of a certified map."""
 
 

@@ -23,8 +23,7 @@ from microslip.datasets.variables import variable
 from microslip.foundation.canonical import canonical_json
 from microslip.sweeps import map_refinement
 from microslip.sweeps.batch import lookup
-from microslip.sweeps.map_cells import Cell
-from microslip.sweeps.map_coordinates import MapCoordinates
+from microslip.sweeps.map_coordinates import Box, MapCoordinates
 from microslip.sweeps.request import solver_names
 
 COORDINATES = "map_coordinates"
@@ -60,11 +59,13 @@ def build(
     record_of = lookup(records := list(records))
     answers, cells = map_refinement.refine(sweep, lambda requests: map(record_of, requests))
     coordinates = map_refinement.coordinates_of(sweep)
-    nodes = sorted(answers)
-    index = {node: i for i, node in enumerate(nodes)}
-    degrees, places = coordinates.degrees, [coordinates.place(node) for node in nodes]
-    values, errors = np.array([answers[node] for node in nodes]).T
-    cell_nodes = [[index[node] for node in cell.nodes(degrees)] for cell in cells.cells]
+    points = sorted(answers)
+    index = {node: i for i, node in enumerate(points)}
+    degrees, places = coordinates.degrees, [coordinates.place(node) for node in points]
+    values, errors = np.array([answers[node] for node in points]).T
+    cell_nodes = [
+        [index[node] for node in map_refinement.nodes_of(cell, degrees)] for cell in cells.cells
+    ]
     axes: dict[str, tuple] = {
         name: ("point", np.array(axis))
         for name, axis in zip(coordinates.directions, zip(*places, strict=True), strict=True)
@@ -120,7 +121,7 @@ def coordinates_in(dataset: xr.Dataset) -> MapCoordinates:
     return MapCoordinates.from_json(dataset.attrs[COORDINATES])
 
 
-def _borders(coordinates: MapCoordinates, cells: Sequence[Cell]) -> dict:
+def _borders(coordinates: MapCoordinates, cells: Sequence[Box]) -> dict:
     """Return the variables with the lower and upper ends of the cells, in scaled coordinates."""
     ends, borders = np.array(cells), {}  # ends: (cell, lower or upper, direction)
     for i, direction in enumerate(coordinates.directions):

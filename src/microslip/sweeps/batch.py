@@ -40,6 +40,10 @@ BETWEEN_FLUSHES = 1.0
 """Seconds between two flushes of a journal to disk, for a crash of the computer."""
 
 
+Compute = Callable[[Sequence[dict]], Iterable[tuple[dict, float]]]
+"""Function that yields the record and the CPU time of each request."""
+
+
 class SourcesEdited(CacheError):
     """The code on disk differs from the running code, so that a result could come from either."""
 
@@ -109,25 +113,84 @@ def _checked(path: str | Path) -> tuple[list[bytes], bool]:
     return (content[:end].splitlines() if content[end:] == checksum else []), final
 
 
-class Cache:
-    """Records of other batch files and journals in the folder of a batch.
+class Job:
+    """A job that writes a batch file: a context manager.
+
+    It takes records from other batch files and journals in the folder.  It appends each computed
+    record to a journal of its own, which stays until its records are in a batch file.
 
     Attributes
     ----------
     path : Path
         File of the batch.
     records : dict of str to dict
-        Final records by key.
+        Records of the job and final records of the folder, by key.
+    seconds : list of float
+        CPU time of each computed record.
     """
 
     def __init__(self, path: str | Path):
+        """path: file of the batch.  Raises CacheError if its folder cannot be written."""
         self.path = Path(path)
+        files.refuse_unwritable(self.path.parent)
         self.records: dict[str, dict] = {}
-        self._files = sorted(self.path.parent.glob("*.jsonl"))
-        self._rows = {file: self._rows_in(file) for file in self._files}
-        self._journals = {file: self._read_journal(file) for file in self._glob_journals()}
+        self.seconds: list[float] = []
+        self._rows = {file: _rows_in(file) for file in sorted(self.path.parent.glob("*.jsonl"))}
+        self._journals = {file: self._add(_lines_of(file)) for file in self._glob_journals()}
+        self._journal: int | None = None
+        self._flushed = 0.0
 
-    def find(self, requests: Iterable[dict]) -> None:
+    def __enter__(self) -> Job:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        if self._journal is not None:
+            os.close(self._journal)
+
+    def solve(self, requests: Sequence[dict], compute: Compute | None = None) -> list[dict]:
+        """Return the records of requests, in their order.  Only missing records are computed.
+
+        compute: function that yields (record, CPU time) of requests, in any order; the default
+        calls `computed` for one request after the other.
+        """
+        self._find(requests)
+        keys = [key_of(request) for request in requests]
+        missing = dict(zip(keys, requests, strict=True))  # two requests can be equal
+        missing = {key: request for key, request in missing.items() if key not in self.records}
+        for record, took in (compute or _one_by_one)(list(missing.values())):
+            self.records[record["key"]] = record
+            self.seconds.append(took)
+            if evaluate.is_final(record["result"]):
+                self._append(record)
+        return [self.records[key] for key in keys]
+
+    def finish(self, records: Sequence[dict]) -> dict:
+        """Write the batch file with these records, and remove the journals that it replaces.
+
+        Returns the statistics: the number of records, the number of computed records, and their CPU
+        time.  Points that did not converge are logged.  Raises SolverError if the solver failed at
+        all points.
+        """
+        results = [record["result"] for record in records]
+        for record, result in zip(records, results, strict=True):
+            if not result.get("converged", True):
+                log.info("not converged: %s: %s", label(record["request"]), result["reason"])
+        if all(result.get("crashed") for result in results):
+            first = f"{label(records[0]['request'])}: {results[0]['reason']}"
+            raise SolverError(f"every point of this batch failed ({len(records)}), first {first}")
+        write(self.path, records, all(map(evaluate.is_final, results)))
+        keys = {record["key"] for record in records}
+        for file in self._glob_journals():
+            if keys.issuperset(self._journals.get(file) or self._add(_lines_of(file))):
+                with suppress(OSError):
+                    file.unlink()
+        statistics = {"points": len(records), "computed": len(self.seconds)}
+        return statistics | {"seconds": sum(self.seconds)}
+
+    def _glob_journals(self) -> list[Path]:
+        return sorted(self.path.parent.glob("*.journal"))
+
+    def _find(self, requests: Iterable[dict]) -> None:
         """Read the batch files that share a row with the requests."""
         rows = {row_of(request) for request in requests}
         for file in [file for file, other in self._rows.items() if not rows.isdisjoint(other)]:
@@ -137,66 +200,42 @@ class Cache:
             except CacheError as error:
                 log.warning("%s", error)
 
-    def remove_journals(self, keys: set[str]) -> None:
-        """Remove the journals whose records are all in a batch file with these keys."""
-        for file in self._glob_journals():
-            if keys.issuperset(self._journals.get(file) or self._read_journal(file)):
-                with suppress(OSError):
-                    file.unlink()
-
-    def _glob_journals(self) -> list[Path]:
-        return sorted(self.path.parent.glob("*.journal"))
-
-    def _rows_in(self, file: Path) -> frozenset[str]:
-        """Names of the rows in the first line of a batch file; empty if the file is damaged."""
-        try:
-            with open(file, "rb") as lines:
-                return frozenset(json.loads(lines.readline())["rows"])
-        except (OSError, ValueError, KeyError, TypeError):
-            log.warning("%s is damaged: its points are computed again", file)
-            return frozenset()
-
-    def _read_journal(self, file: Path) -> set[str]:
-        """Add the records of a journal, whose last line can be incomplete; return their keys."""
-        records = []
-        with suppress(OSError):
-            for line in file.read_bytes().splitlines():
-                with suppress(ValueError):
-                    records.append(json.loads(line))
-        return self._add(records)
-
     def _add(self, records: Iterable[dict]) -> set[str]:
-        final = [record for record in records if evaluate.is_final(record["result"])]
-        self.records.update((record["key"], record) for record in final)
-        return {record["key"] for record in final}
+        """Add the final ones of these records, and return their keys."""
+        final = {r["key"]: r for r in records if evaluate.is_final(r["result"])}
+        self.records.update(final)
+        return set(final)
 
-
-class Journal:
-    """The records that a job has computed so far.  The file is created by the first record."""
-
-    def __init__(self, path: str | Path):
-        """path: file of the batch."""
-        self.path = Path(path).with_suffix(f".{uuid.uuid4().hex[:8]}.journal")
-        self._file: int | None = None
-        self._flushed = 0.0
-
-    def append(self, record: dict) -> None:
-        """Append a record.  Raises CacheError if it cannot be written."""
+    def _append(self, record: dict) -> None:
+        """Append a record to the journal.  Raises CacheError if it cannot be written."""
+        path = self.path.with_suffix(f".{uuid.uuid4().hex[:8]}.journal")
         try:
-            if self._file is None:
-                self._file = os.open(self.path, os.O_WRONLY | os.O_CREAT | os.O_APPEND, 0o666)
-            os.write(self._file, f"{canonical_json(record)}\n".encode())
+            if self._journal is None:
+                self._journal = os.open(path, os.O_WRONLY | os.O_CREAT | os.O_APPEND, 0o666)
+            os.write(self._journal, f"{canonical_json(record)}\n".encode())
             if time.monotonic() - self._flushed > BETWEEN_FLUSHES:
-                os.fsync(self._file)
+                os.fsync(self._journal)
                 self._flushed = time.monotonic()
         except OSError as error:
-            raise CacheError(files.advice("write", self.path, error)) from error
+            raise CacheError(files.advice("write", path, error)) from error
 
-    def close(self) -> None:
-        """Close the file.  It stays until its records are in a batch file."""
-        if self._file is not None:
-            os.close(self._file)
-            self._file = None
+
+def _rows_in(file: Path) -> frozenset[str]:
+    """Names of the rows in the first line of a batch file; empty if the file is damaged."""
+    try:
+        with open(file, "rb") as lines:
+            return frozenset(json.loads(lines.readline())["rows"])
+    except (OSError, ValueError, KeyError, TypeError):
+        log.warning("%s is damaged: its points are computed again", file)
+        return frozenset()
+
+
+def _lines_of(journal: Path) -> Iterator[dict]:
+    """Records of a journal, whose last line can be incomplete."""
+    with suppress(OSError):
+        for line in journal.read_bytes().splitlines():
+            with suppress(ValueError):
+                yield json.loads(line)
 
 
 # Results
@@ -218,45 +257,17 @@ def computed(request: dict) -> tuple[dict, float]:
     return {"key": key, "request": request, "result": result, "versions": versions()}, seconds
 
 
+def _one_by_one(requests: Sequence[dict]) -> Iterator[tuple[dict, float]]:
+    return map(computed, requests)
+
+
 def solve(requests: Sequence[dict], path: str | Path) -> dict:
     """Write the batch file of these requests.  Only records that the folder lacks are computed.
 
-    Returns the statistics of `finish`.  Raises CacheError if the file cannot be written.
+    Returns the statistics of `Job.finish`.  Raises CacheError if the file cannot be written.
     """
-    files.refuse_unwritable(Path(path).parent)
-    cache, journal = Cache(path), Journal(path)
-    seconds: list[float] = []
-    cache.find(requests)
-    records = dict(cache.records)
-    try:
-        for request in requests:
-            key = key_of(request)
-            if key not in records:
-                records[key], took = computed(request)
-                seconds.append(took)
-                if evaluate.is_final(records[key]["result"]):
-                    journal.append(records[key])
-    finally:
-        journal.close()
-    return finish(cache, [records[key_of(request)] for request in requests], seconds)
-
-
-def finish(cache: Cache, records: Sequence[dict], seconds: Sequence[float]) -> dict:
-    """Write the batch file, remove the journals that it replaces, and return the statistics: the
-    number of records, the number of computed records, and their CPU time.
-
-    Points that did not converge are logged.  Raises SolverError if the solver failed at all points.
-    """
-    results = [record["result"] for record in records]
-    for record, result in zip(records, results, strict=True):
-        if not result.get("converged", True):
-            log.info("not converged: %s: %s", label(record["request"]), result["reason"])
-    if all(result.get("crashed") for result in results):
-        first = f"{label(records[0]['request'])}: {results[0]['reason']}"
-        raise SolverError(f"every point of this batch failed ({len(records)}), first {first}")
-    write(cache.path, records, all(map(evaluate.is_final, results)))
-    cache.remove_journals({record["key"] for record in records})
-    return {"points": len(records), "computed": len(seconds), "seconds": sum(seconds)}
+    with Job(path) as job:
+        return job.finish(job.solve(requests))
 
 
 @functools.cache

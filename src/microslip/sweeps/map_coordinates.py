@@ -12,8 +12,9 @@ kinks, amplitudes are scaled by log(1 + 2 A).
 from __future__ import annotations
 
 import json
-from collections.abc import Sequence
-from typing import NamedTuple
+from collections.abc import Callable, Sequence
+from itertools import pairwise
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -32,8 +33,6 @@ FAST = 2.0
 FAST_PATCHES = 2
 """Number of patches along the velocity above the kink.  With fewer patches, the nodes may not
 resolve a steep rise of friction."""
-AT_KINKS = 2.0
-"""Exponent that clusters nodes at kinks of the amplitude."""
 SPREAD = 2.0
 """Where there are no kinks, amplitudes are evenly spaced in log(1 + SPREAD A)."""
 DEGREES = {"velocity": 4, "amplitude": 4, "poisson": 2}
@@ -41,8 +40,61 @@ DEGREES = {"velocity": 4, "amplitude": 4, "poisson": 2}
 
 Box = tuple[tuple[float, ...], tuple[float, ...]]
 """Lower and upper ends of a box in scaled coordinates, by direction."""
-Ends = Sequence | np.ndarray
-"""Lower and upper end of a range."""
+
+
+class Scale(NamedTuple):
+    """A monotone function and its inverse.  Nodes are evenly spaced in the function's values."""
+
+    forward: Callable
+    back: Callable
+
+    def between(self, ends: Sequence) -> Scale:
+        """Return the scale whose function is 0 and 1 at two ends."""
+        low, high = map(self.forward, ends)
+        return Scale(
+            lambda value: np.clip((self.forward(value) - low) / (high - low), 0.0, 1.0),
+            lambda share: self.back(low + (high - low) * share),
+        )
+
+
+LOG = Scale(np.log, np.exp)
+SLOW = Scale(lambda v: v**SLOW_POWER, lambda x: x ** (1.0 / SLOW_POWER))
+EVEN = Scale(lambda a: np.log1p(SPREAD * a), lambda x: np.expm1(x) / SPREAD)
+LINEAR = Scale(lambda nu: nu, lambda x: x)
+CLUSTERS = {
+    (True, False): Scale(np.sqrt, np.square),
+    (False, True): Scale(lambda s: 1.0 - np.sqrt(1.0 - s), lambda x: 1.0 - (1.0 - x) ** 2),
+    (True, True): Scale(
+        lambda s: 0.5 - np.sin(np.arcsin(1.0 - 2.0 * s) / 3.0), lambda x: x * x * (3.0 - 2.0 * x)
+    ),
+}
+"""Scales of relative positions, by whether nodes are clustered at the lower and the upper end."""
+
+
+class Band(NamedTuple):
+    """A part of a map with one scale along each axis.
+
+    Attributes
+    ----------
+    x, y : float
+        Smallest scaled velocity and amplitude.  The band is 1 wide along each direction.
+    velocity, amplitude : Scale
+        Scale of the velocity, and scale of the amplitude between the ends of the band.
+    speeds : callable
+        Function of the amplitude that returns the smallest and the largest velocity.
+    ends : tuple of float
+        Smallest and largest amplitude.
+    patches : int
+        Number of patches along the velocity.
+    """
+
+    x: float
+    y: float
+    velocity: Scale
+    amplitude: Scale
+    speeds: Callable[[Any], tuple]
+    ends: tuple[float, float]
+    patches: int = 1
 
 
 class MapCoordinates(NamedTuple):
@@ -78,28 +130,24 @@ class MapCoordinates(NamedTuple):
     @property
     def patches(self) -> list[Box]:
         """Boxes in scaled coordinates that cover the map, slow velocities first."""
-        flat: list[Box] = [((float(i),), (i + 1.0,)) for i in range(len(self._borders) - 1)]
-        if self.velocity:
-            flat = [((0.0, *low), (1.0, *high)) for low, high in flat]
-        if self._is_cut:
-            ends = [FAST + i / FAST_PATCHES for i in range(FAST_PATCHES + 1)]
-            flat += [((x, 0.0), (right, 1.0)) for x, right in zip(ends, ends[1:], strict=False)]
-        deep = len(self.directions) - len(flat[0][0])
-        return [(begin + (0.0,) * deep, end + (1.0,) * deep) for begin, end in flat]
+        boxes = []
+        for band in self._bands:
+            for ends_of_x in pairwise(np.linspace(band.x, band.x + 1.0, band.patches + 1).tolist()):
+                ends = {"velocity": ends_of_x, "amplitude": (band.y, band.y + 1.0)}
+                ends["poisson"] = (0.0, 1.0)
+                begin, end = zip(*(ends[name] for name in self.directions), strict=True)
+                boxes.append((begin, end))
+        return sorted(boxes)
 
     @classmethod
     def from_json(cls, text: str) -> MapCoordinates:
         """Read the coordinates from the JSON text of `to_json`."""
-        values = json.loads(text)
-        kinks = Kinks(*(tuple(values[name]) for name in ("kink_amplitudes", "kink_velocity")))
-        low, high = values["amplitude"]
-        return cls(tuple(values["velocity"]), (low, high), kinks, tuple(values["poisson"]))
+        velocity, (low, high), kinks, poisson = json.loads(text)
+        return cls(tuple(velocity), (low, high), Kinks(*map(tuple, kinks)), tuple(poisson))
 
     def to_json(self) -> str:
         """Return the coordinates as JSON text for the attribute of a dataset."""
-        ranges = {name: getattr(self, name) for name in DEGREES}
-        kinks = {"kink_amplitudes": self.kinks.amplitudes, "kink_velocity": self.kinks.velocity}
-        return canonical_json(ranges | kinks)
+        return canonical_json(self)
 
     def scaled(self, *places: np.ndarray) -> np.ndarray:
         """Scaled coordinates, shape (n, directions), of points in the range.
@@ -107,124 +155,84 @@ class MapCoordinates(NamedTuple):
         places: coordinates of the points, one array of shape (n,) for each direction, velocities
         first.
         """
-        values = [np.asarray(part, float) for part in places]
-        deep = [_share(values.pop(), self.poisson)] if self.poisson else []
-        if not self.velocity:
-            return np.stack([self._rows(*values), *deep], axis=-1)
-        v, a = values
-        x, y = _share(np.log(v), np.log(self.velocity)), self._rows(a)
-        if self._is_cut:
-            middle, (slow, fast) = self._cut_at(a), self.velocity
-            is_slow = v <= middle
-            below = _share(v**SLOW_POWER, (slow**SLOW_POWER, middle**SLOW_POWER))
-            above = FAST + _share(np.log(v), (np.log(middle), np.log(fast)))
-            x = np.where(is_slow, below, above)
-            y = np.where(is_slow, y, _spread_share(a, self.amplitude))
-        return np.stack([x, y, *deep], axis=-1)
+        at = dict(zip(self.directions, map(np.asarray, places), strict=True))
+        a = np.clip(at["amplitude"], *self.amplitude)
+        slowest, fastest = self.velocity or (0.0, 0.0)
+        v = np.clip(at["velocity"], slowest, fastest) if self.velocity else np.zeros_like(a)
+        x, y = np.empty_like(a), np.empty_like(a)
+        for band in self._bands:
+            low, high = (np.broadcast_to(end, a.shape) for end in band.speeds(a))
+            here = (a >= band.ends[0]) & (a <= band.ends[1]) & (v >= low) & (v <= high)
+            y[here] = band.y + band.amplitude.forward(a[here])
+            if self.velocity:
+                speeds = band.velocity.between((low[here], high[here]))
+                x[here] = band.x + speeds.forward(v[here])
+        scaled = {"velocity": x, "amplitude": y}
+        if self.poisson:
+            scaled["poisson"] = LINEAR.between(self.poisson).forward(at["poisson"])
+        return np.stack([scaled[name] for name in self.directions], axis=-1)
 
     def place(self, node: tuple[float, ...]) -> tuple[float, ...]:
         """Return the values of velocity, amplitude and Poisson's ratio at scaled coordinates,
         rounded to DIGITS digits."""
-        *flat_node, nu = node if self.poisson else (*node, 0.0)
-        deep = [_between(nu, self.poisson)] if self.poisson else []
-        flat = self._place(*flat_node) if self.velocity else (self._amplitude_at(*flat_node),)
-        return tuple(round_digits(value) for value in (*flat, *deep))
-
-    def _place(self, x: float, y: float) -> tuple[float, float]:
-        """Return the velocity and amplitude at scaled coordinates."""
-        slow, fast = self.velocity
-        if self._is_cut and x >= FAST:
-            amplitude = _at_spread_share(y, self.amplitude)
-            ends = np.log(self._cut_at(amplitude)), np.log(fast)
-            velocity = np.exp(_between(x - FAST, ends))
-        elif self._is_cut:
-            amplitude = self._amplitude_at(y)
-            ends = slow**SLOW_POWER, self._cut_at(amplitude) ** SLOW_POWER
-            velocity = _between(x, ends) ** (1.0 / SLOW_POWER)
-        else:
-            amplitude = self._amplitude_at(y)
-            velocity = np.exp(_between(x, np.log(self.velocity)))
-        return velocity, amplitude
+        at = dict(zip(self.directions, node, strict=True))
+        x, y = at.get("velocity", 0.0), at["amplitude"]
+        bands = [band for band in self._bands if (band.x == FAST) == (x >= FAST)]
+        band = bands[min(int(y), len(bands) - 1)]
+        at["amplitude"] = band.amplitude.back(y - band.y)
+        if self.velocity:
+            speeds = band.velocity.between(band.speeds(at["amplitude"]))
+            at["velocity"] = speeds.back(x - band.x)
+        if self.poisson:
+            at["poisson"] = LINEAR.between(self.poisson).back(at["poisson"])
+        return tuple(float(f"{at[name]:.{DIGITS}g}") for name in self.directions)
 
     @property
-    def _borders(self) -> tuple[float, ...]:
+    def _bands(self) -> list[Band]:
+        """Bands of the map: the one above the velocity of the kink, if there is one, then one for
+        each range of amplitudes.  A point at the border of two bands belongs to the later one."""
         low, high = self.amplitude
-        return (low, *(a for a in self.kinks.amplitudes if low < a < high), high)
+        borders = (low, *(a for a in self.kinks.amplitudes if low < a < high), high)
+        slowest, fastest = self.velocity or (0.0, 0.0)
+        fast: list[Band] = []
+        scale = LOG
+        if self._is_cut:
+            even = EVEN.between(self.amplitude)
+            above = FAST, 0.0, LOG, even, lambda a: (self._cut_at(a), fastest), self.amplitude
+            fast, scale = [Band(*above, FAST_PATCHES)], SLOW
+
+        def speeds(amplitude: Any) -> tuple:
+            return slowest, self._cut_at(amplitude) if self._is_cut else fastest
+
+        return fast + [
+            Band(0.0, float(y), scale, self._row_scale(ends), speeds, ends)
+            for y, ends in enumerate(pairwise(borders))
+        ]
 
     @property
     def _is_cut(self) -> bool:
         if not (self.velocity and self.kinks.velocity):
             return False
         slow, fast = self.velocity
-        if fast <= CLEAR**2 * slow:
-            return False
         at_ends = kink_velocity(self.kinks, np.array(self.amplitude))
-        return bool(at_ends.max() > CLEAR * slow and at_ends.min() < fast / CLEAR)
+        inside = bool(at_ends.max() > CLEAR * slow and at_ends.min() < fast / CLEAR)
+        return inside and fast > CLEAR**2 * slow
 
     def _cut_at(self, amplitude: np.ndarray | float) -> np.ndarray:
         slow, fast = self.velocity
         return np.clip(kink_velocity(self.kinks, amplitude), CLEAR * slow, fast / CLEAR)
 
-    def _rows(self, amplitude: np.ndarray) -> np.ndarray:
-        """Scaled amplitudes in a map that is divided at kinks."""
-        y = np.empty_like(amplitude)
-        for row, (low, high) in enumerate(zip(self._borders, self._borders[1:], strict=False)):
-            here = (amplitude >= low) & (amplitude <= high)
-            y[here] = row + self._even(amplitude[here], (low, high))
-        return y
+    def _row_scale(self, ends: tuple[float, float]) -> Scale:
+        """Scale of the amplitudes between two borders.
 
-    def _amplitude_at(self, y: float) -> float:
-        """Convert a scaled amplitude to an amplitude, the inverse of _rows."""
-        row = min(int(y), len(self._borders) - 2)
-        ends, share = self._borders[row : row + 2], y - row
-        below, above = self._gathers_at(ends)
-        if below and above:
-            return _between(share * share * (3.0 - 2.0 * share), ends)
-        if not (below or above):
-            return _at_spread_share(share, ends)
-        return _between(share**AT_KINKS if below else 1.0 - (1.0 - share) ** AT_KINKS, ends)
-
-    def _even(self, amplitude: np.ndarray, ends: Ends) -> np.ndarray:
-        """Scaled amplitudes between 0 and 1 in one patch."""
-        below, above = self._gathers_at(ends)
-        share, power = _share(amplitude, ends), 1.0 / AT_KINKS
-        if below and above:
-            return 0.5 - np.sin(np.arcsin(1.0 - 2.0 * share) / 3.0)
-        if not (below or above):
-            return _spread_share(amplitude, ends)
-        return share**power if below else 1.0 - (1.0 - share) ** power
-
-    def _gathers_at(self, ends: Ends) -> tuple[bool, bool]:
-        """Return two flags: whether nodes are clustered at the lower and at the upper end of a
-        patch.
-
-        Nodes are clustered at kinks and, in a patch below a kink, at the amplitude 0.
+        Nodes are clustered at kinks and, in a row below a kink, at the amplitude 0.
         """
+        low, high = ends
         below, above = (end in self.kinks.amplitudes for end in ends)
-        return below or (above and ends[0] == 0.0), above
-
-
-def _share(value: np.ndarray, ends: Ends) -> np.ndarray:
-    """Relative position of values between two ends, clipped to the range 0 to 1."""
-    return np.clip((value - ends[0]) / (ends[1] - ends[0]), 0.0, 1.0)
-
-
-def _between(share: float, ends: Ends) -> float:
-    return ends[0] + (ends[1] - ends[0]) * share
-
-
-def _spread_share(amplitude: np.ndarray, ends: Ends) -> np.ndarray:
-    """Relative position of amplitudes between two ends on the scale log(1 + SPREAD A), 0 to 1."""
-    low, high = (np.log1p(SPREAD * end) for end in ends)
-    return _share(np.log1p(SPREAD * amplitude), (low, high))
-
-
-def _at_spread_share(share: float, ends: Ends) -> float:
-    """Amplitude at a relative position, the inverse of _spread_share."""
-    low, high = (np.log1p(SPREAD * end) for end in ends)
-    return np.expm1(_between(share, (low, high))) / SPREAD
-
-
-def round_digits(value: float) -> float:
-    """Round a number to DIGITS significant digits."""
-    return float(f"{value:.{DIGITS}g}")
+        if not (below or above):
+            return EVEN.between(ends)
+        cluster = CLUSTERS[below or low == 0.0, above]
+        return Scale(
+            lambda a: cluster.forward((a - low) / (high - low)),
+            lambda x: low + (high - low) * cluster.back(x),
+        )

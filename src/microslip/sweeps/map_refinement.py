@@ -1,22 +1,137 @@
-"""Compute the points of a certified map, in rounds of refinement."""
+"""Certified maps: adaptive refinement into cells, and the computation of their points.
+
+A cell is a box in scaled coordinates (map_coordinates) with equally spaced nodes: 5 along the
+velocity, 5 along the amplitude and 3 along Poisson's ratio.  Friction in a cell is interpolated by
+the polynomial through its nodes.  The surplus of a direction is computed from the largest
+differences of the highest order along this direction.  It equals the error of a polynomial whose
+degree is lower by one.  The error of the cell's polynomial is estimated as a fraction of the
+surplus; the fraction was calibrated on other points.  A cell whose error is too large is halved
+along the direction with the largest surplus.  Both halves reuse the nodes of the cell.
+
+The cells depend only on the results at the nodes, not on the order of the requests.
+"""
 
 from __future__ import annotations
 
-import math
 import os
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from concurrent.futures import ProcessPoolExecutor, as_completed
+from itertools import product
 from multiprocessing import parent_process
 from pathlib import Path
 from threading import Thread
+from typing import NamedTuple
+
+import numpy as np
 
 from microslip.config.settings import Sweep
-from microslip.foundation import files, named_files
-from microslip.sweeps import batch, evaluate
-from microslip.sweeps.map_cells import Answers, Node, Refinement, refine_cells
-from microslip.sweeps.map_coordinates import MapCoordinates
-from microslip.sweeps.request import key_of, points_of, solver_names
+from microslip.foundation import named_files
+from microslip.sweeps import batch
+from microslip.sweeps.map_coordinates import Box, MapCoordinates
+from microslip.sweeps.request import points_of, solver_names
 from microslip.theory.kinks import kinks_of
+
+SHARE = 0.1
+"""Ratio of a cell's polynomial error to its surplus, calibrated by benchmarks/certified.py."""
+LOWER_ORDER = 0.35
+"""Weight of third differences in the surplus, for cells in which fourth differences cancel by
+chance."""
+LOW_DEGREE = 2.0
+"""Weight of second differences in the surplus.  Polynomials of degree 2 have a larger error
+relative to the surplus."""
+RESOLVED = 0.05
+"""Largest surplus of a cell that is not halved.  Above this value, the error can be much larger
+than SHARE times the surplus, so the cell is halved even if its error bound is small."""
+SMALLEST = 2.0**-9
+"""Smallest width of a cell, as a fraction of a patch's width."""
+
+Node = tuple[float, ...]
+Answers = Mapping[Node, tuple[float, float]]
+"""Friction and its error, keyed by node.  Friction is NaN if the point did not converge."""
+
+
+class Refinement(NamedTuple):
+    """State of the refinement of a map.
+
+    Attributes
+    ----------
+    cells : tuple of Box
+        Cells that cover the map, including cells with missing nodes.
+    errors : tuple of float
+        Error bound of each cell, due to the interpolation and to the errors of the nodes; infinite
+        if unknown.
+    missing : tuple of Node
+        Nodes to be solved next, in ascending order; empty if the map is finished.
+    """
+
+    cells: tuple[Box, ...]
+    errors: tuple[float, ...]
+    missing: tuple[Node, ...]
+
+
+def nodes_of(cell: Box, degrees: tuple[int, ...]) -> list[Node]:
+    """Nodes of a cell; the last direction changes fastest."""
+    ends = zip(*cell, degrees, strict=True)
+    return list(product(*(np.linspace(low, high, n + 1).tolist() for low, high, n in ends)))
+
+
+def halves_of(cell: Box, direction: int) -> tuple[Box, Box]:
+    """The two halves of a cell along the direction with this index."""
+    begin, end = map(list, cell)
+    begin[direction] = end[direction] = 0.5 * (begin[direction] + end[direction])
+    return (cell[0], tuple(end)), (tuple(begin), cell[1])
+
+
+def surpluses_of(values: np.ndarray) -> tuple[float, ...]:
+    """Surplus along each direction, computed from the values at the nodes."""
+
+    def largest(axis: int, order: int) -> float:
+        return float(np.abs(np.diff(values, order, axis=axis)).max())
+
+    return tuple(
+        LOW_DEGREE * largest(axis, 2)
+        if count == 3
+        else max(largest(axis, count - 1), LOWER_ORDER * largest(axis, count - 2))
+        for axis, count in enumerate(values.shape)
+    )
+
+
+def refine_cells(coordinates: MapCoordinates, answers: Answers, error: float) -> Refinement:
+    """Refine a map as far as the results at the nodes allow.
+
+    Parameters
+    ----------
+    coordinates : MapCoordinates
+        Coordinates of the map.
+    answers : mapping of Node to (float, float)
+        Friction and its error at the solved nodes.
+    error : float
+        Largest accepted error, including the errors of the nodes.
+    """
+    pending, degrees = list(coordinates.patches), coordinates.degrees
+    finished: list[tuple[Box, float]] = []
+    missing: set[Node] = set()
+    while pending:
+        cell = pending.pop()
+        nodes = nodes_of(cell, degrees)
+        if unknown := [node for node in nodes if node not in answers]:
+            missing.update(unknown)
+            finished.append((cell, np.inf))
+            continue
+        values, errors = np.array([answers[node] for node in nodes]).T
+        surpluses = np.array(surpluses_of(values.reshape([n + 1 for n in degrees])))
+        bound = float(errors.max() + SHARE * sum(surpluses))
+        is_wide = np.subtract(cell[1], cell[0]) > SMALLEST
+        is_good = bound <= error and sum(surpluses) <= RESOLVED
+        if is_good or not is_wide.any() or not np.isfinite(surpluses).all():
+            finished.append((cell, bound if np.isfinite(bound) else np.inf))
+        else:
+            pending.extend(halves_of(cell, int(np.argmax(np.where(is_wide, surpluses, -1.0)))))
+    cells, bounds = zip(*sorted(finished), strict=True)
+    return Refinement(cells, bounds, tuple(sorted(missing)))
+
+
+# Points of the map of a sweep
 
 
 def coordinates_of(sweep: Sweep) -> MapCoordinates:
@@ -59,11 +174,11 @@ def refine(sweep: Sweep, ask: Callable[[list[dict]], Iterable[dict]]) -> tuple[A
             result = record["result"]
             is_good = result.get("converged", False)
             value = (result["mu_macro"], result["mu_macro_error"]) if is_good else None
-            answers[node] = value or (math.nan, math.inf)
+            answers[node] = value or (np.nan, np.inf)
     return answers, state
 
 
-def _request(sweep: Sweep, coordinates: MapCoordinates, node: tuple[float, ...]) -> dict:
+def _request(sweep: Sweep, coordinates: MapCoordinates, node: Node) -> dict:
     """Request for a node.  It equals a sweep's request for the same point."""
     place = dict(zip(coordinates.directions, coordinates.place(node), strict=True))
     point = {"velocity": (0.0,)} | {name: (value,) for name, value in place.items()}
@@ -74,37 +189,29 @@ def _request(sweep: Sweep, coordinates: MapCoordinates, node: tuple[float, ...])
 def solve_points(sweep: Sweep, path: str | Path, processes: int) -> dict:
     """Solve all points of a map in several processes, and write its batch file.
 
-    Progress is printed on standard error.  Each point is appended to a journal as soon as it is
-    solved.  Returns the statistics of batch.finish.
+    Progress is printed on standard error.  Returns the statistics of the job.
     """
     from tqdm import tqdm
 
-    files.refuse_unwritable(Path(path).parent)
-    cache, journal = batch.Cache(path), batch.Journal(path)
-    seconds: list[float] = []
-    records: dict[str, dict] = {}
+    with (
+        batch.Job(path) as job,
+        ProcessPoolExecutor(processes, None, _begin, (named_files.PLACES,)) as pool,
+    ):
 
-    def ask(requests: list[dict]) -> list[dict]:
-        cache.find(requests)
-        keys = [key_of(request) for request in requests]
-        missing = dict(zip(keys, requests, strict=True))  # two nodes can be the same point
-        missing = {key: r for key, r in missing.items() if key not in cache.records}
-        jobs = [pool.submit(batch.computed, request) for request in missing.values()]
-        for job in tqdm(as_completed(jobs), None, len(jobs), unit="point", mininterval=1.0):
-            record, took = job.result()
-            seconds.append(took)
-            if evaluate.is_final(record["result"]):
-                journal.append(record)
-            records[record["key"]] = record
-        records.update((key, cache.records[key]) for key in keys if key in cache.records)
-        return [records[key] for key in keys]
+        def compute(requests: Sequence[dict]) -> Iterator[tuple[dict, float]]:
+            futures = [pool.submit(batch.computed, request) for request in requests]
+            for one in tqdm(as_completed(futures), None, len(futures), unit="point", mininterval=1):
+                yield one.result()
 
-    try:
-        with ProcessPoolExecutor(processes, None, _begin, (named_files.PLACES,)) as pool:
-            refine(sweep, ask)
-    finally:
-        journal.close()
-    return batch.finish(cache, [records[key] for key in sorted(records)], seconds)
+        records: dict[str, dict] = {}
+
+        def ask(requests: list[dict]) -> list[dict]:
+            some = job.solve(requests, compute)
+            records.update((record["key"], record) for record in some)
+            return some
+
+        refine(sweep, ask)
+        return job.finish([records[key] for key in sorted(records)])
 
 
 def _begin(places: dict[str, Path]) -> None:
