@@ -4,7 +4,7 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from microslip.foundation.csv_table import Table, read_table, table_of
+from microslip.foundation.csv_table import read_table, table_of
 from microslip.foundation.errors import InputError
 
 NAMES = {"load": "N", "speed": "m/s", "amplitude": "m", "mu": "", "counterbody": None}
@@ -38,7 +38,6 @@ def test_lines_have_the_numbers_of_the_file():
     text = b'# first day\n\nlabel,load [N]\n"a\n b",1\n# second day\nc,2\n'
     table = read_table(text, NAMES)
     assert (table.lines, table.labels) == ([4, 7], {"label": ["a  b", "c"]})
-    assert table.place(1) == "in line 7"
 
 
 def test_a_decimal_comma_is_read_if_declared():
@@ -148,7 +147,6 @@ def test_columns_of_a_frame_are_lists_with_units():
     """Every missing value of pandas becomes None."""
     frame = pd.DataFrame({"load [N]": [1.5, np.nan], "mu": [0.3, None], "label": ["a", pd.NA]})
     result = table_of("table", frame, NAMES)
-    assert isinstance(result, Table) and result.place(1) == "in case 1"
     assert result.columns == {"load": ["1.5 N", None], "mu": [0.3, None], "label": ["a", None]}
     series = {"load": pd.Series(["1 N", "2 N"], index=[7, 3])}
     assert table_of("table", series, NAMES).columns == {"load": ["1 N", "2 N"]}

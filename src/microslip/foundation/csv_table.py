@@ -15,14 +15,13 @@ quote and renames duplicate columns.  Its messages do not contain the line numbe
 
 from __future__ import annotations
 
-import codecs
 import csv
 import math
 import os
 import re
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass
-from typing import Any, NamedTuple, TypeVar
+from typing import Any, TypeVar
 
 from microslip.foundation.errors import InputError
 from microslip.foundation.files import content_of
@@ -48,8 +47,6 @@ DECIMAL_COMMA = re.compile(r"(?<=[0-9]),(?=[0-9])|^([+-]?),(?=[0-9])")
 GROUPED = re.compile(r"[+-]?[1-9]\d{0,2}(\.\d{3})+", re.A)
 """Pattern of a number such as 1.100, where the point can be a thousands separator."""
 UNGROUPED = re.compile(r"[+-]?[1-9]\d{0,2}", re.A)
-MOST_BREAKS = 100
-"""Largest number of lines in a quoted cell."""
 UTF_8 = "allowed: UTF-8, which spreadsheets call CSV UTF-8, or the encoding of the file by name"
 SOURCES = "allowed is a path, a DataFrame of pandas, or a mapping of names to sequences"
 
@@ -79,19 +76,15 @@ class Table:
     @property
     def columns(self) -> dict[str, list[Any]]:
         """The cells with the units of their headings, such as "10 N"."""
-        out = dict(self.cells)
-        for name, unit in self.units.items():
-            if unit is not None:
-                out[name] = [c if c is None else f"{c} {unit}".strip() for c in self.cells[name]]
-        return out
+        units = {n: None if unit is None else f" {unit}".rstrip() for n, unit in self.units.items()}
+        return {
+            n: cells if units[n] is None else [c if c is None else f"{c}{units[n]}" for c in cells]
+            for n, cells in self.cells.items()
+        }
 
     @property
     def labels(self) -> dict[str, list[Any]]:
         return {name: cells for name, cells in self.cells.items() if name in LABELS}
-
-    def place(self, row: int) -> str:
-        """Phrase for a row in messages, such as "in line 3"."""
-        return f"in line {self.lines[row]}" if self.lines else f"in case {row}"
 
     def numbers(self, least: Mapping[str, float] | None = None) -> dict[str, list[float]]:
         """The cells of each column as finite numbers.
@@ -99,8 +92,8 @@ class Table:
         least: smallest allowed number of a column, keyed by its name.  Raises ValueError about an
         invalid row.
         """
-        if self.errors:
-            raise ValueError(next(iter(self.errors.values())))
+        for problem in self.errors.values():
+            raise ValueError(problem)
         limits = dict.fromkeys(self.cells, -math.inf) | dict(least or {})
         columns = {n: zip(self.lines, cells, strict=True) for n, cells in self.cells.items()}
         return {n: [number(k, n, c or "", limits[n]) for k, c in one] for n, one in columns.items()}
@@ -111,22 +104,13 @@ def check_format(decimal: str, encoding: str) -> None:
     if decimal not in (".", ","):
         raise InputError("decimal", decimal, "allowed is '.' or ','")
     try:
-        codecs.lookup(encoding)
         "".encode(encoding)  # refuses encodings from bytes to bytes
     except (LookupError, TypeError, ValueError):
         allowed = "allowed is the name of an encoding, such as utf-8 or cp1252"
         raise InputError("encoding", encoding, allowed) from None
 
 
-def table_of(
-    argument: str,
-    source: Any,
-    names: Mapping[str, str | None],
-    *,
-    need_units: bool = False,
-    decimal: str = ".",
-    encoding: str = "utf-8",
-) -> Table:
+def table_of(argument: str, source: Any, names: Mapping[str, str | None], **form: Any) -> Table:
     """Read a table from a file or from columns.
 
     Parameters
@@ -135,7 +119,7 @@ def table_of(
         Name of the table in messages.
     source : path, mapping or pandas DataFrame
         A file, or columns with headings such as "load [N]".
-    names, need_units, decimal, encoding
+    names, form
         See `read_table`.  Other columns than `names` are allowed without a file.
 
     Raises
@@ -143,9 +127,8 @@ def table_of(
     InputError
         If the table is invalid, or the file has no valid row.
     """
-    check_format(decimal, encoding)
+    check_format(form.get("decimal", "."), form.get("encoding", "utf-8"))
     if isinstance(source, str | os.PathLike):
-        form: dict[str, Any] = {"decimal": decimal, "encoding": encoding, "need_units": need_units}
         table = parsed_file(argument, source, lambda content: read_table(content, names, **form))
         if len(table.errors) == len(table.lines):
             problems = [*table.errors.values(), "no line follows the heading; allowed: some"]
@@ -160,9 +143,7 @@ def table_of(
             raise InputError(argument, title, allowed)
         if isinstance(values, str | bytes) or not hasattr(values, "__len__"):
             raise InputError(title, values, "allowed is a sequence of one value for each row")
-        heading = HEADING.fullmatch(title)
-        unit = _unit(heading) if heading else None
-        name = title if unit is None or heading is None else heading[1].lower()
+        name, unit = _name_and_unit(title) or (title, None)
         if name in table.cells:
             raise InputError(argument, name, "is there twice; allowed: once")
         table.units[name] = unit
@@ -183,9 +164,9 @@ def parsed_file(argument: str, path: str | os.PathLike, parse: Callable[[bytes],
         return parse(content_of(path))
     except OSError as error:
         problem = f"cannot be read ({error.strerror}); allowed is a file of CSV"
-        raise InputError(argument, str(path), problem) from None
     except ValueError as error:
-        raise InputError(argument, str(path), str(error)) from None
+        problem = str(error)
+    raise InputError(argument, str(path), problem)
 
 
 def read_table(
@@ -219,70 +200,65 @@ def read_table(
         If the content is no text, if the heading is invalid, if units are below the heading, or if
         points may separate thousands.  The message begins with the line number.
     """
-    lines, form = lines_of(content, encoding), _Form(names, need_units, complete, decimal)
+    lines = lines_of(content, encoding)
     first = next((k for k, line in enumerate(lines) if is_row(k, line)), 0)
-    mark = next((k for k in range(first)[::-1] if lines[k].lstrip().startswith("#")), first)
-    problem, separator, units, row = _heading(lines, first, form)
-    if problem and mark < first:  # a heading behind a comment mark
-        hidden = _heading([*lines[:mark], lines[mark].lstrip("# \t")], mark, form)
-        if not hidden[0]:
-            problem, separator, units, row = *hidden[:3], first
+    comments = [k for k in range(first) if lines[k].lstrip().startswith("#")]
+    separator, titles, start = _split_heading(lines, first, decimal)
+    problem = _heading_problem(titles, names, need_units, complete)
+    if problem and comments:  # a heading behind a comment mark
+        hidden = [*lines[: comments[-1]], lines[comments[-1]].lstrip("# \t")]
+        mark, marked, _ = _split_heading(hidden, comments[-1], decimal)
+        if not _heading_problem(marked, names, need_units, complete):
+            problem, separator, titles, start = "", mark, marked, first
     if problem:
-        raise ValueError(problem)
-    table = Table({name: [] for name in units}, units, [], {})
+        raise ValueError(f"line {first + 1}: {problem}")
+    units = dict(filter(None, map(_name_and_unit, titles)))
     quantities = [name for name in units if names.get(name) is not None]
-    while row < len(lines):
-        where = row + 1
-        text, row = _joined(lines, row, separator)
-        if not is_row(where - 1, text):
-            continue
-        cells = _parsed(text, separator) or []
+    table = Table({name: [] for name in units}, units, [], {})
+    for where, text in _rows(lines, start, separator):
+        cells = _cells(text, separator)
         while len(cells) > len(units) and not cells[-1]:
             cells.pop()
-        if not table.lines and not any(map(str.isdigit, text)):
-            below = {n: c for n, c in zip(units, cells, strict=False) if n in quantities}
-            _refuse_units(where, below, units)
+        row = dict.fromkeys(units, "") | dict(zip(units, cells, strict=False))
+        for name in [] if table.lines or any(map(str.isdigit, text)) else quantities:
+            if units[name] is None and UNIT.fullmatch(row[name]):
+                allowed = f"a number, with its unit in the heading, as in {name} "
+                allowed += f"[{row[name].strip('[]()')}]"
+                raise ValueError(f"line {where}: {name} is {row[name]!r}; allowed: {allowed}")
         try:
-            _check_count(where, len(cells), len(units), separator)
-            pairs = zip(units, cells, strict=True)
-            values = [_cell(where, name, cell, units[name], form) for name, cell in pairs]
+            if len(cells) != len(units):
+                raise ValueError(_count_problem(where, len(cells), len(units), separator))
+            for name in [one for one in units if one not in LABELS]:
+                if name not in quantities:
+                    row[name] = _with_points(row[name], decimal)
+                elif row[name]:
+                    row[name] = with_point(where, name, row[name], decimal)
+                    if units[name] is not None:
+                        number(where, name, row[name], unit=units[name])
         except ValueError as error:
             table.errors[len(table.lines)] = str(error)
-            cells += [""] * len(units)
-            pairs = zip(units, cells, strict=False)
-            values = [cell or None if name in LABELS else None for name, cell in pairs]
+            row = {name: cell if name in LABELS else "" for name, cell in row.items()}
         table.lines.append(where)
-        for column, value in zip(table.cells.values(), values, strict=True):
-            column.append(value)
-    if "," not in (separator, decimal):
-        for name in quantities:
-            refuse_thousands(name, table.cells[name], table.lines)
+        for name, cell in row.items():
+            table.cells[name].append(cell or None)
+    for name in quantities if "," not in (separator, decimal) else ():
+        refuse_thousands(name, table.cells[name], table.lines)
     return table
-
-
-class _Form(NamedTuple):
-    """Allowed columns and format of a file; see read_table."""
-
-    names: Mapping[str, str | None]
-    need_units: bool
-    complete: str
-    decimal: str
 
 
 def lines_of(content: bytes, encoding: str) -> list[str]:
     """Lines of a file.  Raises ValueError if the content is not text in this encoding."""
-    is_utf_8 = codecs.lookup(encoding).name == "utf-8"
-    if is_utf_8 and content.startswith((b"\xff\xfe", b"\xfe\xff")):
-        raise ValueError(f"line 1: UTF-16; {UTF_8}")
     try:
-        text = content.decode("utf-8-sig" if is_utf_8 else encoding)
+        text = content.decode(encoding).removeprefix("\ufeff")
     except UnicodeDecodeError as error:
         where = content.count(b"\n", 0, error.start) + 1
-        problem = f"byte 0x{content[error.start]:02x} is not {'UTF-8' if is_utf_8 else encoding}"
+        problem = f"byte 0x{content[error.start]:02x} is not {encoding.upper()}"
+        if content.startswith((b"\xff\xfe", b"\xfe\xff")):
+            problem = "UTF-16"
         raise ValueError(f"line {where}: {problem}; {UTF_8}") from None
-    if "\0" in text:
-        where = text.count("\n", 0, text.index("\0")) + 1
-        raise ValueError(f"line {where}: not text; allowed: CSV or netCDF")
+    before, zero, _ = text.partition("\0")
+    if zero:
+        raise ValueError(f"line {before.count(chr(10)) + 1}: not text; allowed: CSV or netCDF")
     return text.replace("\r\n", "\n").replace("\r", "\n").split("\n")
 
 
@@ -293,117 +269,109 @@ def is_row(index: int, line: str) -> bool:
     return not (NO_ROW.fullmatch(stripped) or names_separator)
 
 
-def _heading(
-    lines: list[str], index: int, form: _Form
-) -> tuple[str, str, dict[str, str | None], int]:
-    """What is wrong with a heading, the separator, the unit of each column, and the index of the
-    line below."""
-    names, need_units, complete, decimal = form
+def _split_heading(lines: list[str], index: int, decimal: str) -> tuple[str, list[str], int]:
+    """The separator and the titles of the heading that begins in a line, and the index of the line
+    below."""
     for separator in sorted(SEPARATORS, key=decimal.__eq__):  # the comma last if it is decimal
         text, end = _joined(lines, index, separator)
-        titles = _parsed(text, separator) or [text]
+        titles = _cells(text, separator) or [text]
         while len(titles) > 1 and not titles[-1]:
             titles.pop()
-        matches = [one for one in map(HEADING.fullmatch, titles) if one]
-        if len(matches) == len(titles):
-            break
-    columns = [match[1].lower() for match in matches]
-    units = {name: _unit(match) for name, match in zip(columns, matches, strict=True)}
+        if all(map(HEADING.fullmatch, titles)):
+            return separator, titles, end
+    return separator, [text], end
+
+
+def _heading_problem(
+    titles: list[str], names: Mapping[str, str | None], need_units: bool, complete: str
+) -> str:
+    """What is wrong with the titles of a table, and what is allowed."""
+    pairs = [pair for pair in map(_name_and_unit, titles) if pair]
+    columns = [name for name, _ in pairs]
     how = "each with its unit" if need_units else "with a unit or without"
     shown = next((f", as in {one}" for one in EXAMPLES if one.split()[0] in names), "")
     allowed = complete or f"some of {', '.join(names)}, {how}{shown}; texts: {', '.join(LABELS)}"
-    if text.startswith("LabVIEW Measurement"):
+    if titles[0].startswith("LabVIEW Measurement"):
         allowed += "; of a LabVIEW file keep only the table, below a heading with units"
-    unknown = [name for name in columns if name not in (*names, *LABELS)]
-    twice = [name for name in columns if columns.count(name) > 1]
-    bare = [name for name in columns if need_units and names.get(name) and not units[name]]
-    problem = ""
-    if len(matches) < len(titles) or complete and sorted(columns) != sorted(names):
-        problem = f"the heading is {text[:80]!r}"
-    elif unknown:
-        problem = f"a column {unknown[0]!r}; {near_miss(unknown[0], names)}".rstrip("; ")
-    elif twice:
-        problem = f"{twice[0]} is there twice"
-    elif bare:
-        problem, allowed = f"{bare[0]} has no unit", f"one such as {bare[0]} [{names[bare[0]]}]"
-    if problem:
-        problem = f"line {index + 1}: {problem}; allowed: {allowed}"
-    return problem, separator, units, end
+    if len(pairs) < len(titles) or complete and sorted(columns) != sorted(names):
+        return f"the heading is {','.join(titles)[:80]!r}; allowed: {allowed}"
+    for name, unit in pairs:
+        if name not in (*names, *LABELS):
+            hint = near_miss(name, names)
+            return f"a column {name!r}; {hint}allowed: {allowed}".replace("? allowed", "?; allowed")
+        if columns.count(name) > 1:
+            return f"{name} is there twice; allowed: {allowed}"
+        if need_units and names.get(name) and not unit:
+            return f"{name} has no unit; allowed: one such as {name} [{names[name]}]"
+    return ""
 
 
-def _unit(heading: re.Match) -> str | None:
-    """The unit in a heading: "" for a pure number, None without brackets."""
-    unit = heading[2] if heading[3] is None else heading[3]
-    return None if unit is None else "" if unit.strip() in PURE else unit.strip()
+def _name_and_unit(title: str) -> tuple[str, str | None] | None:
+    """Name in lower case and unit of a heading: "" for a pure number, None without brackets.  None
+    for another text."""
+    match = HEADING.fullmatch(title)
+    if match is None:
+        return None
+    unit = match[2] if match[3] is None else match[3]
+    return match[1].lower(), None if unit is None else "" if unit.strip() in PURE else unit.strip()
+
+
+def _rows(lines: list[str], index: int, separator: str) -> Iterator[tuple[int, str]]:
+    """Line number and text of each row from a line on."""
+    while index < len(lines):
+        where = index + 1
+        text, index = _joined(lines, index, separator)
+        if is_row(where - 1, text):
+            yield where, text
 
 
 def _joined(lines: list[str], index: int, separator: str) -> tuple[str, int]:
     """The row that begins in a line, and the index of the line below it.  The lines of a quoted
-    cell are joined by spaces."""
-    text, end = lines[index] if lines else "", index + 1
-    if text.count('"') % 2 and _parsed(text, separator) is None:
-        while text.count('"') % 2 and end < min(len(lines), index + MOST_BREAKS):
-            text, end = f"{text} {lines[end]}", end + 1
-        if _parsed(text, separator) is None:
-            text, end = lines[index], index + 1
-    return text, end
+    cell, which ends in the next line with an odd number of quotes, are joined by spaces."""
+    if lines[index].count('"') % 2 and not _cells(lines[index], separator):
+        odd = (k for k in range(index + 1, len(lines)) if lines[k].count('"') % 2)
+        end = next(odd, index) + 1
+        text = " ".join(lines[index:end])
+        if _cells(text, separator):
+            return text, end
+    return lines[index], index + 1
 
 
-def _parsed(text: str, separator: str) -> list[str] | None:
-    """Cells of a row; None if the quotes are not in pairs around whole cells."""
+def _cells(text: str, separator: str) -> list[str]:
+    """Cells of a row; empty if the quotes are not in pairs around whole cells."""
     rows = csv.reader([text], delimiter=separator, strict=True, skipinitialspace=True)
     try:
         return [cell.strip() for cell in next(rows, [])]
     except csv.Error:
-        return None
+        return []
 
 
-def _check_count(where: int, count: int, columns: int, separator: str) -> None:
-    """Raise ValueError unless a row has a cell for each column.  count: 0 for open quotes."""
+def _count_problem(where: int, count: int, columns: int, separator: str) -> str:
+    """What is wrong with a row of `count` cells; 0 for open quotes."""
     if not count:
         allowed = "allowed are cells in whole pairs of double quotes"
-        raise ValueError(f"line {where}: a double quote is open or inside a cell; {allowed}")
-    if count != columns:
-        hint = "; for decimal commas in quotes give decimal = ','" if count > columns else ""
-        parted = f"parted by a {SEPARATORS[separator]} as in the heading"
-        allowed = f"{columns}, {parted}, one with such a sign in double quotes{hint}"
-        raise ValueError(f"line {where}: {count} cells; allowed: {allowed}")
+        return f"line {where}: a double quote is open or inside a cell; {allowed}"
+    hint = "; for decimal commas in quotes give decimal = ','" if count > columns else ""
+    parted = f"parted by a {SEPARATORS[separator]} as in the heading"
+    allowed = f"{columns}, {parted}, one with such a sign in double quotes{hint}"
+    return f"line {where}: {count} cells; allowed: {allowed}"
 
 
-def _refuse_units(where: int, row: Mapping[str, str], units: Mapping[str, str | None]) -> None:
-    """Raise ValueError for a row of units below a heading without them."""
-    for name, cell in row.items():
-        if units[name] is None and UNIT.fullmatch(cell):
-            problem = f"line {where}: {name} is {cell!r}; allowed: a number"
-            example = f"{name} [{cell.strip('[]()')}]"
-            raise ValueError(f"{problem}, with its unit in the heading, as in {example}")
-
-
-def _cell(where: int, name: str, cell: str, unit: str | None, form: _Form) -> str | None:
-    """Text of a cell with decimal points, or None if it is empty."""
-    if name in LABELS or not cell:
-        return cell or None
-    if form.names[name] is None:
-        return DECIMAL_COMMA.sub(r"\1.", cell) if form.decimal == "," else cell
-    cell = with_point(where, name, cell, form.decimal)
-    if unit is not None:
-        number(where, name, cell, unit=unit)
-    return cell
+def _with_points(text: str, decimal: str) -> str:
+    return DECIMAL_COMMA.sub(r"\1.", text) if decimal == "," else text
 
 
 def with_point(where: int, name: str, cell: str, decimal: str) -> str:
     """Text of a cell with decimal points and hyphens for minus signs.  Raises ValueError if the
     decimal mark of a number differs from the declared one."""
     cell = cell.strip("'").strip().replace("−", "-")
-    if decimal == ".":
-        if re.match(r"[+-]?\d*,\d", cell, re.ASCII):
-            allowed = "allowed: a decimal point, or decimal = ','"
-            raise ValueError(f"line {where}: {cell!r} has a decimal comma, in {name}; {allowed}")
-        return cell
-    if re.search(r"\d\.\d", cell):
+    if decimal == "." and re.match(r"[+-]?\d*,\d", cell, re.ASCII):
+        allowed = "allowed: a decimal point, or decimal = ','"
+        raise ValueError(f"line {where}: {cell!r} has a decimal comma, in {name}; {allowed}")
+    if decimal == "," and re.search(r"\d\.\d", cell):
         allowed = "allowed: no points where commas are decimal"
         raise ValueError(f"line {where}: {name} is {cell!r}; {allowed}")
-    return DECIMAL_COMMA.sub(r"\1.", cell)
+    return _with_points(cell, decimal)
 
 
 def number(
@@ -430,16 +398,12 @@ def refuse_thousands(name: str, words: Iterable[str | None], lines: Iterable[int
     Programs with decimal commas may write 900 and 1.100 for 900 and 1100.  If commas separate the
     cells or are decimal, numbers have no such points.
     """
-    grouped, plain = None, False
-    for where, word in zip(lines, words, strict=True):
-        if word is None or UNGROUPED.fullmatch(word):
-            plain = plain or word is not None
-        elif GROUPED.fullmatch(word):
-            grouped = grouped or (where, word)
-        elif word not in ("0", "-0", "+0"):
-            return
-    if grouped and plain:
+    cells = [(where, word) for where, word in zip(lines, words, strict=True) if word is not None]
+    cells = [(where, word) for where, word in cells if word.lstrip("+-") != "0"]
+    grouped = [(where, word) for where, word in cells if GROUPED.fullmatch(word)]
+    plain = sum(bool(UNGROUPED.fullmatch(word)) for _, word in cells)
+    if grouped and plain and len(grouped) + plain == len(cells):
         raise ValueError(
-            f"line {grouped[0]}: {name} is {grouped[1]!r} beside whole numbers, so that its point "
-            "may part thousands; allowed: no such points, and as many decimals in all lines"
+            f"line {grouped[0][0]}: {name} is {grouped[0][1]!r} beside whole numbers, so that its "
+            "point may part thousands; allowed: no such points, and as many decimals in all lines"
         )
