@@ -48,9 +48,8 @@ import tables
 from scipy.stats import beta
 
 import microslip
-from microslip.adaptive import driven_contact, friction
-from microslip.estimate import ladder, richardson
-from microslip.estimate import refine as refinement
+from microslip.answer import ladder
+from microslip.answer import refine as refinement
 from microslip.motions.by_name import motion_named
 from microslip.motions.problem import Problem
 from microslip.pressures.by_name import pressure_named
@@ -77,7 +76,7 @@ digits differ between processors."""
 EVERY = 500
 """Number of points between two summaries."""
 DOCS = Path(__file__).parents[1] / "docs/measured"
-LADDER_FOR = friction.ladder_for
+LADDER_FOR = ladder.ladder_for
 """The package's unmodified function."""
 ENERGY = "energy_reference"
 """Key of the reference for the energy in a line."""
@@ -141,7 +140,7 @@ def energy_failed(line: dict) -> bool:
 
 def calibrate(
     start: float = 1.0,
-    safety: float = richardson.SAFETY,
+    safety: float = refinement.SAFETY,
     smallest: float = refinement.SMALLEST_SHARE,
 ) -> None:
     """Set the constants of the error estimate in this process; the defaults reset them."""
@@ -150,8 +149,8 @@ def calibrate(
         plain = LADDER_FOR(*arguments)
         return plain if plain.imposed else replace(plain, start=start * plain.start)
 
-    friction.ladder_for = driven_contact.ladder_for = scaled
-    richardson.SAFETY, refinement.SMALLEST_SHARE = safety, smallest
+    ladder.ladder_for = scaled
+    refinement.SAFETY, refinement.SMALLEST_SHARE = safety, smallest
 
 
 def examine(seed: int, k: int, reference: dict | None, constants: dict) -> dict:
@@ -397,7 +396,7 @@ def main():
     parser.add_argument("--again", action="store_true", help="solve again, use existing references")
     parser.add_argument("--keep", action="store_true", help="write the references to docs")
     parser.add_argument("--start", type=float, default=1.0)
-    parser.add_argument("--safety", type=float, default=richardson.SAFETY)
+    parser.add_argument("--safety", type=float, default=refinement.SAFETY)
     parser.add_argument("--smallest", type=float, default=refinement.SMALLEST_SHARE)
     options = parser.parse_args()
     constants = {name: getattr(options, name) for name in ("start", "safety", "smallest")}

@@ -18,7 +18,7 @@ from functools import lru_cache
 
 import numpy as np
 
-from microslip.adaptive.choice import choose_model
+from microslip.answer.limits import choose_model
 from microslip.pressures.hertz import HERTZ
 from microslip.solver.discretise import Resolution
 from microslip.solver.run import Settings

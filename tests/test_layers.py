@@ -8,8 +8,8 @@ import microslip
 
 PACKAGE = Path(microslip.__file__).parent
 RULE = (
-    "foundation < theory < pressures < motions < contact < solver < estimate "
-    "< adaptive < si < config < sweeps < datasets < studies < report < app"
+    "foundation < theory < pressures < motions < contact < solver "
+    "< answer < si < config < sweeps < datasets < studies < report < app"
 )
 ROOMS = RULE.split(" < ")
 PHYSICS = ROOMS[1 : ROOMS.index("si")]

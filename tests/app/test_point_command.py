@@ -4,7 +4,7 @@ import math
 
 import pytest
 
-from microslip.adaptive.result import OWN_EQUATIONS
+from microslip.answer.answer import OWN_EQUATIONS
 from microslip.app.cli import main
 
 POINT = ["point", "transverse", "--velocity", "0.1", "--amplitude", "1"]

@@ -18,9 +18,8 @@ def nothing_runs(monkeypatch):
     def work(*_, **__):
         raise AssertionError("work has started")
 
-    runs = ("friction.run_tolerance", "friction.simulate")
-    for name in (*runs, "closed_forms.no_vibration", "closed_forms.closed_form"):
-        monkeypatch.setattr(f"microslip.adaptive.{name}", work)
+    for name in ("refine.refine", "request.no_vibration", "request.closed_form"):
+        monkeypatch.setattr(f"microslip.answer.{name}", work)
 
 
 @pytest.fixture

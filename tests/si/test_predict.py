@@ -5,7 +5,6 @@ import json
 import math
 import re
 import sys
-from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -14,8 +13,8 @@ import pytest
 from bad_input_tables.odd_quantities import Q
 
 import microslip
+from microslip.answer.answer import Estimate
 from microslip.app import cli, predict_command
-from microslip.estimate.estimate import Estimate
 from microslip.si import inputs, output
 from microslip.si.materials import Material
 
@@ -98,7 +97,7 @@ def test_an_answer_that_is_no_number_says_why(monkeypatch, capsys):
 
     rigid = microslip.solve("transverse", 0.5, 0.5, model="rigid", tolerance=0.1)
     lost = {"friction": Estimate(math.nan), "converged": False, "reason": "lost on the way"}
-    monkeypatch.setattr("microslip.si.solve.solve", lambda *_, **__: replace(rigid, **lost))
+    monkeypatch.setattr("microslip.si.solve.solve", lambda *_, **__: rigid.changed(**lost))
     for motion, name in (({"amplitude": "1 um"}, "mu_macro"), ({"reduction": "50 %"}, "amplitude")):
         words = options(**BALL, **motion, material="steel", frequency="20 kHz")
         assert cli.main(["predict", "transverse", *words, "--json"]) == 1

@@ -77,7 +77,7 @@ def failed(motion, velocity, *changes, **settings):
     if velocity > 0.0:
         return result
     friction = replace(result.friction, by_source={"resolution": 0.26})
-    return replace(result, friction=friction, converged=False, reason="lost on the way")
+    return result.changed(friction=friction, reason="lost on the way")
 
 
 def test_the_exit_code_follows_the_requested_quantity(monkeypatch, capsys):

@@ -2,15 +2,14 @@
 
 import json
 import math
-from dataclasses import replace
 from types import SimpleNamespace
 
 import pytest
 from stubs.si_contact import contact as contact_of
 
 import microslip
+from microslip.answer.refine import UNKNOWN
 from microslip.app import cli
-from microslip.estimate.refine import UNKNOWN
 from microslip.foundation.arguments import LARGEST_BODY
 from microslip.foundation.errors import InputError
 from microslip.si import solve
@@ -184,7 +183,7 @@ def test_a_force_that_the_solver_gives_up_on_says_why(monkeypatch, capsys):
         if velocity == 0.0:
             return result
         lost = {"mean_velocity": UNKNOWN, "converged": False}
-        return replace(result, **lost, reason="lost on the way")
+        return result.changed(**lost, reason="lost on the way")
 
     monkeypatch.setattr(solve, "solve", given_up)
     words = [*WORDS, "--amplitude", "0.1 um", "--force", "2.9 N", "--tolerance", "0.1"]

@@ -11,7 +11,7 @@ import pytest
 from stubs.studies_stub import configured
 
 import microslip
-from microslip.adaptive import single_run as trial
+from microslip.answer import point as trial
 from microslip.contact.path import EULER, make_path
 from microslip.contact.registry import MODELS
 from microslip.contact.squares import CartesianContact

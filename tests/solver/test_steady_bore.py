@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import microslip
-from microslip.adaptive.history import STARTS
+from microslip.answer.along import STARTS
 from microslip.contact.modes import PolarContact
 from microslip.contact.squares import CartesianContact
 from microslip.motions.named import ContinuousBore

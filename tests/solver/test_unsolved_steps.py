@@ -4,13 +4,14 @@ import numpy as np
 import pytest
 
 import microslip
-from microslip.adaptive import period
+from microslip.answer import period
 from microslip.contact.modes import PolarContact
 from microslip.contact.ring_contact import RadialContact
 from microslip.foundation.errors import SolverError
 from microslip.motions.by_name import motion_named
 from microslip.motions.problem import Problem
 from microslip.solver.discretise import Resolution
+from microslip.solver.run import unsolved
 from microslip.solver.simulate import simulate
 from microslip.theory import paper
 
@@ -74,10 +75,11 @@ def test_a_traction_field_fails(loose_steps):
 def test_a_period_does_not_converge_where_only_its_last_march_is_unsolved(monkeypatch):
     """The steps of the search are solved, those of the last march are not."""
 
-    def loosely(contact, path, state, tolerance, frames=period.frames):
-        return frames(contact, path, state, LOOSE)
+    def loosely(contact, path, state, tolerance, rows, along=period.along):
+        track = along(contact, path, state, LOOSE, rows)
+        return track._replace(failure=unsolved(track.residual, path.solves, tolerance))
 
-    monkeypatch.setattr(period, "frames", loosely)
+    monkeypatch.setattr(period, "along", loosely)
     result = microslip.period("transverse", 0.1, 1.0, cells=8, angles=4, steps=32)
     assert not result.converged and "unsolved" in result.reason
     assert np.isfinite(result.mu_macro)

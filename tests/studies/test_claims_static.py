@@ -9,8 +9,7 @@ from scipy.integrate import quad
 from stubs.claims_stub import answered, configured
 
 import microslip
-from microslip.adaptive.period import NoPeriodicState
-from microslip.adaptive.stick_area import patches
+from microslip.answer.period import NoPeriodicState, patches
 from microslip.contact.contact import StepFailure
 from microslip.studies import evidence, registry, static_limits
 from microslip.sweeps import batch
@@ -105,7 +104,7 @@ def test_a_single_run_is_what_the_command_line_has_and_is_timed_by_nobody():
 @pytest.mark.parametrize("error", [NoPeriodicState, StepFailure])
 def test_a_period_that_is_not_found_is_a_gap(error, monkeypatch):
     fails = Mock(side_effect=error("no periodic state"))
-    monkeypatch.setattr("microslip.adaptive.stick_area.period", fails)
+    monkeypatch.setattr("microslip.answer.period.period", fails)
     place = {"motion": "bore", "velocity": "0.1", "amplitude": "1", "poisson": "0"}
     request = {"kind": "patches", "cells": 8, "angles": 8, "steps": 16} | place
     record, _ = batch.computed(request)

@@ -19,8 +19,8 @@ from stubs.studies_stub import configured
 from stubs.sweep_stub import Solver
 
 import microslip
-from microslip.adaptive import single_run
-from microslip.adaptive.choice import choose_model
+from microslip.answer import point
+from microslip.answer.limits import choose_model
 from microslip.config.settings import Sweep
 from microslip.contact.contact import StepFailure
 from microslip.contact.registry import MODELS
@@ -53,7 +53,7 @@ def of_jobs(study, settings):
 @pytest.mark.parametrize("poisson", [0.0, 0.3])
 @pytest.mark.parametrize("motion", [name for name, one in MOTIONS.items() if not fields(one)])
 def test_models_apply_here_exactly_where_the_solver_lets_them(motion, poisson):
-    applicable = {m for m in MODELS if not single_run.applies(motion, poisson, m, "shipped")}
+    applicable = {m for m in MODELS if not point.applies(motion, poisson, m, "shipped")}
     assert set(requests.models_of(motion, poisson)) == applicable
     assert requests.exact_model(motion, poisson) == choose_model(
         Problem(motion_named(motion), 1.0, None if motion == "continuous-bore" else 1.0, poisson)
@@ -154,13 +154,13 @@ def test_times_of_another_cpu_have_other_keys_and_points_do_not(monkeypatch):
 
 
 class Trials(Solver):
-    """Stub of the solver and single_run. The error of a trial is 1/cells^2; march never applies."""
+    """Stub of the solver and single runs. A trial's error is 1/cells^2; march never applies."""
 
     def __init__(self, monkeypatch, **settings):
         super().__init__(monkeypatch, **settings)
         self.settings = []
         for name in ("applies", "run_trial"):
-            monkeypatch.setattr(f"microslip.adaptive.single_run.{name}", getattr(self, name))
+            monkeypatch.setattr(f"microslip.answer.point.{name}", getattr(self, name))
 
     def applies(self, motion, poisson, model, method, pressure="hertz"):
         return "not here" if method == "march" else ""
@@ -216,7 +216,7 @@ def test_a_method_that_does_not_apply_is_not_run(monkeypatch):
 def test_a_method_that_fails_is_data(monkeypatch, error):
     Trials(monkeypatch)
     fail = Mock(side_effect=error)
-    monkeypatch.setattr("microslip.adaptive.single_run.run_trial", fail)
+    monkeypatch.setattr("microslip.answer.point.run_trial", fail)
     monkeypatch.setattr("microslip.solve", fail)
     for one in (trial(), probe("projected-gradient")):
         result = evaluate.computed(one)
@@ -351,7 +351,7 @@ def test_the_papers_run_uses_the_pressure_of_the_request(monkeypatch):
     monkeypatch.setattr("microslip.contact.squares.CartesianContact.march", march)
     for name in ("hertz", CONE):
         with pytest.raises(Seen) as caught:
-            single_run.run_trial(
+            point.run_trial(
                 "transverse", 0.1, 0.8, poisson=0.0, model="cartesian", method="paper",
                 cells=32, angles=1, steps=100, tolerance=1e-3, pressure=name,
             )  # fmt: skip

@@ -8,7 +8,7 @@ import pytest
 from stubs.unpacked_period import unpacked
 
 import microslip
-from microslip.adaptive.period import NoPeriodicState
+from microslip.answer.period import NoPeriodicState
 from microslip.sweeps import batch, evaluate, period_codec
 
 POINTS = [("transverse", "0.1", "0.6", "0"), ("transverse", "0.1", "0.6", "0.3")]
@@ -43,7 +43,7 @@ def test_a_stored_period_is_the_computed_one_within_half_a_step(point, tmp_path)
 
 def test_a_stored_period_takes_few_bytes():
     whole = microslip.period("bore", 0.1, 1.0, **COUNTS)
-    everything = json.dumps(evaluate.plain(vars(whole)))
+    everything = json.dumps(evaluate.plain(whole.to_dict()))
     result = evaluate.computed(asked(("bore", "0.1", "1", "0")))
     assert len(json.dumps(result)) < 0.1 * len(everything)
 

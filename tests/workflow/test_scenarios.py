@@ -60,7 +60,7 @@ class Counted(Project):
 def finished(tmp_path_factory):
     """A project after its first run. Tests must not change it."""
     project = Counted(tmp_path_factory.mktemp("scenarios") / "it")
-    project.append("src/microslip/adaptive/point.py", COUNTING)
+    project.append("src/microslip/answer/point.py", COUNTING)
     project.configure(configured())
     jobs = {"solve_batch": 3, "make_dataset": 1, "draw_figure": 1, "link_file": 2}
     assert jobs_in(project.run(DATASET, FIGURE)) == jobs
@@ -290,7 +290,7 @@ def solve(*arguments, **settings):
 
 
 def test_a_solver_that_is_edited_during_a_run_ends_it(project):
-    project.append("src/microslip/adaptive/point.py", EDITING)
+    project.append("src/microslip/answer/point.py", EDITING)
     before = project.records()
     process = project.snakemake(DATASET, "-j2", "--configfile", "tiny.yaml")
     assert process.returncode != 0
@@ -392,7 +392,7 @@ def solve(**arguments):
 
 
 def test_a_point_that_failed_is_a_gap_and_is_tried_again(project):
-    project.append("src/microslip/adaptive/point.py", FAILING.format(error="SolverError"))
+    project.append("src/microslip/answer/point.py", FAILING.format(error="SolverError"))
     assert "slide: 9 points, 3 not converged" in project.run(DATASET)
     assert project.planned(DATASET)["solve_batch"] == 3
     assert "slide: 9 points, 3 not converged" in project.run(DATASET)
@@ -402,7 +402,7 @@ def test_a_point_that_failed_is_a_gap_and_is_tried_again(project):
 
 
 def test_an_error_of_the_code_fails_the_run(project):
-    project.append("src/microslip/adaptive/point.py", FAILING.format(error="TypeError"))
+    project.append("src/microslip/answer/point.py", FAILING.format(error="TypeError"))
     process = project.snakemake(DATASET, "-j2", "--configfile", "tiny.yaml")
     assert process.returncode != 0
     assert "TypeError: no luck" in process.stderr

@@ -48,7 +48,7 @@ def test_an_edit_makes_again_what_it_concerns_and_messages_and_dates_do_not_coun
         path.touch()
     (project.folder / "tiny.yaml").touch()
     project.append("src/microslip/contact/influence.py", "\n# More to read.\n")
-    checks = project.folder / "src/microslip/adaptive/checks.py"
+    checks = project.folder / "src/microslip/answer/limits.py"
     assert checks.read_text().count('"allowed is ') > 2
     checks.write_text(checks.read_text().replace('"allowed is ', '"what is allowed is '))
     project.append("src/microslip/report/figures/field.py", "\nSPARE = 1\n")

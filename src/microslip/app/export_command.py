@@ -92,7 +92,7 @@ def fill(parser: argparse.ArgumentParser) -> None:
 def _iwan(options: argparse.Namespace) -> Answer:
     import pandas as pd
 
-    from microslip.adaptive.iwan import iwan
+    from microslip.answer.iwan import iwan
     from microslip.si.iwan import predict_iwan
 
     refuse_output(options.output, endings=(".csv",))

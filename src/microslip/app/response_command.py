@@ -21,7 +21,7 @@ from microslip.app.question import (
 from microslip.foundation import spec
 
 if TYPE_CHECKING:
-    from microslip.adaptive.response import Response
+    from microslip.answer.along import Response
     from microslip.si.response import RealResponse
 
 OUTPUT = {

@@ -256,9 +256,7 @@ def refuse_unsolvable(
 
 
 def _refuse_corners(sweep: Sweep) -> None:
-    from microslip.adaptive.checks import checked_driven_problem
-    from microslip.adaptive.choice import choose_model
-    from microslip.adaptive.under_force import refuse_drive
+    from microslip.answer.limits import choose_model, problem_of, refuse
     from microslip.motions.by_name import motion_named
     from microslip.pressures.by_name import pressure_named
 
@@ -273,12 +271,13 @@ def _refuse_corners(sweep: Sweep) -> None:
     ends = [dict.fromkeys((v[0], v[-1]) if (v := getattr(sweep, n)) else (None,)) for n in names]
     for place in product(*ends):
         at: dict[str, Any] = dict(zip(names, place, strict=True))
-        problem = checked_driven_problem(sweep.motion, pressure=sweep.pressure, **at)
+        drive = {name: at.pop(name) for name in DRIVES}
+        problem = problem_of(sweep.motion, pressure=sweep.pressure, drive=drive, **at)
         moves = at["velocity"] != 0.0 or sweep.drives
         model = choose_model(problem, sweep.model) if moves or sweep.model != "auto" else None
         if sweep.drives:
             assert model is not None
-            refuse_drive(problem, model)
+            refuse(problem, model)
 
 
 def _file_in(name: Any, role: str, folders: Iterable) -> named_files.NamedFile | None:

@@ -9,10 +9,9 @@ import numpy as np
 import pandas as pd
 import xarray as xr
 
-from microslip.adaptive.history import History
-from microslip.adaptive.period import Period
-from microslip.adaptive.response import Response
-from microslip.adaptive.result import Result
+from microslip.answer.along import History, Response
+from microslip.answer.answer import Result
+from microslip.answer.period import Period
 from microslip.foundation.errors import InputError
 from microslip.si.output import Prediction
 from microslip.si.response import RealResponse
@@ -76,7 +75,7 @@ def to_xarray(record: Any) -> xr.Dataset:
     axes = AXES[kind]
     variables: dict[str, tuple] = {}
     about = {"record": kind.__name__}
-    plain = vars(record) if axes else record.to_dict()  # lists in a dict have no axes
+    plain = record.values if kind is History else record.to_dict()
     for name, value in plain.items():
         if isinstance(value, np.ndarray):
             variables[name] = _axes_of(name, value, axes), value

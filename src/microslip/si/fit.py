@@ -25,7 +25,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from microslip.adaptive.point import solve
+from microslip.answer.point import solve
 from microslip.foundation.arguments import LARGEST, SMALLEST_TOLERANCE
 from microslip.foundation.csv_table import LABELS, Table, table_of
 from microslip.foundation.errors import InputError

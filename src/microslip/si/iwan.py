@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from microslip.adaptive.iwan import iwan
+from microslip.answer.iwan import iwan
 from microslip.foundation.errors import InputError
 from microslip.si.response import only_contact
 from microslip.theory.iwan import Iwan

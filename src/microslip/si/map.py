@@ -7,9 +7,10 @@ from typing import Any
 
 import numpy as np
 
-from microslip.adaptive.point import Result
-from microslip.estimate.estimate import Estimate
+from microslip.answer.answer import Estimate, Result
 from microslip.foundation.errors import InputError
+from microslip.motions.by_name import motion_named
+from microslip.motions.problem import Problem
 
 MAP = "map"
 """Model name in a Result that comes from a map."""
@@ -72,18 +73,7 @@ class FrictionMap:
             reason += problem.allowed.partition(";")[0]
         except ValueError as problem:
             value, error, reason = math.nan, math.inf, str(problem)
-        return Result(
-            motion=self.motion,
-            pressure=self.pressure,
-            mean_velocity=Estimate(velocity),
-            amplitude=amplitude,
-            poisson=poisson,
-            model=MAP,
-            tolerance=tolerance,
-            method="shipped",
-            friction=Estimate(value, {"model": error}),
-            converged=not reason,
-            periodic=True,
-            reason=reason,
-            solve_time_s=0.0,
-        )
+        point = Problem(motion_named(self.motion), velocity, amplitude, poisson)
+        friction = {"friction": Estimate(value, {"model": error})}
+        place = {"pressure": self.pressure, "model": MAP, "tolerance": tolerance}
+        return Result.of(point, friction, reason, **place)

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from microslip.estimate.estimate import Estimate
+from microslip.answer.answer import Estimate
 from microslip.si.contact import Contact, contact_of
 from microslip.si.inputs import INPUTS, Inputs, read_inputs
 from microslip.si.output import OUTPUTS, Prediction, Value

@@ -19,7 +19,7 @@ from typing import Any
 
 import numpy as np
 
-from microslip.adaptive.response import Response, response
+from microslip.answer.along import Response, response
 from microslip.foundation import spec
 from microslip.foundation.csv_table import LABELS, table_of
 from microslip.foundation.errors import InputError, shown
@@ -44,7 +44,7 @@ class RealResponse:
     dissipated_energy_J, dissipated_energy_error_J : np.ndarray, shape (rows,)
         Energy dissipated by friction since the first row, and its error estimate.
     stick_fraction : np.ndarray, shape (rows,)
-        Fraction of the area in contact that sticks; see adaptive.response.Response.
+        Fraction of the area in contact that sticks; see microslip.Response.
     u_lim_m, contact_radius_m, load_N, mu : float
         Displacement at which the whole contact slides (m), contact radius (m), load of the
         reference state (N), and coefficient of friction.

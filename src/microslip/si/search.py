@@ -7,7 +7,7 @@ from collections.abc import Callable
 from dataclasses import replace
 from typing import Any, NamedTuple
 
-from microslip.estimate.estimate import Estimate
+from microslip.answer.answer import Estimate
 from microslip.foundation.errors import InputError
 from microslip.foundation.number_text import number_text
 from microslip.si.contact import Contact, contact_of

@@ -3,21 +3,24 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from typing import Any
 
-from microslip.adaptive.checks import LARGEST_FORCE, checked_driven_problem
-from microslip.adaptive.driven_contact import GAP_MARGIN
-from microslip.adaptive.point import Result, solve
-from microslip.adaptive.shakedown import shakedown
-from microslip.adaptive.under_force import (
+from microslip.answer.answer import Estimate, Result
+from microslip.answer.force import GAP_MARGIN
+from microslip.answer.limits import (
+    LARGEST_FORCE,
     is_even,
     least_load,
     oscillates,
     oscillates_forward,
     without_forward_motion,
 )
-from microslip.estimate.estimate import Estimate
+from microslip.answer.limits import (
+    problem_of as checked_problem,
+)
+from microslip.answer.point import solve
+from microslip.answer.shakedown import shakedown
 from microslip.foundation.arguments import (
     LARGEST,
     LARGEST_BODY,
@@ -164,7 +167,7 @@ def problem_of(contact: Contact) -> Problem:
     """The dimensionless Problem in the limit of vanishing speed."""
     amplitude = None if contact.steady else float(contact.amplitude)
     settings: dict[str, Any] = {"poisson": float(contact.poisson), "pressure": contact.pressure}
-    return checked_driven_problem(contact.motion, 0.0, amplitude, **settings)
+    return checked_problem(contact.motion, 0.0, amplitude, **settings)
 
 
 def largest_force(contact: Contact) -> float:
@@ -220,7 +223,8 @@ def _friction(
         near = abs(force - threshold.value) <= threshold.error
         below = force <= threshold.value - threshold.error and force < largest_force(contact)
         if below and limit is not None and limit.converged:
-            return replace(limit, mean_velocity=Estimate(0.0), friction=Estimate(force), **groups)
+            still = {"mean_velocity": Estimate(0.0), "friction": Estimate(force)}
+            return limit.changed(**still, **groups)
     result = solve_at(contact, None, tolerance, **drive)
     if not result.converged:
         return result
@@ -231,7 +235,7 @@ def _friction(
         faster = solve_at(contact, None, tolerance, **drive).mean_velocity
         half = 0.5 * (faster.value + faster.error)
         between = Estimate(half, {"model": half})
-        return replace(result, mean_velocity=between, converged=False, reason=reason)
+        return result.changed(reason=reason, mean_velocity=between)
     accepted = tolerance * max(result.velocity, SLOWEST)
     if result.mean_velocity.error <= accepted:
         return result

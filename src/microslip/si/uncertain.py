@@ -19,7 +19,7 @@ from typing import Any
 
 import numpy as np
 
-from microslip.estimate.estimate import Estimate
+from microslip.answer.answer import Estimate
 from microslip.foundation.errors import InputError
 from microslip.si.contact import Contact
 from microslip.si.inputs import INPUTS, Inputs

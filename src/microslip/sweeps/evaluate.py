@@ -136,11 +136,10 @@ def _choice(repeats: int, **arguments: Any) -> dict:
 
 def _probe(**arguments: Any) -> dict:
     """Solve with another method; `applies` is False if the method cannot be used."""
-    from microslip.adaptive.checks import checked_problem
-    from microslip.adaptive.choice import choose_model
+    from microslip.answer.limits import choose_model, problem_of
 
     names = ("motion", "velocity", "amplitude", "pressure", "poisson")
-    problem = checked_problem(**{name: arguments[name] for name in names if name in arguments})
+    problem = problem_of(**{name: arguments[name] for name in names if name in arguments})
     model, pressure = choose_model(problem, arguments["model"]), problem.pressure.name
     place = arguments["motion"], arguments["poisson"], model, arguments["method"], pressure
     return _refusal(*place) or {"applies": True} | _point(**arguments)
@@ -148,14 +147,14 @@ def _probe(**arguments: Any) -> dict:
 
 def _run(**arguments: Any) -> dict:
     """Run at one resolution.  Times are not measured, so that equal requests have equal results."""
-    from microslip.adaptive import single_run
+    from microslip.answer import point
 
-    return single_run.run_trial(**arguments)
+    return point.run_trial(**arguments)
 
 
 def _patches(**arguments: Any) -> dict:
     """Compute the stick zone during a period."""
-    from microslip.adaptive.stick_area import patches
+    from microslip.answer.period import patches
 
     return _result_or_reason(partial(patches, **arguments))
 
@@ -179,18 +178,18 @@ _KINDS: dict[str, Callable[..., dict]] = {
 def _refusal(*place: Any, **settings: Any) -> dict:
     """Return the result for a model or a method that does not apply, and an empty dict otherwise.
 
-    The arguments are those of single_run.applies.
+    The arguments are those of point.applies.
     """
-    from microslip.adaptive import single_run
+    from microslip.answer import point
 
-    reason = single_run.applies(*place, **settings)
+    reason = point.applies(*place, **settings)
     return {"applies": False, "converged": False, "reason": reason} if reason else {}
 
 
 def _result_or_reason(look: Callable[[], dict]) -> dict:
     """Call a function that requires a periodic state.  Return the reason if there is no such
     state."""
-    from microslip.adaptive.period import NoPeriodicState
+    from microslip.answer.period import NoPeriodicState
 
     try:
         return look()

@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import DTypeLike
 
 if TYPE_CHECKING:
-    from microslip.adaptive.period import Period
+    from microslip.answer.period import Period
 
 SHARES = 127
 """Number of steps between 0 and the friction bound in stored tractions."""

@@ -1,0 +1,502 @@
+"""Contacts along a path: forces and tractions at chosen steps of a march.
+
+`history` marches along an oscillation or a steady motion at one resolution.  `response` marches
+along a prescribed path, which need not be periodic, and refines it until the errors of the forces
+are within the tolerance.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from functools import cache
+from importlib import import_module
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from microslip.answer.answer import Answer
+from microslip.answer.ladder import LOAD, ladder_for
+from microslip.answer.limits import LIMITS, choose_model, problem_of, within
+from microslip.answer.refine import READING_SAFETY, SMALLEST_SHARE, WEIGHTS, extrapolate
+from microslip.contact.contact import Contact, StepFailure, forward_slip, full_slip
+from microslip.contact.coulomb import project
+from microslip.contact.path import LONG_STROKE, Path, make_path
+from microslip.foundation.errors import InputError
+from microslip.motions.motion import Motion
+from microslip.motions.problem import Problem
+from microslip.motions.samples import SampledPath
+from microslip.pressures.by_name import pressure_named
+from microslip.pressures.hertz import HERTZ
+from microslip.pressures.pressure import Pressure
+from microslip.solver.discretise import Resolution, contact_of
+from microslip.solver.run import unsolved
+from microslip.solver.snapshots import bounds_at_phases
+
+STARTS = ("stress-free", "full-slip", "full-rotation")
+"""Names of the initial states."""
+CELLS, ANGLES, STEPS = 32, 16, 256
+"""Default resolution of a history: rings or squares, angles, and steps in a period."""
+STEP_TOLERANCE = 1e-7
+"""Tolerance of a step in a history or a period, as a force divided by mu F_z."""
+LONGEST_PHASE = 1e12
+"""Largest rotation of a steady motion, in u_lim / a.  At larger rotations, successive phases could
+be equal because of rounding."""
+ON_BOUND = 1.0 - 1e-4
+"""Smallest traction of a slipping point, divided by the friction bound."""
+STEP_SHARE = 0.05
+"""Largest sum of the step residuals in a response, divided by the tolerance; see request.RUN_SHARE.
+"""
+MOST_VALUES = 2e7
+"""Largest number of tractions in memory at the same time.  Longer paths are marched in pieces."""
+PATH_STEPS = LOAD.steps / 2.0
+"""Number of time steps for a path of length u_lim, divided by the level.  For a stroke of u_lim,
+half a period is 2 u_lim long and has as many steps as in LOAD, the ladder for oscillating loads."""
+ENERGY, RESIDUAL, STICK = 3, 4, 5
+"""Columns of a response march after the three forces."""
+
+
+class Track(NamedTuple):
+    """A march along a path.
+
+    Attributes
+    ----------
+    forces : np.ndarray, shape (steps + 1, 3)
+        Forward force, lateral force and torque at each phase, see contact.March.
+    tractions : np.ndarray, shape (rows, 2, ...)
+        Forward and lateral tractions at the chosen phases.
+    bounds : np.ndarray, shape (rows, ...) or (1, ...)
+        Friction bounds at the chosen phases; one row if they are constant.
+    state : np.ndarray
+        Tractions at the end.
+    residual : float
+        Residual of the step solver summed over the stages, as a force divided by mu F_z.
+    failure : str
+        Reason why a step was not solved, otherwise empty.
+    """
+
+    forces: np.ndarray
+    tractions: np.ndarray
+    bounds: np.ndarray
+    state: np.ndarray
+    residual: float
+    failure: str
+
+
+def along(
+    contact: Contact,
+    path: Path,
+    state: np.ndarray,
+    tolerance: float,
+    rows: np.ndarray | slice = slice(0),
+) -> Track:
+    """March a contact along a path, and return its tractions at chosen phases.
+
+    Parameters
+    ----------
+    contact : contact.Contact
+        The contact.  If phases are chosen, its marches must have `fields`.
+    path : path.Path
+        The path.
+    state : np.ndarray
+        Tractions at the first phase.
+    tolerance : float
+        Tolerance of a step, as a force divided by mu F_z.
+    rows : np.ndarray or slice
+        Indices of the chosen phases; by default, no phase.
+    """
+    march = contact.march(path, state, tolerance)
+    bounds = bounds_at_phases(contact, path)
+    bounds = bounds if len(bounds) == 1 else bounds[rows]
+    tractions = march.state[None][:0]
+    if march.fields is not None:
+        fields = np.moveaxis(march.fields[:: path.stages.shape[1]][rows], 1, 0)
+        tractions = np.moveaxis(project(fields, bounds), 1, 0)
+    failure = unsolved(march.residual, march.solves, tolerance)
+    return Track(march.forces, tractions, bounds, march.state, march.residual, failure)
+
+
+def tractions_at_start(contact: Contact, start: str) -> np.ndarray:
+    """Tractions of a contact in the initial state `start`, one of STARTS."""
+    if start == "full-rotation":
+        return full_slip(contact, contact.lateral_position, -contact.forward_position)
+    return float(start == "full-slip") * forward_slip(contact)
+
+
+def refuse_start(name: str, start: object, rotates: bool, other: str = "") -> None:
+    """Raise InputError if `start` is not an initial state of the motion.
+
+    name: name of the argument; other: further allowed values.
+    """
+    if not isinstance(start, str) or start not in STARTS:
+        raise InputError(name, start, f"allowed is {other}one of {', '.join(STARTS)}")
+    if start == "full-rotation" and not rotates:
+        raise InputError(name, start, "allowed for motions that rotate")
+
+
+# Histories
+
+
+class History(Answer):
+    """Forces along a path, as dimensionless arrays of shape (steps + 1,).
+
+    Attributes
+    ----------
+    phase : np.ndarray
+        Phase omega t; for steady motions, the angle of rotation in u_lim / a.
+    displacement_forward : np.ndarray
+        Forward displacement in u_lim.
+    force_forward, force_lateral : np.ndarray
+        Forces on the flat divided by mu F_z, positive in the sphere's direction of motion.
+    torque : np.ndarray
+        Torque divided by its full-slip value.
+    """
+
+    axes = ("phase",)
+
+    def __str__(self) -> str:
+        """Number of steps, range of the phase, and forces at the end."""
+        first, last = self.phase[0], self.phase[-1]
+        lines = [f"{len(self.phase) - 1} steps from phase {first:.6g} to {last:.6g}; at the end:"]
+        names = ("force_forward", "force_lateral", "torque")
+        return "\n".join(lines + [f"{name} = {self.values[name][-1]:.6g}" for name in names])
+
+
+def history(
+    motion: str | Motion | Problem,
+    velocity: float | None = None,
+    amplitude: float | None = None,
+    *,
+    pressure: str | Pressure = HERTZ,
+    poisson: float = 0.0,
+    model: str = "auto",
+    cells: int | None = None,
+    steps: int | None = None,
+    start: str = "stress-free",
+    periods: int = 3,
+    travel: float = 5.0,
+) -> History:
+    """Compute the force history of an oscillation or a steady motion from an initial state.
+
+    Parameters
+    ----------
+    motion, velocity, amplitude, pressure, poisson, model
+        See `microslip.solve`; the velocity is above 0.
+    cells : int or None
+        Number of rings, or of squares along a side, at least 2.  Defaults to 32.
+    steps : int or None
+        Number of steps in a period; for steady motions, number of steps over the whole travel.
+        Defaults to 256.
+    start : str
+        "stress-free" (full stick), "full-slip" (forward slip everywhere) or "full-rotation"
+        (rotational slip everywhere).
+    periods : int
+        Number of periods of an oscillation.
+    travel : float
+        Travel of a steady motion, in u_lim.
+
+    Returns
+    -------
+    History
+        The forces at every step, including the initial state.
+
+    Raises
+    ------
+    InputError
+        If an argument is invalid.  The message names the argument.
+    microslip.contact.contact.StepFailure
+        If a step is not solved.
+    """
+    problem = problem_of(motion, velocity, amplitude, pressure=pressure, poisson=poisson)
+    velocity, periodic = problem.velocity, problem.motion.periodic
+    if velocity <= 0.0:
+        raise InputError("velocity", velocity, "a history needs velocity > 0")
+    refuse_start("start", start, problem.motion.rotates)
+    cells = CELLS if cells is None else within("cells", cells, low=2, kind="whole")
+    steps = STEPS if steps is None else within("steps", steps, low=1, kind="whole")
+    periods = within("periods", periods, high=LIMITS["periods"].high // steps)
+    if within("travel", travel) == 0.0:
+        raise InputError("travel", travel, "allowed is a finite number above 0")
+    if not periodic and travel / velocity > LONGEST_PHASE:
+        allowed = f"allowed is at least {LONGEST_PHASE:g} times less than the travel, {travel:g}"
+        raise InputError("velocity", velocity, allowed)
+    resolution = Resolution(cells, ANGLES, steps=0)
+    contact = contact_of(problem, choose_model(problem, model), resolution)
+    end, count = (2 * np.pi * periods, steps * periods) if periodic else (travel / velocity, steps)
+    phases = np.linspace(0.0, end, count + 1)
+    path = make_path(problem.displacement, phases, depth=problem.depth)
+    track = along(contact, path, tractions_at_start(contact, start), STEP_TOLERANCE)
+    if track.failure:
+        raise StepFailure(f"velocity = {velocity!r}: {track.failure}")
+    place = {"phase": path.phase, "displacement_forward": path.positions[:, 0]}
+    return History(problem, place | named_forces(problem, track.forces))
+
+
+def named_forces(problem: Problem, forces: np.ndarray) -> dict[str, np.ndarray]:
+    """Forces by name, with the torque divided by its full-slip value."""
+    forward, lateral, torque = forces.T
+    torque = torque / problem.pressure.torque
+    return {"force_forward": forward, "force_lateral": lateral, "torque": torque}
+
+
+# Responses
+
+
+class Response(Answer):
+    """Dimensionless forces at the rows of a path.
+
+    Attributes
+    ----------
+    force_forward, force_lateral : np.ndarray, shape (rows,)
+        Forces divided by mu F_z of the reference load, positive in the direction of the
+        displacement that they resist.
+    torque : np.ndarray, shape (rows,)
+        Torque divided by its value at full slip under the reference load.
+    force_error : np.ndarray, shape (rows, 3)
+        Estimated errors of the forward force, the lateral force and the torque, with that of the
+        resolution of a pressure on a grid.
+    dissipated_energy, dissipated_energy_error : np.ndarray, shape (rows,)
+        Energy dissipated by friction since the first row and its estimated error, both divided by
+        mu F_z u_lim.
+    stick_fraction : np.ndarray, shape (rows,)
+        Fraction of the contact area that sticks in the last step before the row.  It is NaN in the
+        first row and without contact.  Its resolution is limited by the mesh.
+    tolerance : float
+        Requested largest force error.
+    converged : bool
+        Whether every force error is within the tolerance.
+    reason : str
+        Reason why the response is not converged, otherwise empty.
+    model : str
+        Name of the model.
+    cells, angles : int
+        Resolution of the finest march.
+    """
+
+    @property
+    def columns(self) -> dict[str, tuple[str, np.ndarray]]:
+        """Unit and values of every column, by name.
+
+        The column `force_error` is the larger error of the two force components.
+        """
+        errors = {"force_error": self.force_error[:, :2].max(axis=1)}
+        errors |= {"torque_error": self.force_error[:, 2]}
+        forces = ("force_forward", "force_lateral", "torque")
+        rest = ("dissipated_energy", "dissipated_energy_error", "stick_fraction")
+        columns = {name: self.values[name] for name in forces} | errors
+        columns |= {name: self.values[name] for name in rest}
+        return {name: ("1", values) for name, values in columns.items()}
+
+    @property
+    def attributes(self) -> dict[str, object]:
+        """Attributes of the dataset."""
+        names = ("model", "tolerance", "reason")
+        return {name: getattr(self, name) for name in names} | {"converged": int(self.converged)}
+
+    def to_xarray(self) -> Any:
+        """Convert the columns to an xarray.Dataset with the dimension `row`."""
+        return import_module("microslip.datasets.of_records").to_xarray(self)
+
+    def __str__(self) -> str:
+        """The lines that `microslip response` prints."""
+        return str(import_module("microslip.datasets.of_records").response_text(self))
+
+
+def response(
+    forward: np.ndarray,
+    lateral: np.ndarray | None = None,
+    angle: np.ndarray | None = None,
+    load: np.ndarray | None = None,
+    *,
+    indentation: np.ndarray | None = None,
+    state: Response | str | None = None,
+    pressure: str | Pressure = HERTZ,
+    poisson: float = 0.0,
+    tolerance: float = 1e-3,
+    progress: Callable[[int, int], None] | None = None,
+) -> Response:
+    """Compute the forces of a contact that follows a prescribed path.
+
+    Parameters
+    ----------
+    forward : array_like, shape (rows,)
+        Forward displacement, in u_lim.  All quantities change linearly between rows.
+    lateral : array_like or None, shape (rows,)
+        Lateral displacement, in u_lim.
+    angle : array_like or None, shape (rows,)
+        Rotation about the contact normal, in u_lim / a.
+    load : array_like or None, shape (rows,)
+        Normal load divided by the reference load, >= 0.  Defaults to the reference load.
+    indentation : array_like or None, shape (rows,)
+        Indentation divided by the indentation under the reference load, >= 0.  Give either this or
+        `load`.
+    state : Response, str or None
+        State in the first row.  A Response stands for the state at its end.  The other states are
+        "full-slip", "full-rotation" and None, which means no tangential tractions.
+    pressure : str or Pressure
+        Pressure, see `microslip.solve`.  If the load changes, the indenter must be axisymmetric.
+    poisson : float
+        Poisson's ratio, 0 to 0.5.
+    tolerance : float
+        Largest accepted error of the forces divided by mu F_z, and of the torque divided by its
+        value at full slip.
+    progress : callable or None
+        Called as `progress(rows, total)` during the marches.
+
+    Returns
+    -------
+    Response
+        The forces.  If the finest level does not reach the tolerance, `converged` is False and
+        `reason` says why.
+
+    Raises
+    ------
+    InputError
+        If an argument is invalid.  The message names the argument.
+    """
+    path = SampledPath.of_columns(
+        {
+            "forward": forward,
+            "lateral": lateral,
+            "angle": angle,
+            "load": load,
+            "indentation": indentation,
+        }
+    )
+    first, start = 0, STARTS[0] if state is None else state
+    if isinstance(state, Response):
+        path, first, start = _joined(state, path)
+    refuse_start("state", start, path.rotates, "a Response or ")
+    poisson = within("poisson", poisson)
+    tolerance = within("tolerance", tolerance, high=1.0)
+    if progress is not None and not callable(progress):
+        raise InputError("progress", progress, "allowed is a function of two arguments")
+    pressure = pressure if isinstance(pressure, Pressure) else pressure_named(pressure)
+    problem = Problem(path, poisson=poisson, pressure=pressure)
+    model = choose_model(problem)
+    ladder = ladder_for(problem, model, tolerance)
+
+    @cache
+    def rows(level: int, problem: Problem = problem) -> np.ndarray:
+        contact = contact_of(problem, model, ladder.resolution(level))
+        out = _marched(problem, contact, level, str(start), tolerance, progress)[first:]
+        out[:, ENERGY] -= out[0, ENERGY]
+        return out
+
+    for level in ladder.levels(tolerance):
+        three = [rows(one) for one in (level // 4, level // 2, level)]
+        limit = extrapolate([one[:, :RESIDUAL] for one in three])
+        error = np.maximum(limit.error, SMALLEST_SHARE * tolerance)
+        error += sum(abs(w) * one[:, RESIDUAL, None] for w, one in zip(WEIGHTS, three, strict=True))
+        largest, reason = error[:, :ENERGY].max(), ""
+        if largest <= tolerance:
+            break
+        reason = f"the error is still {largest:.1e} with {level} cells"
+    for reading in problem.readings:
+        apart = READING_SAFETY * np.abs(rows(level, reading) - three[-1])[:, :RESIDUAL]
+        error = error + apart
+        if not reason and error[:, :ENERGY].max() > tolerance:
+            reason = f"the file's own resolution leaves {apart[:, :ENERGY].max():.1e} open"
+    finest = ladder.resolution(level)
+    values = {
+        **dict(zip(("force_forward", "force_lateral", "torque"), limit.value.T, strict=False)),
+        "force_error": error[:, :ENERGY],
+        "dissipated_energy": limit.value[:, ENERGY],
+        "dissipated_energy_error": error[:, ENERGY],
+        "stick_fraction": three[-1][:, STICK],
+        "tolerance": tolerance,
+        "model": model,
+        "cells": finest.cells,
+        "angles": finest.angles,
+        "start": start,
+    }
+    return Response(problem, values, reason=reason)
+
+
+def _joined(before: Response, path: SampledPath) -> tuple[SampledPath, int, str]:
+    """Append a path to the path of an earlier response.
+
+    Returns the joined path, the index of the first row of the appended path, and the start state of
+    the earlier response.
+    """
+    old = before.problem.motion
+    assert isinstance(old, SampledPath)
+    height = None
+    if old.height is not None or path.height is not None:
+        if old.height is None or path.height is None or old.by_load != path.by_load:
+            allowed = "allowed is a response whose load or indentation is prescribed likewise"
+            raise InputError("state", "a Response", allowed)
+        if not np.isclose(old.height[-1], path.height[0], rtol=1e-9):
+            name = "load" if path.by_load else "indentation"
+            allowed = f"allowed in the first row is where the state ended: {old.height[-1]:.12g}"
+            raise InputError(name, float(path.height[0]), allowed)
+        height = np.concatenate([old.height, path.height[1:]])
+    shift = old.rows[-1] - path.rows[0]
+    rows = np.concatenate([old.rows, path.rows[1:] + shift])
+    return SampledPath(rows, height, path.by_load), len(old.rows) - 1, before.start
+
+
+def _marched(
+    problem: Problem,
+    contact: Contact,
+    level: int,
+    start: str,
+    tolerance: float,
+    progress: Callable[[int, int], None] | None,
+) -> np.ndarray:
+    """Values at every row of a path, shape (rows, 6).
+
+    The columns are the forward force, the lateral force, the torque, the dissipated energy, a bound
+    on the sum of the residuals since the start, and the stick fraction.
+    """
+    path = problem.motion
+    assert isinstance(path, SampledPath)
+    lengths = np.minimum(path.lengths(problem.pressure), LONG_STROKE)
+    counts = np.maximum(np.ceil(PATH_STEPS * level * lengths), 1).astype(int)
+    step_tolerance = STEP_SHARE * tolerance / (2 * counts.sum())
+    state, work = tractions_at_start(contact, start), 0.0
+    initial = 0.5 * contact.energy(state)
+    out = np.zeros((len(counts) + 1, 6))
+    out[0, STICK] = np.nan
+    for first, last in _pieces(counts, state.size):
+        between = counts[first:last]
+        ends, rows = np.cumsum([0, *between]), slice(first + 1, last + 1)
+        parts = [first + k + np.arange(1, n + 1) / n for k, n in enumerate(between)]
+        phases = np.concatenate([[first], *parts])
+        piece = make_path(problem.displacement, phases, depth=problem.depth)
+        track = along(contact, piece, state, step_tolerance, ends)
+        mean_forces = 0.5 * (track.forces[1:] + track.forces[:-1])
+        works = np.sum(mean_forces * np.diff(piece.positions, axis=0), axis=1)
+        works = work + np.concatenate([[0.0], np.cumsum(works)])[ends]
+        energies = np.array([0.5 * contact.energy(one) for one in track.tractions])
+        out[first, :ENERGY] = track.forces[0]
+        out[rows, :ENERGY] = track.forces[ends[1:]]
+        out[rows, ENERGY] = (works - (energies - initial))[1:]
+        out[rows, RESIDUAL] = out[first, RESIDUAL] + track.residual
+        out[rows, STICK] = _stick_fraction(contact, track)[1:]
+        work, state = works[-1], track.state
+        if progress is not None:
+            progress(last, len(counts))
+    out[:, 2] /= problem.pressure.torque
+    return out
+
+
+def _pieces(counts: np.ndarray, size: int) -> Iterator[tuple[int, int]]:
+    """First and last row of each piece of a path; `size` is the number of values in a state."""
+    ends, first = np.cumsum(counts), 0
+    while first < len(counts):
+        values_before = ends[first - 1] if first else 0
+        last = int(np.searchsorted(ends, values_before + MOST_VALUES / (2 * size)))
+        last = min(max(last, first + 1), len(counts))
+        yield first, last
+        first = last
+
+
+def _stick_fraction(contact: Contact, track: Track) -> np.ndarray:
+    """Fraction of the contact area whose tractions are below the friction bound."""
+    size = np.hypot(track.tractions[:, 0], track.tractions[:, 1])
+    bounds = np.broadcast_to(track.bounds, size.shape)
+    area = np.where(bounds > 0.0, contact.weight, 0.0)
+    sticking = np.where(size < ON_BOUND * bounds, area, 0.0)
+    axes = tuple(range(1, size.ndim))
+    with np.errstate(invalid="ignore"):
+        return sticking.sum(axes) / area.sum(axes)

@@ -1,0 +1,262 @@
+"""Contact under a constant force: it stays at rest, moves at a mean velocity, or runs away.
+
+Friction never decreases with the velocity (theory/bounds.py).  So the contact comes to rest under
+every force that allows a state of rest.  A larger force moves the contact faster.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+from functools import cache
+from typing import Any
+
+from microslip.answer.answer import UNKNOWN, Estimate, Result, about
+from microslip.answer.limits import (
+    CLOSEST_FORCE,
+    is_even,
+    oscillates,
+    runs_away,
+    without_forward_motion,
+)
+from microslip.answer.request import Request, ladder_of, prescribed, result_of_runs, runs
+from microslip.motions.drive import Force
+from microslip.motions.problem import Problem
+from microslip.solver.budget import Spent
+from microslip.solver.method_names import method_named
+from microslip.theory import paper
+
+FIRST_DRIFT, FACTOR = 0.1, 4.0
+SLOWEST, FASTEST = 1e-6, 1e6
+"""Search for the velocity: first drift per radian of phase, factor between two runs, and bounds."""
+FLATTEST = 1e-6
+"""Smallest accepted rise of friction between two runs, divided by the relative increase in
+velocity."""
+HALVINGS = 2
+"""Number of bisections of the last velocity interval, on a logarithmic scale."""
+STEADY_ERROR = 1e-9
+"""Error estimate of the velocity v of a steady motion under a force, divided by max(1, v)."""
+COARSE_TOLERANCE = 1e-2
+"""Tolerance of the coarse runs that estimate the velocity under a force."""
+FIRST_VELOCITY = 0.1
+"""Velocity at which the resolution of the coarse runs is chosen."""
+SLOWEST_SHARE = 0.3
+"""Smallest accepted velocity of the coarse run under the force, as a fraction of the estimate from
+coarse runs at prescribed velocities.  A slower run is not resolved and is not used."""
+SCALE_SHARE = 0.9
+"""The relative tolerance refers to this fraction of the coarse run's velocity."""
+ROUGH_TOLERANCE = 3e-2
+"""First tolerance of the static limit.  It is divided by 10 until the difference between the force
+and the limit exceeds the error of the limit."""
+STATIC_TOLERANCE = 1e-3
+"""Largest accepted error of the static limit when the force is close to it.  The SI layer uses the
+same value, so both agree on which forces are below the threshold."""
+GAP_MARGIN = 2.0
+"""Distance above the static limit at which the contact certainly moves, in units of the limit's
+error."""
+AT_REST, UNBOUNDED = Estimate(0.0, {"model": 0.0}), Estimate(math.nan, {"model": math.inf})
+"""Velocity at rest, and velocity of a contact that has no mean velocity."""
+
+
+def under_force(request: Request) -> Result:
+    """Compute the Result of a contact under a prescribed force."""
+    problem, force, periodic = request.problem, _force(request), request.problem.motion.periodic
+    if periodic and not about(problem)["mass"]:
+        problem = without_forward_motion(problem)
+        request = replace(request, problem=problem)
+    if force < 0.0 and not problem.propels:  # solved as the mirror image of a forward force
+        ahead = under_force(_under(-force, request))
+        return ahead.changed(friction=-ahead.friction, mean_velocity=-ahead.mean_velocity)
+    away = runs_away(problem)
+    if away:
+        full = Estimate(math.copysign(1.0, force))
+        return _without_runs(request, UNBOUNDED, UNKNOWN, away, friction=full)
+    if not periodic:
+        velocity = steady_velocity(problem)
+        error = STEADY_ERROR * max(1.0, velocity)
+        return _without_runs(request, Estimate(velocity, {"model": error}))
+    if not oscillates(problem):
+        return _without_runs(request, AT_REST, Estimate(0.0))
+    if not is_even(problem):
+        return _moving(request, force)
+    static = _static(request, force)
+    threshold, error = static.friction.value, static.friction.error
+    if force <= threshold - error:
+        mesh = {name: static.values[name] for name in ("model", "cells", "angles")}
+        return _without_runs(request, AT_REST, static.dissipation, **mesh)
+    if force > threshold + error:
+        return _moving(request, force)
+    least = threshold + GAP_MARGIN * error
+    if not least < CLOSEST_FORCE:
+        return _unknown(
+            request,
+            f"the error of the force threshold, {error:.1e}, leaves open whether the "
+            "contact moves, and a larger force is too close to full friction",
+        )
+    answer = _moving(request, max(force, least))
+    if least > force and answer.dissipation is not None:
+        # the contact moves more slowly than in the runs, or not at all
+        apart = abs(answer.dissipation.value - static.dissipation.value)
+        return answer.changed(dissipation=answer.dissipation + Estimate(0.0, {"model": apart}))
+    return answer
+
+
+def _force(request: Request) -> float:
+    drive = request.problem.drive
+    assert drive is not None and drive.force is not None
+    return drive.force
+
+
+def _under(force: float, request: Request) -> Request:
+    """Copy a request and replace its force."""
+    drive = request.problem.drive
+    assert drive is not None
+    return replace(request, problem=replace(request.problem, drive=Force(force, drive.mass)))
+
+
+def _without_runs(
+    request: Request,
+    velocity: Estimate,
+    energy: Estimate | None = None,
+    reason: str = "",
+    **values: Any,
+) -> Result:
+    """Build a Result without a run, from a velocity and a dissipated energy."""
+    own: dict = {"mean_velocity": velocity, "friction": Estimate(_force(request))}
+    if energy is not None and request.problem.motion.periodic:
+        own["dissipation"] = energy
+    return request.result(own, reason, periodic=not reason).changed(**values)
+
+
+def _unknown(request: Request, reason: str) -> Result:
+    """Result without any estimate, for a point that failed because of `reason`."""
+    effort = {"model": request.model, "effort": request.budget.taken}
+    return _without_runs(request, UNBOUNDED, UNKNOWN, reason, **effort)
+
+
+def steady_velocity(problem: Problem) -> float:
+    """Velocity of a steady rotation under a force, computed from Eqs 17 and 21 for 0 <= force < 1.
+
+    The caller must check the problem with `limits.refuse` first.
+    """
+    from scipy.optimize import brentq  # imported here because it loads slowly
+
+    from microslip.theory import axisymmetric
+
+    pressure, drive = problem.pressure, problem.drive
+    assert drive is not None and drive.force is not None
+    force = drive.force
+
+    def imbalance(velocity: float) -> float:
+        if pressure.hertzian:
+            return float(paper.bore_forward(velocity)) - force
+        return float(axisymmetric.bore_of(pressure.bound, velocity)[0]) - force
+
+    high = 1.0
+    while imbalance(high) < 0.0 and high < FASTEST:
+        high *= FACTOR
+    return float(brentq(imbalance, 0.0, high, xtol=1e-14, rtol=1e-14)) if force > 0.0 else 0.0
+
+
+# The static limit
+
+
+def _static(request: Request, force: float) -> Result:
+    """Compute the static limit, just accurately enough to compare it with the force."""
+
+    def at_rest(tolerance: float | None) -> Result:
+        problem = replace(request.problem, velocity=0.0, drive=None)
+        return prescribed(replace(request, problem=problem, tolerance=tolerance))
+
+    rough, tolerance = ROUGH_TOLERANCE, request.tolerance
+    while tolerance is not None and tolerance < rough:
+        static = at_rest(rough)
+        if abs(force - static.mu_macro) > static.mu_macro_error:
+            return static
+        rough *= 0.1
+    static = at_rest(tolerance)
+    limit, error = static.friction.value, static.friction.error
+    if limit - error < force <= limit + error and (tolerance or 0.0) > STATIC_TOLERANCE:
+        exact = at_rest(STATIC_TOLERANCE)
+        below = force <= exact.mu_macro - exact.mu_macro_error
+        if below or limit + GAP_MARGIN * error >= CLOSEST_FORCE:
+            return exact
+    return static
+
+
+# The velocity
+
+
+def _moving(request: Request, moving_force: float) -> Result:
+    """Compute the Result of a moving contact.
+
+    The runs use `moving_force`, under which the contact certainly moves.  If this force is larger
+    than the requested force, the velocity lies between 0 and the velocity in the runs.
+    """
+    force, original = _force(request), request
+    request = _under(moving_force, request)
+    try:
+        near, slope = _velocity_near(request)
+    except Spent as spent:
+        return _unknown(original, str(spent))
+    request = replace(request, problem=replace(request.problem, velocity=near))
+    scale = SCALE_SHARE * near
+    while True:
+        answer = runs(request, request.accuracy * max(1.0, scale), "velocity", slope=slope)
+        velocity = answer.estimates["velocity"]
+        if answer.reason or scale <= max(1.0, abs(velocity.value)):
+            break
+        scale = SCALE_SHARE * abs(velocity.value)  # a small mass can be far slower than estimated
+    if not request.problem.propels:  # a negative value is within the error
+        velocity = replace(velocity, value=max(velocity.value, 0.0))
+    if answer.reason and not velocity.error < abs(velocity.value):
+        velocity = UNKNOWN  # the order of magnitude is unknown
+    elif moving_force > force:
+        half = 0.5 * velocity.value
+        velocity = Estimate(half, {**velocity.by_source, "model": half})
+    tolerance = request.tolerance
+    largest = None if tolerance is None else tolerance * max(1.0, abs(velocity.value))
+    own = {"mean_velocity": velocity, "friction": Estimate(force)}
+    return result_of_runs(original, answer.changed(velocity=velocity), largest, "velocity", **own)
+
+
+def _velocity_near(request: Request) -> tuple[float, float]:
+    """Estimate the velocity under the force, and the rise of the friction with the velocity.
+
+    Coarse runs at prescribed velocities bracket the velocity.  A run under the force then improves
+    the estimate, unless its velocity is too low to be resolved.
+    """
+    # imported here because they load compiled code
+    from microslip.solver.run import Settings
+    from microslip.solver.simulate import simulate
+
+    force, moving = _force(request), replace(request.problem, velocity=FIRST_VELOCITY)
+    ladder = ladder_of(replace(request, problem=moving), COARSE_TOLERANCE)
+    coarse = ladder.resolution(ladder.levels(COARSE_TOLERANCE)[0])
+    settings, unit = (
+        Settings(method_named(request.method), budget=request.budget),
+        moving.unit_drift,
+    )
+    request.progress(coarse)
+
+    @cache
+    def friction(drift: float) -> float:  # NaN if the run failed
+        there = replace(moving, velocity=drift / unit, drive=None)
+        return simulate(there, request.model, coarse, COARSE_TOLERANCE, settings=settings).mu
+
+    low, high = FIRST_DRIFT / FACTOR, FIRST_DRIFT
+    while high < FASTEST and friction(high) < force:
+        low, high = high, FACTOR * high
+    while low > SLOWEST and friction(low) > force:
+        low, high = low / FACTOR, low
+    slope = (friction(high) - friction(low)) / (high - low) * unit
+    slope = max(slope, FLATTEST / high * unit)
+    for _ in range(HALVINGS):
+        middle = math.sqrt(low * high)
+        low, high = (middle, high) if friction(middle) < force else (low, middle)
+    near = math.sqrt(low * high) / unit
+    sloped, driven = replace(settings, slope=slope), replace(request.problem, velocity=near)
+    run = simulate(driven, request.model, coarse, COARSE_TOLERANCE * near, settings=sloped)
+    if run.converged and run.values["velocity"] > SLOWEST_SHARE * near:
+        return run.values["velocity"], slope
+    return near, slope

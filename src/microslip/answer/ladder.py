@@ -1,0 +1,274 @@
+"""Levels of resolution of a problem: cells, angles and time steps refined together.
+
+The level n is the number of cells; angles and steps are proportional to it.  So the error has a
+single leading term C / n^2, which follows from the three levels n/4, n/2 and n.  LEVELS are two
+interleaved series of doublings.  So each level costs little more than the previous one, and a level
+can reuse the runs at half and at a quarter of it.
+
+The first level depends on the tolerance and on the motion.  The mesh and the path also adapt to the
+problem.  Rings are graded towards the slip front (discretise.focus_strength).  The number of time
+steps increases with the square root of the stroke and with the natural frequency of a mass.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+from typing import NamedTuple
+
+import numpy as np
+
+from microslip.contact.path import LONG_STROKE
+from microslip.contact.registry import MODELS
+from microslip.foundation.arguments import SMALLEST_TOLERANCE
+from microslip.foundation.errors import InputError
+from microslip.motions.problem import Problem
+from microslip.solver.discretise import Resolution, contact_of, path_of
+from microslip.solver.static_limit import SLOW_LOOP, at_turning_points
+
+ORDER = 2
+"""Order of convergence of rings, angles and time steps."""
+RATIO = 2
+"""Ratio of the levels that are extrapolated.  The first level is multiplied by this ratio per
+decade of the tolerance, since extrapolated errors decrease with about the third power of the
+level."""
+LEVELS = tuple(sorted(base * RATIO**k for k in range(9) for base in (RATIO, 3)))
+"""Levels 2, 3, 4, 6, 8, 12, ..., 512, 768."""
+LOOSEST = 1e-2
+"""Tolerance to which Ladder.start refers.  Larger tolerances use the same level."""
+FEWEST = 4
+"""Smallest number of angles and of steps."""
+MOST_MASS_STEPS = 8192
+"""Largest number of steps in half a period for a mass.  Runs with 24 rings then take seconds."""
+COARSEST = Resolution(cells=8, angles=4, steps=4)
+"""Resolution at which the stiffness of the contact is computed for a body with mass."""
+
+
+@dataclass(frozen=True)
+class Ladder:
+    """Resolution of a problem at each level.
+
+    Attributes
+    ----------
+    start : int
+        First level at the tolerance LOOSEST.
+    angles, steps : float
+        Number of angles on half the disc, and of time steps in half a period, divided by the level;
+        0 if they are not refined.
+    cells : float
+        Number of rings, or of squares across the contact, divided by the level; 0 if it is not
+        refined.
+    imposed : float
+        Largest level whose resolution is at most the imposed one, along every axis; 0 if no
+        resolution is imposed.  If one is imposed, the level `start` has this resolution.
+    """
+
+    start: int
+    angles: float
+    steps: float
+    cells: float = 1.0
+    imposed: float = 0.0
+
+    def resolution(self, level: int) -> Resolution:
+        """Resolution at a level."""
+        angles = 2 * math.ceil(0.5 * self.angles * level)  # an even number
+        # levels must stay different if the imposed number of steps is below FEWEST
+        fewest = 1 if self.imposed and self.steps else FEWEST
+        return Resolution(
+            cells=max(round(self.cells * level), 2) if self.cells else 1,
+            angles=max(angles, FEWEST) if self.angles else 1,
+            steps=max(round(self.steps * level), fewest),
+        )
+
+    def levels(self, tolerance: float) -> tuple[int, ...]:
+        """Levels to try at a tolerance, in this order, each as the finest level.
+
+        The last of these levels is one level above the first level for SMALLEST_TOLERANCE.
+        """
+        if self.imposed:
+            return (self.start,)
+        first, last = self._first(tolerance), self._first(SMALLEST_TOLERANCE)
+        return LEVELS[min(first, last + 1) : last + 2]
+
+    @property
+    def accuracy(self) -> float:
+        """Tolerance that an imposed resolution suits.
+
+        It is the tolerance at which `imposed` would be the first level.  Below the level `start`,
+        it follows from the second order of the method.
+        """
+        coarser = self.start / self.imposed
+        return LOOSEST * coarser ** (ORDER if coarser > 1.0 else 1.0 / math.log10(RATIO))
+
+    def _first(self, tolerance: float) -> int:
+        """Index in LEVELS of the first level at a tolerance."""
+        least = self.start * RATIO ** math.log10(LOOSEST / min(tolerance, LOOSEST))
+        # rounding of the power must not skip a level
+        enough = (k for k, n in enumerate(LEVELS) if n > least or math.isclose(n, least))
+        return next(enough, len(LEVELS) - 1)
+
+
+class Kind(NamedTuple):
+    """First level and number of time steps for a kind of problem.
+
+    Calibrated by `benchmarks/error_estimates.py --seed 3 --start FACTOR`.
+
+    Attributes
+    ----------
+    start : int
+        Ladder.start.
+    steps : int
+        Number of time steps in half a period, divided by the level, for a stroke of u_lim; 0 if
+        there is no march.
+    """
+
+    start: int
+    steps: int
+
+
+TRANSLATION = Kind(start=12, steps=2)
+"""Translations.  Close to full sliding, coarser levels can agree by chance, see
+tests/answer/test_estimates.py."""
+LOOP = TRANSLATION._replace(start=16)
+"""Slow motions without half-period symmetry.  The two halves of a period have different slip
+fronts."""
+ROTATION = TRANSLATION._replace(steps=1)
+WHOLE_DISC = ROTATION._replace(start=LOOP.start)
+"""Rotations combined with a lateral motion.  Their slip fronts differ between the halves of a
+period."""
+SQUARES = WHOLE_DISC
+"""Cells along both axes of a contact.  They are not graded towards the slip front."""
+LOAD = Kind(start=24, steps=4)
+"""Oscillating normal loads, under which the edge of the contact moves across the rings."""
+STATIC = Kind(start=32, steps=0)
+"""Static limits, computed at turning points.  There, slip fronts cut through the cells."""
+ANGLES_OF_ROTATION, ANGLES_OF_TRANSLATION = 0.5, 0.125
+"""Number of angles on half the disc, divided by the level.  A rotation has its centre in the
+contact.  In a translation, the tractions depend on the angle only weakly, and only at nu > 0.
+Calibrated by `benchmarks/angles.py`."""
+
+
+def ladder_for(
+    problem: Problem,
+    model: str,
+    tolerance: float,
+    cells: int | None = None,
+    steps: int | None = None,
+) -> Ladder:
+    """Choose the Ladder of a problem.
+
+    Parameters
+    ----------
+    problem : problem.Problem
+        The problem, already checked.
+    model : str
+        Name in contact.registry.MODELS.
+    tolerance : float
+        Absolute tolerance of the friction.  If only the cells are imposed, it determines the steps.
+        If only the steps are imposed, it determines the cells.
+    cells, steps : int or None
+        Imposed number of cells, and imposed number of steps in a full period; None if not imposed.
+    """
+    motion, refined = problem.motion, MODELS[model].axes(problem)
+    kind = _kind(problem, model)
+    longer = min(max(problem.stroke, 1.0), LONG_STROKE) ** (1 / ORDER) * motion.cycles
+    angles = ANGLES_OF_ROTATION if motion.rotates else ANGLES_OF_TRANSLATION
+    ladder = Ladder(
+        kind.start,
+        angles=angles if "angles" in refined else 0.0,
+        steps=kind.steps * longer if motion.periodic else 0.0,
+        cells=1.0 if "cells" in refined else 0.0,
+    )
+    return _imposing(ladder, tolerance, cells, steps)
+
+
+def _kind(problem: Problem, model: str) -> Kind:
+    """Determine the Kind of a problem."""
+    motion = problem.motion
+    on_a_line = at_turning_points(problem)
+    if motion.periodic and problem.velocity == 0.0 and on_a_line:
+        return STATIC
+    if motion.loads:
+        return LOAD
+    if model == "cartesian":
+        return SQUARES
+    if motion.rotates:
+        return ROTATION if motion.half_disc else WHOLE_DISC
+    mirrored = problem.straight and problem.half_period_mirror
+    slow = motion.periodic and problem.drift < SLOW_LOOP
+    return LOOP if slow and not mirrored else TRANSLATION
+
+
+def _imposing(ladder: Ladder, tolerance: float, cells: int | None, steps: int | None) -> Ladder:
+    """Change a ladder so that its first level has the imposed resolution.
+
+    A number that is not imposed is chosen according to the tolerance or the imposed cells.
+    """
+    cells, steps = cells if ladder.cells else None, steps if ladder.steps else None
+    if cells is None and steps is None:
+        return ladder
+    level = max(ladder.levels(tolerance)[0], cells or 0)
+    rings = ladder.cells * level if cells is None else cells
+    half = ladder.steps * level if steps is None else steps // 2
+    axes = ((rings, ladder.cells), (half, ladder.steps))
+    return replace(
+        ladder,
+        cells=rings / ladder.start,
+        angles=ladder.angles * level / ladder.start,
+        steps=half / ladder.start,
+        imposed=min(number / per_level for number, per_level in axes if per_level),
+    )
+
+
+def refuse_free(ladder: Ladder, cells: int | None, steps: int | None) -> None:
+    """Raise InputError if the ladder refines cells or steps for which no number is imposed."""
+    numbers = (("cells", ladder.cells, cells), ("steps", ladder.steps, steps))
+    free = " and ".join(name for name, refined, imposed in numbers if refined and imposed is None)
+    if free:
+        allowed = f"allowed is a number, or none where {free} are imposed"
+        raise InputError("tolerance", None, allowed)
+
+
+def with_mass(ladder: Ladder, problem: Problem, model: str, tolerance: float) -> tuple[Ladder, str]:
+    """Shorten the steps of a ladder until they resolve the oscillation of a mass against the
+    contact.
+
+    The natural frequency divided by the vibration frequency is sqrt(stiffness / mass), with the
+    stiffness of the contact (1.5 for a sphere at nu = 0).  If the steps are longer than a radian of
+    the natural oscillation, runs can agree with each other and still be wrong.  Steps of a radian
+    are sufficient for the tolerance LOOSEST.  A spring that is s times stiffer than the contact
+    raises the natural frequency by a factor of sqrt(s).  It also reduces the force of this
+    oscillation on the contact by a factor of s.  For a second-order method, the two effects cancel.
+
+    Parameters
+    ----------
+    ladder : Ladder
+        Ladder for the contact without a mass.
+    problem : problem.Problem
+        The problem, whose drive has a mass.
+    model : str
+        Name in contact.registry.MODELS.
+    tolerance : float
+        Absolute tolerance of the result.
+
+    Returns
+    -------
+    tuple of Ladder and str
+        The ladder, and the reason why its steps do not resolve the natural oscillation of the mass;
+        empty if they do.
+    """
+    assert problem.drive is not None
+    count = ladder.resolution(ladder.levels(tolerance)[0]).steps
+    contact = contact_of(problem, model, COARSEST)
+    frequency = (contact.stiffness / problem.drive.mass) ** 0.5
+    longest = float(np.diff(path_of(problem, contact, count).phase).max())
+    allowed = 1.0 if ladder.imposed else (tolerance / LOOSEST) ** (1 / ORDER)
+    finer = max(longest * frequency / allowed, 1.0)
+    if finer > 1.0 and (ladder.imposed or finer * count > MOST_MASS_STEPS):
+        most = 2 * (count if ladder.imposed else MOST_MASS_STEPS)
+        return ladder, (
+            f"mass too small for {most} steps in a period: it oscillates against the contact at"
+            f" {frequency:.3g} times the frequency of the vibration, which takes"
+            f" {2 * int(np.ceil(finer * count))}"
+        )
+    return replace(ladder, steps=finer * ladder.steps), ""

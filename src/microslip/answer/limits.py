@@ -1,0 +1,372 @@
+"""Limits of the arguments, contradictions between them, and choice of the contact model.
+
+Every request is checked here.  An error message names the argument, its value and what is allowed.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import replace
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from microslip.contact.registry import MODELS
+from microslip.foundation.arguments import (
+    LARGEST,
+    LARGEST_BODY,
+    SMALLEST_STIFFNESS,
+    SMALLEST_TOLERANCE,
+    count,
+    real,
+)
+from microslip.foundation.errors import InputError
+from microslip.motions.by_name import motion_named
+from microslip.motions.drive import Drive, Force, Spring
+from microslip.motions.motion import LOOP, Motion
+from microslip.motions.problem import Problem
+from microslip.pressures.by_name import pressure_named
+from microslip.pressures.hertz import HERTZ
+from microslip.pressures.pressure import Pressure
+from microslip.solver import method_names
+
+
+class Limit(NamedTuple):
+    """Range of a number.
+
+    Attributes
+    ----------
+    low, high : float
+        Smallest and largest allowed value.
+    kind : str
+        "real", "whole" (an integer) or "even".
+    """
+
+    low: float
+    high: float
+    kind: str = "real"
+
+
+LARGEST_FORCE = 1e6
+"""Largest accepted force divided by mu times the mean normal load.  The contact already runs away
+at 1."""
+LIMITS = {
+    "velocity": Limit(0.0, LARGEST["velocity"]),
+    "amplitude": Limit(0.0, LARGEST["amplitude"]),
+    "poisson": Limit(0.0, 0.5),
+    "force": Limit(-LARGEST_FORCE, LARGEST_FORCE),
+    "stiffness": Limit(SMALLEST_STIFFNESS, LARGEST_BODY),
+    "mass": Limit(0.0, LARGEST_BODY),
+    "damping": Limit(0.0, LARGEST_BODY),
+    "tolerance": Limit(SMALLEST_TOLERANCE, 0.1),
+    "cells": Limit(4, LARGEST["cells"], "even"),
+    "angles": Limit(2, 1000, "even"),
+    "steps": Limit(8, LARGEST["steps"], "even"),
+    "periods": Limit(1, 10 * LARGEST["steps"], "whole"),
+    "travel": Limit(0.0, 1e6),
+    "elements": Limit(1, 10_000, "whole"),
+}
+"""Limits of the arguments by name.  A function with other limits gives them to `within`.  Numbers
+have the units of `microslip.solve`; the travel is in u_lim."""
+RETURNED = 1e-12
+"""A forward oscillation below this fraction of the amplitude is treated as a rounding error."""
+CLOSEST_FORCE = 0.9999
+"""Force divided by mu times the mean normal load.  From this force up to 1, no velocity is
+computed.  With a transverse oscillation, runs converged up to 0.9998, where the contact already
+advances by 200 amplitudes per period."""
+CLOSEST_STEADY_FORCE = 1.0 - 1e-7
+"""Largest force on a steady rotation, divided by mu times the mean normal load.  The rounding error
+of the friction, 1.1e-16, causes a relative error of 1.1e-16 / (2 (1 - force)) in the velocity.  At
+this force, the relative error is close to the stated 1e-9."""
+STEPLESS = ("rigid", "dahl")
+"""Models that evaluate a formula at every step, without a step solver."""
+
+
+def within(name: str, value: object, **changes: Any) -> Any:
+    """Convert an argument to a number within its limits.  Raises InputError for anything else.
+
+    changes: fields of the Limit that replace those in LIMITS.
+    """
+    low, high, kind = LIMITS[name]._replace(**changes)
+    if kind == "real":
+        return real(name, value, low, high)
+    return count(name, value, int(low), most=high, even=kind == "even")
+
+
+# Problems
+
+
+def problem_of(
+    motion: str | Motion | Problem,
+    velocity: float | None = None,
+    amplitude: float | None = None,
+    *,
+    pressure: str | Pressure = HERTZ,
+    poisson: float = 0.0,
+    drive: Mapping[str, float | None] | None = None,
+) -> Problem:
+    """Check the arguments for a contact, and parse texts.
+
+    Parameters
+    ----------
+    motion : str, Motion or Problem
+        A Problem replaces all other arguments.
+    velocity, amplitude, pressure, poisson
+        See `microslip.solve`.
+    drive : mapping of float or None
+        The arguments force, stiffness, mass and damping of `microslip.solve`; missing ones are
+        None.  If the mapping itself is None, the velocity is prescribed and at least 0.
+
+    Raises
+    ------
+    InputError
+        If an argument is out of range, or if a Problem is combined with other arguments.  The
+        message names the argument.
+    """
+    given, own = motion if isinstance(motion, Problem) else None, None
+    if isinstance(motion, Problem):
+        beside: dict[str, object] = {"velocity": velocity, "amplitude": amplitude, **(drive or {})}
+        beside |= {"pressure": None if pressure == HERTZ else pressure, "poisson": poisson or None}
+        for name, value in beside.items():
+            if value is not None:
+                raise InputError(name, value, "allowed is none beside a Problem, which has its own")
+        own, velocity, amplitude = motion.drive, motion.velocity, motion.amplitude
+        poisson, pressure, motion = motion.poisson, motion.pressure, motion.motion
+        if own is not None:
+            _refuse_body(own, drive is not None)
+    elif drive is not None:
+        own = _drive_of(velocity, **drive)
+    motion = motion if isinstance(motion, Motion) else motion_named(motion)
+    pressure = pressure if isinstance(pressure, Pressure) else pressure_named(pressure)
+    slowest = -LARGEST["velocity"] if drive is not None and motion.propels else 0.0
+    velocity = within("velocity", 0.0 if velocity is None else velocity, low=slowest)
+    if velocity < 0.0 and not pressure.mirrored:
+        allowed = f"allowed is a number of at least 0 under {pressure.name}"
+        raise InputError("velocity", velocity, f"{allowed}, which need not be symmetric")
+    poisson = within("poisson", poisson)
+    if motion.periodic and amplitude is not None:
+        amplitude = within("amplitude", amplitude)
+    return given or Problem(motion, velocity, amplitude, poisson, pressure, own)
+
+
+def _drive_of(
+    velocity: float | None,
+    force: float | None = None,
+    stiffness: float | None = None,
+    mass: float | None = None,
+    damping: float | None = None,
+) -> Drive | None:
+    """Build the drive, or return None for a prescribed velocity."""
+    if velocity is None and force is None:
+        raise InputError("velocity", None, "needed; allowed is a number, or a force in its place")
+    if velocity is not None and force is not None:
+        raise InputError("force", force, "allowed is a force or a velocity, not both")
+    given = {"stiffness": stiffness, "mass": mass, "damping": damping}
+    body = {name: within(name, value) for name, value in given.items() if value is not None}
+    if force is None and stiffness is not None:
+        return Spring(**body)
+    allowed = "allowed beside a stiffness alone, for a velocity moves any body"
+    if force is not None:
+        allowed = "allowed is none beside a force, which does not pull through a spring"
+    for name, value in body.items():
+        if force is None or name != "mass":
+            raise InputError(name, value, allowed)
+    return None if force is None else Force(within("force", force), **body)
+
+
+def _refuse_body(drive: Drive, allowed: bool) -> None:
+    """Raise InputError if the drive of a Problem is not allowed, or outside its limits."""
+    if not allowed:
+        message = "allowed is none here: the velocity is prescribed"
+        raise InputError("drive", str(drive), message)
+    for name in (
+        ("mass", "damping") if drive.force is not None else ("stiffness", "mass", "damping")
+    ):
+        within(name, getattr(drive, name))
+    if drive.force is not None:
+        within("force", drive.force)
+
+
+# Oscillations under a force
+
+
+def oscillates_forward(problem: Problem) -> bool:
+    """Whether the oscillation has a forward component."""
+    forward = problem.oscillation(LOOP)[0]
+    return float(np.ptp(forward)) > RETURNED * max(problem.size, 1.0)
+
+
+def oscillates(problem: Problem) -> bool:
+    """Whether the motion or the normal load oscillates."""
+    parts = problem.oscillation(LOOP)
+    moves = max(float(np.ptp(part)) for part in parts) > RETURNED * max(problem.size, 1.0)
+    return moves or (problem.depth is not None and problem.size > 0.0)
+
+
+def without_forward_motion(problem: Problem) -> Problem:
+    """The problem without the oscillation along the direction of the force.
+
+    Under a constant force, the forward force on a contact without mass is constant.  Then the body
+    follows the forward oscillation, which therefore has no effect.
+    """
+    return replace(problem, follows=True) if oscillates_forward(problem) else problem
+
+
+def is_even(problem: Problem) -> bool:
+    """Whether the oscillation alone exerts no forward force at any time.
+
+    In this case, the threshold of motion equals the static limit.
+    """
+    motion, pressure = problem.motion, problem.pressure
+    if oscillates_forward(problem) or not motion.half_disc:
+        return False
+    if motion.rotates:
+        return pressure.is_round or (pressure.mirrored and not motion.loads)
+    return pressure.is_round or pressure.mirrored or problem.poisson == 0.0
+
+
+def least_load(problem: Problem) -> float:
+    """Smallest normal load in a period, divided by the mean normal load."""
+    if not problem.motion.periodic or problem.depth is None:
+        return 1.0
+    loads = problem.pressure.total(np.asarray(problem.depth(LOOP), dtype=float))
+    return max(float(loads.min()), 0.0) / problem.mean_load
+
+
+def runs_away(problem: Problem) -> str:
+    """Reason why a contact under a force has no mean velocity; empty if it has one."""
+    drive = problem.drive
+    if drive is None or drive.force is None:
+        return ""
+    if abs(drive.force) >= 1.0:
+        return f"runs away: the force {drive.force:g} is at least full friction"
+    least = least_load(problem)
+    if drive.mass == 0.0 and drive.force >= least:
+        return (
+            f"runs away: without mass it slides off at the least normal load, {least:.3g} of the "
+            "mean, which limits the friction"
+        )
+    return ""
+
+
+# Models and contradictions
+
+
+def choose_model(problem: Problem, model: str = "auto") -> str:
+    """Return the name of the model: the cheapest exact model for "auto", otherwise `model`.
+
+    Rings are chosen if the traction depends only on the radius (translation at nu = 0).  Angular
+    modes are chosen for other motions of a round contact, and squares in all other cases.  Squares
+    are also chosen for the static limit of a contact without symmetry, because its stick zone is
+    not round.  The slider and the rigid contact are never chosen.  Bounding their model error would
+    need a run of the rings, which already gives the result.
+
+    Parameters
+    ----------
+    problem : problem.Problem
+        The problem.  At velocity 0 without a drive, the result is the static limit.
+    model : str
+        "auto", or a name in contact.registry.MODELS.
+
+    Raises
+    ------
+    InputError
+        If the model is unknown or does not apply.
+    """
+    if not isinstance(model, str) or model not in ("auto", *MODELS):
+        raise InputError("model", model, f"allowed is one of auto, {', '.join(MODELS)}")
+    motion, name = problem.motion, model
+    if model == "auto":
+        static = problem.velocity == 0.0 and problem.drive is None and motion.periodic
+        by_squares = static and not motion.loads and not motion.half_disc
+        name = "polar" if motion.rotates or problem.poisson > 0.0 else "radial"
+        if by_squares or not problem.pressure.is_round:
+            name = "cartesian"
+    refusal = MODELS[name].refuses(problem)
+    if not refusal:
+        return name
+    if model != "auto":
+        raise InputError("model", model, f"does not apply to {motion.name}: {refusal}")
+    why = f"only {name} could resolve it, and {refusal}"
+    if problem.pressure == HERTZ and problem.poisson == 0.0:
+        raise InputError("motion", motion.name, why)
+    argument: tuple[str, object] = ("poisson", problem.poisson)
+    if problem.pressure != HERTZ:
+        argument = ("pressure", problem.pressure.name)
+    raise InputError(*argument, f"does not go with {motion.name}: {why}")
+
+
+def method_refusal(problem: Problem, model: str, method: str) -> str:
+    """Reason why a method does not apply to a model and a motion; empty if it applies."""
+    motion = problem.motion
+    if method == method_names.SHIPPED:
+        return ""
+    how = method_names.method_named(method)
+    if how.run is not None:
+        if model != how.model:
+            return f"it is a run of the model {how.model}"
+        if not motion.periodic:
+            return "nothing oscillates"
+        if motion.loads:
+            return "it supports a constant normal load only"
+        return "it supports translations only" if motion.rotates and not how.turns else ""
+    if motion.loads and (how.dress is not None or how.integrator.end < 1.0):
+        return "its steps support a constant friction bound only"
+    if model in STEPLESS:
+        return "the model has no steps to solve"
+    if not motion.periodic and how.dress is None:
+        return "nothing oscillates"
+    if model == "cartesian" and how.dress is not None:
+        return "the matrix of all squares would be too large"
+    return ""
+
+
+def refuse(problem: Problem, model: str, method: str = method_names.SHIPPED) -> None:
+    """Raise InputError for the first of the `contradictions`."""
+    for argument, value, allowed in contradictions(problem, model, method):
+        raise InputError(argument, value, allowed)
+
+
+def contradictions(problem: Problem, model: str, method: str) -> Iterator[tuple[str, object, str]]:
+    """Arguments that contradict each other: name, value, and what is allowed.
+
+    Parameters
+    ----------
+    problem : problem.Problem
+        The problem, see `problem_of`.
+    model : str
+        Name of the model, see `choose_model`.
+    method : str
+        Name of the method.
+    """
+    motion, drive, periodic = problem.motion, problem.drive, problem.motion.periodic
+    shipped = method == method_names.SHIPPED
+    refusal = method_refusal(problem, model, method)
+    if not (refusal or shipped) and method_names.method_named(method).run is not None:
+        refusal = "it is one run, which cannot be refined"
+    if refusal:
+        yield "method", method, f"does not apply to {motion.name}, model {model}: {refusal}"
+    if drive is None:
+        return
+    force, pulls = drive.force, "stiffness" if drive.force is None else "force"
+    if force is not None and force < 0.0 and not problem.propels:
+        yield "force", force, f"allowed is a number of at least 0: {motion.name} propels nothing"
+    if not MODELS[model].drivable:
+        yield "model", model, f"supports no {pulls}, only a prescribed velocity"
+    if not shipped:
+        yield "method", method, f"allowed is {method_names.SHIPPED} with a {pulls}"
+    if force is None:
+        if periodic and problem.velocity == 0.0 and not is_even(problem):
+            allowed = f"allowed is a number above 0 for {motion.name} with a spring"
+            yield "velocity", 0.0, allowed
+        return
+    if not periodic and (motion.name != "continuous-bore" or not problem.pressure.is_round):
+        place = f"{motion.name} under {problem.pressure.name}"
+        yield "force", force, f"allowed is none for {place}, which has no closed form"
+    closest = CLOSEST_FORCE if periodic else CLOSEST_STEADY_FORCE
+    if closest <= abs(force) < 1.0 and not runs_away(problem):
+        moving = problem if drive.mass or not periodic else without_forward_motion(problem)
+        if not periodic or oscillates(moving):
+            allowed = f"allowed is a force below {closest:.9g} (of mu times the mean normal load), "
+            allowed += "or from 1 on, where the contact runs away; in between the velocity is too "
+            yield "force", force, allowed + "large to be computed"

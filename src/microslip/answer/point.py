@@ -1,0 +1,260 @@
+"""solve(): friction, or velocity under a force, at one point, with its error estimate."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+from typing import Any
+
+from microslip.answer.answer import Result, about
+from microslip.answer.limits import method_refusal, oscillates, problem_of
+from microslip.answer.request import TOLERANCE, Request, prescribed, request_of
+from microslip.contact.registry import MODELS
+from microslip.foundation.errors import InputError
+from microslip.motions.by_name import motion_named
+from microslip.motions.motion import Motion
+from microslip.motions.problem import Problem
+from microslip.pressures.by_name import pressure_named
+from microslip.pressures.hertz import HERTZ
+from microslip.pressures.pressure import Pressure
+from microslip.solver.method_names import SHIPPED, method_named, missing
+
+
+def solve(
+    motion: str | Motion | Problem,
+    velocity: float | None = None,
+    amplitude: float | None = None,
+    *,
+    force: float | None = None,
+    stiffness: float | None = None,
+    mass: float | None = None,
+    damping: float | None = None,
+    pressure: str | Pressure = HERTZ,
+    poisson: float = 0.0,
+    model: str = "auto",
+    tolerance: float | None = TOLERANCE,
+    cells: int | None = None,
+    steps: int | None = None,
+    method: str = SHIPPED,
+    most_work: float | None = None,
+    time_limit: float | None = None,
+    progress: Callable | None = None,
+) -> Result:
+    """Compute the macroscopic friction of a vibrated contact at one point.
+
+    Parameters
+    ----------
+    motion : str, Motion or Problem
+        "transverse", "bore", "continuous-bore" or another motion, with its parameters, such as
+        "elliptic:forward=0.5".  A Problem replaces all arguments up to `poisson`.
+    velocity : float or None
+        The paper's dimensionless velocity, in units of u_lim of the pressure.  0 means the static
+        limit.  None under a prescribed force, which determines the velocity.  Negative velocities
+        are allowed for self-propelled motions; for other motions, the friction at -v is minus the
+        friction at v.
+    amplitude : float or None
+        The paper's dimensionless amplitude; None for steady motions.
+    force : float or None
+        Prescribed forward force divided by mu times the mean normal load.  Give either this or
+        `velocity`.
+    stiffness, mass, damping : float or None
+        Stiffness of a spring that pulls the body, in units of mu F_z / u_lim; the far end of the
+        spring moves at `velocity`.  Mass of the body, in units of mu F_z / (u_lim omega^2); it can
+        also be combined with a force.  Damping of a dashpot parallel to the spring, in units of mu
+        F_z / (u_lim omega).  F_z is the normal load without oscillation.
+    pressure : str or Pressure
+        Pressure, such as "hertz", "power:exponent=1" or "file:measured.csv", see
+        microslip.pressures.by_name.
+    poisson : float
+        Poisson's ratio, 0 to 0.5.
+    model : str
+        "auto" or a name in contact.registry.MODELS.
+    tolerance : float or None
+        Absolute tolerance of mu_macro.  Under a force, it is the tolerance of the velocity,
+        relative for a velocity above 1.  If cells and steps are imposed, the tolerance can be None,
+        and any error is then accepted.
+    cells, steps : int or None
+        Imposed numbers of cells and of steps per full period.  By default, they are chosen
+        according to the tolerance.
+    method : str
+        "shipped", or another name in solver.method_names.names() for a comparison.
+    most_work : float or None
+        Limit on the work of all runs together.  The work of a run is its number of step solves
+        times its number of unknowns.  Defaults to MOST_WORK.
+    time_limit : float or None
+        Limit on the wall-clock time in seconds, checked between marches.  None means no limit.
+    progress : callable or None
+        Called before every run, with the run's Resolution.
+
+    Returns
+    -------
+    Result
+        The result.  If the error estimate exceeds the tolerance, even at an imposed resolution,
+        `converged` is False and `reason` says why.  Without a tolerance, `converged` is True if
+        every run found its periodic state to the accuracy required for a tolerance of 1e-3.
+
+    Raises
+    ------
+    InputError
+        If an argument is out of range or a model does not apply.  The message names the argument.
+    """
+    drive = {"force": force, "stiffness": stiffness, "mass": mass, "damping": damping}
+    problem = problem_of(
+        motion, velocity, amplitude, pressure=pressure, poisson=poisson, drive=drive
+    )
+    request = request_of(
+        problem,
+        model,
+        tolerance,
+        cells=cells,
+        steps=steps,
+        method=method,
+        most_work=most_work,
+        time_limit=time_limit,
+        progress=progress,
+    )
+    if problem.velocity >= 0.0:
+        return replace(answer_of(request).changed(**about(problem)), problem=problem)
+    behind = replace(problem, velocity=-problem.velocity, backward=not problem.backward)
+    answer = answer_of(replace(request, problem=behind))  # the mirror image
+    answer = answer.changed(mean_velocity=-answer.mean_velocity, friction=-answer.friction)
+    return replace(answer.changed(**about(problem)), problem=problem)
+
+
+def answer_of(request: Request) -> Result:
+    """Answer a request at a velocity of at least 0."""
+    problem, drive = request.problem, request.problem.drive
+    if drive is not None and drive.force is not None:
+        # imported here because it loads compiled code
+        from microslip.answer.force import under_force
+
+        return under_force(request)
+    moves = problem.motion.periodic and problem.velocity > 0.0
+    if drive is not None and not (moves and oscillates(problem)):
+        # under a constant force the length of the spring is constant
+        request = replace(request, problem=replace(problem, drive=None))
+    return prescribed(request)
+
+
+KERNELS: dict[str, tuple[dict[str, Any], ...]] = {
+    "rings": ({"motion": "transverse"},),
+    "angles": (
+        {"motion": "transverse", "poisson": 0.3},
+        {"motion": "bore"},
+        {"motion": "continuous-bore", "amplitude": None, "model": "polar"},
+    ),
+    "pulled": ({"motion": "transverse", "stiffness": 1.0}, {"motion": "bore", "stiffness": 1.0}),
+}
+"""Points for each group of kernels.  Solving these points compiles the kernels."""
+
+
+def warm_up(*kernels: str) -> None:
+    """Compile kernels of the models that "auto" can choose; Numba caches them.
+
+    The first compilation takes a while.  Several processes can compile different kernels at the
+    same time.  The kernels of squares are compiled at their first use.
+
+    Parameters
+    ----------
+    kernels : str
+        Names of kernels: "rings", "angles" (for rotations and Poisson's ratios above 0), "pulled"
+        (for a force or a spring).  Default: "rings" and "angles".
+
+    Raises
+    ------
+    InputError
+        If a name is unknown.
+    """
+    kernels = kernels or ("rings", "angles")
+    for name in kernels:
+        if name not in KERNELS:
+            raise InputError("kernels", name, f"may be {', '.join(KERNELS)}")
+    for name in kernels:
+        for case in KERNELS[name]:
+            point = {"velocity": 0.5, "amplitude": 0.5, "tolerance": 1e-2}
+            solve(**point | case)
+
+
+# Single runs, which compare methods
+
+
+def applies(
+    motion: str, poisson: float, model: str, method: str, pressure: str = HERTZ.name
+) -> str:
+    """Reason why a model or a method does not apply to a motion; empty if both apply."""
+    kind = motion_named(motion)
+    amplitude = 1.0 if kind.periodic else None
+    problem = Problem(kind, 1.0, amplitude, poisson, pressure_named(pressure))
+    refusal = MODELS[model].refuses(problem) or missing(method)
+    return refusal or method_refusal(problem, model, method)
+
+
+def run_trial(
+    motion: str,
+    velocity: float,
+    amplitude: float,
+    *,
+    poisson: float,
+    model: str,
+    method: str,
+    cells: int,
+    angles: int,
+    steps: int,
+    tolerance: float,
+    pressure: str = HERTZ.name,
+) -> dict:
+    """Run a model with a method at one resolution.  The result does not depend on the machine.
+
+    Parameters
+    ----------
+    motion, velocity, amplitude, poisson, model, method, pressure
+        See `microslip.solve`.
+    cells : int
+        Number of rings, or of squares along a side.
+    angles : int
+        Number of angular points on half the disc.
+    steps : int
+        Number of steps in a full period.
+    tolerance : float
+        Tolerance of the periodic state, as a force divided by mu F_z.
+
+    Returns
+    -------
+    dict
+        - mu_macro: mean friction; NaN if the run failed.
+        - converged, reason: whether the state is periodic, and the reason if it is not.
+        - periods: number of full periods in all searches.
+        - iterations, solves, unknowns: number of iterations of the step solver, of step solves, and
+          of unknowns in a step.
+        - work, effort: number of solves times unknowns, and number of iterations times unknowns.
+
+    Raises
+    ------
+    ValueError
+        If the model or the method does not apply.
+    """
+    refusal = applies(motion, poisson, model, method, pressure)
+    if refusal:
+        raise ValueError(f"model = {model!r}, method = {method!r}: {refusal}")
+    # imported here because they load compiled code
+    from microslip.solver.discretise import Resolution
+    from microslip.solver.run import Settings
+    from microslip.solver.simulate import simulate
+
+    resolution = Resolution(cells, angles, max(steps // 2, 1))
+    problem = Problem(motion_named(motion), velocity, amplitude, poisson, pressure_named(pressure))
+    settings = Settings(method_named(method))
+    run = simulate(problem, model, resolution, tolerance, settings=settings)
+    effort = run.effort
+    unknowns = effort.work // effort.solves if effort.solves else 0
+    return {
+        "mu_macro": float(run.mu),
+        "converged": bool(run.converged),
+        "reason": run.reason,
+        "periods": run.periods,
+        "iterations": effort.iterations,
+        "solves": effort.solves,
+        "unknowns": unknowns,
+        "work": effort.work,
+        "effort": effort.updates,
+    }

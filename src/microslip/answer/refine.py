@@ -1,0 +1,240 @@
+"""Refinement of a problem until its estimated error is within the tolerance.
+
+The error estimate has four sources:
+
+- resolution: Richardson extrapolation of the runs at n/4, n/2 and n.  At an imposed resolution, the
+  value is that of the finest run, and its distance from the extrapolated value is added;
+- periodicity, solver: the value is a combination sum c_i f_i of runs.  Their distances d_i from the
+  periodic state and the residuals r_i of their steps contribute sum |c_i| (d_i + r_i);
+- model: a pressure on a grid, or a motion given by samples, can be interpolated in several ways.
+  The finest run is repeated for each interpolation; refinement does not reduce the differences.
+
+The methods are of second order, f(n) = f + C / n^2 + ..., and the difference D of the last two
+levels gives the correction D / 3.  If the differences decrease with another order p, the levels
+beyond the last one add up to D / (2^p - 1), and the extrapolated value is wrong by
+D (1 / (2^p - 1) - 1 / 3).  The error estimate is this error for the observed order, times a safety
+factor.  It is at least the correction and at most D, both times the safety factor.
+
+Two levels can agree by chance.  Therefore D is at least a quarter of the difference of the first
+two levels, which second order leads to expect.  This is the grid convergence index of Roache (J.
+Fluids Eng. 116, 1994) with both pairs of levels.  Two cases show that the last two levels agree by
+chance: the differences change sign, or the observed order is far above 2.  Then the last level is
+not better than the one before, and D is the difference of the first two levels.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterable, Sequence
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from microslip.answer.answer import UNKNOWN, Answer, Estimate
+from microslip.answer.ladder import LOOSEST, ORDER, Ladder
+from microslip.motions.problem import Problem
+from microslip.solver.budget import Spent
+from microslip.solver.discretise import Resolution
+from microslip.solver.effort import Effort
+from microslip.solver.run import NAMES, Run
+
+SAFETY = 1.5
+"""Safety factor on the correction.  Calibrated by
+`benchmarks/error_estimates.py --seed 3 --safety FACTOR`."""
+CHANCE_ORDER = 2 * ORDER
+"""Observed order above which the last two levels count as agreeing by chance.  From here on, D
+increases linearly as the last difference decreases, up to the first difference if the last two
+levels are equal.  `benchmarks/attacks.py` searches for points that this rule does not cover."""
+WEIGHTS = 0.0, -1.0 / (2**ORDER - 1), 2**ORDER / (2**ORDER - 1)
+"""Weights of the levels n/4, n/2 and n in the extrapolated value."""
+READING_SAFETY = 2.5
+"""Safety factor on the differences between the interpolations (readings) of a pressure or a motion.
+No interpolation resolves a peak or an edge between the points."""
+SMALLEST_SHARE = 0.7
+"""Smallest error estimate for the resolution, divided by the tolerance (at an imposed resolution,
+by Ladder.accuracy).  It is above 0 because three levels can agree by chance.  Calibrated by
+benchmarks/error_estimates.py."""
+LARGEST_REST = 0.5
+"""Finer runs are started only if the sum of the other errors is at most this fraction of the
+tolerance."""
+
+
+class Extrapolation(NamedTuple):
+    """Limit of a sequence of levels.  Arrays are extrapolated element by element.
+
+    Attributes
+    ----------
+    value : float or np.ndarray
+        Limit at infinite n.
+    error : float or np.ndarray
+        Estimated error of the limit.
+    order : float or np.ndarray
+        Observed order of convergence.  It is infinite if the last two levels agree, and NaN if all
+        three agree.
+    """
+
+    value: Any
+    error: Any
+    order: Any
+
+
+def extrapolate(values: Sequence[Any] | np.ndarray) -> Extrapolation:
+    """Richardson extrapolation of the values at levels n/4, n/2 and n."""
+    coarse, middle, fine = values
+    first, second = middle - coarse, fine - middle
+    before, last = np.abs(first), np.abs(second)
+    chance = before - 2.0**CHANCE_ORDER * (1.0 - 2.0**-ORDER) * last
+    least = np.where(first * second < 0.0, before, np.maximum(chance, before / 2**ORDER))
+    with np.errstate(divide="ignore", invalid="ignore"):
+        order = np.log2(np.divide(before, last))
+        beyond = np.where(order > 0.0, 1.0 / (2.0**order - 1.0), np.inf)
+    correction = 1.0 / (2**ORDER - 1)
+    share = np.minimum(np.maximum(beyond - correction, correction), 1.0)
+    error = SAFETY * share * np.maximum(last, least)
+    return Extrapolation(np.tensordot(WEIGHTS, values, 1), error, order)
+
+
+def refine(
+    run: Callable[[Problem, Resolution, Run | None], Run],
+    ladder: Ladder,
+    problems: Sequence[Problem],
+    tolerance: float,
+    name: str = "friction",
+    *,
+    energy_unit: float = np.nan,
+    drive_work: float = 0.0,
+) -> Answer:
+    """Refine until the estimated error is within the tolerance.  No run is repeated.
+
+    Parameters
+    ----------
+    run : callable
+        `run(problem, resolution, guess)` returns a run.Run.  `guess` is the run of the first
+        problem at half the level or, for another interpolation, at the same level; None if there is
+        no such run.
+    ladder : Ladder
+        Resolutions of the problem.
+    problems : sequence of problem.Problem
+        The problem, followed by problems that interpolate the same data differently
+        (Problem.readings).
+    tolerance : float
+        Absolute tolerance of the requested value.
+    name : str
+        Name of the requested value in Run.values.
+    energy_unit : float
+        Largest error of the dissipated energy for an error of 1 in the requested value.
+    drive_work : float
+        If the requested value is a velocity: work that the prescribed force does in a period at the
+        velocity 1, divided by mu F_z u_lim.
+
+    Returns
+    -------
+    Answer
+        Estimates of all values of the runs, and the following values: the finest run `finest`, its
+        resolution, the observed order, the number of periods in the longest run, the effort of all
+        runs, whether every run is `periodic`, and whether the resolution is `imposed`.  The answer
+        is not converged if a run did not converge, if the finest level is not fine enough, or if a
+        run raised budget.Spent.  In the last case, the estimates are those before that run, or
+        unknown.
+    """
+    runs: dict[tuple[int, int], Run] = {}
+    goal, answer = tolerance, None
+    try:
+        for level in ladder.levels(tolerance):
+            if level < ladder.levels(goal)[0]:
+                continue
+            places = [(0, level // 4), (0, level // 2), *((k, level) for k in range(len(problems)))]
+            for number, at in places:
+                if (number, at) not in runs:
+                    guess = runs.get((0, at if number else at // 2))
+                    runs[number, at] = run(problems[number], ladder.resolution(at), guess)
+            estimates, order = _estimates(
+                [runs[place] for place in places], ladder, goal, name, energy_unit, drive_work
+            )
+            reason = next((one.reason for one in runs.values() if one.reason), "")
+            finest = ladder.resolution(level)
+            values = _values(ladder, finest) | {
+                "finest": runs[0, level],
+                "observed_order": order if math.isfinite(order) else None,
+                "periods": max(one.periods for one in runs.values()),
+                "effort": sum((one.effort for one in runs.values()), Effort()),
+                "periodic": not reason,
+            }
+            answer = Answer(problems[0], values, estimates, reason)
+            error = estimates[name].error
+            rest = error - estimates[name].by_source["resolution"]
+            if error <= tolerance or rest > LARGEST_REST * tolerance or ladder.imposed or reason:
+                return answer
+            goal = tolerance - rest
+    except Spent as spent:
+        if answer is None:
+            unknown = dict.fromkeys(NAMES, UNKNOWN)
+            values = _values(ladder, Resolution(0, 0, 0)) | {"periodic": False}
+            reason = f"{spent}: there is no error estimate yet"
+            return Answer(problems[0], values, unknown, reason)
+        return answer.changed(reason=f"{spent}: the error is still {error:.1e}")
+    assert answer is not None  # every ladder has a level
+    return answer.changed(reason=f"the error is still {error:.1e} with {finest.cells} cells")
+
+
+def _values(ladder: Ladder, finest: Resolution) -> dict[str, Any]:
+    """Values of an answer that follow from the finest resolution."""
+    return {
+        "cells": finest.cells,
+        "angles": finest.angles,
+        "steps_per_period": 2 * finest.steps if ladder.steps else 0,
+        "imposed": ladder.imposed > 0.0,
+    }
+
+
+def _estimates(
+    runs: Sequence[Run],
+    ladder: Ladder,
+    goal: float,
+    name: str,
+    energy_unit: float,
+    drive_work: float,
+) -> tuple[dict[str, Estimate], float]:
+    """Estimates of all values, and the observed order of convergence of the requested one.
+
+    runs: at n/4, n/2 and n, and those of other interpolations at n.  goal: largest accepted
+    resolution error of the value `name`.  The other arguments are those of `refine`.
+    """
+    three, others, imposed = runs[:3], runs[3:], ladder.imposed > 0.0
+    base = (0.0, 0.0, 1.0) if imposed else np.abs(WEIGHTS)
+    # a run that did not converge has a weight of at least 1, since levels can agree by chance
+    weights = [max(w, 1.0) if one.reason else w for w, one in zip(base, three, strict=True)]
+    common = {
+        "periodicity": _weighted(weights, [one.distance for one in three]),
+        "solver": _weighted(weights, [one.residual for one in three]),
+    }
+    accuracy = ladder.accuracy if imposed else min(goal, LOOSEST)
+    names = [name, *(other for other in three[-1].values if other != name)]
+    values = np.array([[one.values.get(other, np.nan) for other in names] for one in three])
+    limits = extrapolate(values)
+    estimates: dict[str, Estimate] = {}
+    for k, one in enumerate(names):
+        extrapolated, finest = float(limits.value[k]), float(values[-1, k])
+        least, unit = SMALLEST_SHARE * accuracy, 1.0
+        if one == "dissipation":
+            # the energy of a small cycle (Mindlin) is proportional to the third power of the force,
+            # and its upper bound to the force: an error of the force changes the energy by their
+            # geometric mean
+            unit, dissipated = energy_unit, abs(finest)
+            scale = max(dissipated, (dissipated * energy_unit) ** 0.5)
+            # for a velocity above 1, the tolerance is already proportional to the velocity
+            least *= max(scale / max(1.0, abs(estimates[name].value)), drive_work)
+        value = finest if imposed else extrapolated
+        error = max(float(limits.error[k]), least) + abs(extrapolated - value)
+        errors = {"resolution": error} | {source: unit * e for source, e in common.items()}
+        if others:
+            apart = sum(abs(run.values.get(one, np.nan) - finest) for run in others)
+            errors["model"] = READING_SAFETY * apart
+        estimates[one] = Estimate(value, errors)
+    return estimates, float(limits.order[0])
+
+
+def _weighted(weights: Iterable[float], errors: Iterable[float]) -> float:
+    """Weighted sum of errors.  Terms with weight 0 are omitted, because their error can be
+    infinite."""
+    return float(sum(w * e for w, e in zip(weights, errors, strict=True) if w))

@@ -1,0 +1,381 @@
+"""Requests, and the runs that answer them.
+
+A run that does not converge is repeated.  The slower the forward motion, the longer its transients.
+In long transients, even small errors of the steps accumulate to a wrong state, and the search needs
+a better initial guess.  So the second attempt solves the steps to a tighter tolerance.  It first
+finds the periodic state at a higher velocity, where this is easier.  Then it lowers the velocity
+step by step, and each run starts from the previous run's state.
+"""
+
+from __future__ import annotations
+
+import math
+import time
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from functools import cache
+from typing import TYPE_CHECKING, Any
+
+from microslip.answer.answer import CLOSED_FORM, Answer, Estimate, Result
+from microslip.answer.closed_forms import Exact, closed_form, no_vibration
+from microslip.answer.limits import choose_model, refuse, within
+from microslip.foundation.arguments import is_real, without_array
+from microslip.foundation.errors import InputError
+from microslip.motions.problem import Problem
+from microslip.solver import method_names
+from microslip.solver.budget import Budget
+
+if TYPE_CHECKING:  # these load compiled code, which a closed form does not need
+    from microslip.answer.ladder import Ladder
+    from microslip.solver.discretise import Resolution
+    from microslip.solver.run import Run
+
+TOLERANCE = 1e-3
+"""Default tolerance, also used as the accuracy of runs if no tolerance is requested."""
+MOST_WORK = {"polar": 2e9, "cartesian": 2e9}
+MOST_WORK_OF_OTHERS = 2e8
+"""Default limits on the work (step solves times unknowns) by model.  They are more than ten times
+the work of the slowest points in the paper's range at a tolerance of 1e-4."""
+RUN_SHARE = 0.05
+"""Largest distance of a run from its periodic state, divided by the tolerance.  Multiplied by the
+weights of the runs, it contributes at most a twelfth of the tolerance."""
+FACTOR, SMALLEST_FACTOR = 4.0, 1.15
+"""Ratio of successive velocities in a second attempt.  After a failure, the ratio is replaced by
+its square root, down to SMALLEST_FACTOR."""
+FASTEST_START = 1.0
+"""Largest drift, in u_lim per radian of phase, at which a second attempt looks for a first periodic
+state.  At this drift, transients last less than a period."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Request:
+    """A checked request for the friction of a problem, or for its velocity under a force.
+
+    Attributes
+    ----------
+    problem : problem.Problem
+        The problem.
+    model : str
+        Name in contact.registry.MODELS.
+    chosen : bool
+        Whether the requested model is "auto", so that a closed form can replace the model.
+    method : str
+        Name of the method.
+    tolerance : float or None
+        Absolute tolerance.  None means that any error is accepted.
+    cells, steps : int or None
+        Imposed numbers of cells and of steps per full period; None if not imposed.
+    budget : budget.Budget
+        Budget of all runs together.
+    progress : callable
+        Called before every run, with the run's Resolution.
+    started : float
+        Value of time.perf_counter() when the request was made.
+    """
+
+    problem: Problem
+    model: str
+    chosen: bool
+    method: str
+    tolerance: float | None
+    cells: int | None
+    steps: int | None
+    budget: Budget
+    progress: Callable
+    started: float
+
+    @property
+    def accuracy(self) -> float:
+        """The tolerance to which the runs are refined."""
+        return TOLERANCE if self.tolerance is None else self.tolerance
+
+    def result(self, estimates: dict[str, Estimate], reason: str = "", **values: Any) -> Result:
+        """Build the Result.  Missing values are those of a result that needs no run."""
+        own: dict[str, Any] = {
+            "model": CLOSED_FORM if self.chosen else self.model,
+            "tolerance": self.tolerance,
+            "method": self.method,
+            "exhausted": self.budget.exhausted,
+            "solve_time_s": time.perf_counter() - self.started,
+        }
+        return Result.of(self.problem, estimates, reason, **own | values)
+
+
+def request_of(
+    problem: Problem,
+    model: str,
+    tolerance: float | None,
+    *,
+    cells: int | None = None,
+    steps: int | None = None,
+    method: str = method_names.SHIPPED,
+    most_work: float | None = None,
+    time_limit: float | None = None,
+    progress: Callable | None = None,
+) -> Request:
+    """Build the Request for a problem.  The time limit counts from this call.
+
+    Parameters
+    ----------
+    problem : problem.Problem
+        The problem, already checked.
+    model, tolerance, cells, steps, method, most_work, time_limit, progress
+        See `microslip.solve`.
+
+    Raises
+    ------
+    InputError
+        If an argument is out of range, or a model or a method does not apply.  The message names
+        the argument.
+    """
+    started = time.perf_counter()
+    given = {"cells": cells, "steps": steps, "tolerance": tolerance}
+    numbers = {n: None if v is None else within(n, v) for n, v in given.items()}
+    budget = {"most_work": without_array(most_work), "time_limit": without_array(time_limit)}
+    for name, value in budget.items():
+        if value is not None and not (is_real(value) and value > 0.0):
+            raise InputError(name, value, "allowed is a number above 0")
+    if progress is not None and not callable(progress):
+        raise InputError("progress", progress, "allowed is a function of one argument")
+    name = choose_model(problem, model)
+    method_names.check(method)
+    lack = method_names.missing(method)
+    if lack:
+        raise InputError("method", method, lack)
+    refuse(problem, name, method)
+    usual = {"most_work": MOST_WORK.get(name, MOST_WORK_OF_OTHERS), "time_limit": math.inf}
+    limits = usual | {name: value for name, value in budget.items() if value is not None}
+    return Request(
+        problem=problem,
+        model=name,
+        chosen=model == "auto",
+        method=method,
+        budget=Budget(limits["most_work"], limits["time_limit"]),
+        progress=progress or (lambda resolution: None),
+        started=started,
+        **numbers,
+    )
+
+
+def prescribed(request: Request) -> Result:
+    """Friction at a prescribed velocity or through a spring: a closed form if there is one,
+    otherwise runs of a model."""
+    exact, tolerance = _exact(request), request.tolerance
+    if exact is None:
+        return result_of_runs(request, runs(request, request.accuracy), tolerance)
+    error, reason = exact["friction"].error, ""
+    if tolerance is not None and error > tolerance:
+        reason = f"the error is {error:.1e}, above the tolerance of {tolerance:g}"
+    return request.result(exact, reason)
+
+
+def _exact(request: Request) -> Exact | None:
+    """Closed form for a request; None if there is none or if an imposed resolution requires a
+    march."""
+    problem = request.problem
+    exact = no_vibration(problem)
+    imposed = request.cells is not None or request.steps is not None
+    if exact is not None or not request.chosen or request.method != method_names.SHIPPED:
+        return exact
+    if imposed and problem.velocity > 0.0:
+        return None
+    return closed_form(problem, request.tolerance or 0.0)
+
+
+def ladder_of(request: Request, tolerance: float) -> Ladder:
+    """Ladder for the problem of a request.
+
+    Raises InputError if a resolution would have to be chosen without a tolerance of the request.
+    """
+    # imported here because it loads compiled code
+    from microslip.answer.ladder import ladder_for, refuse_free
+
+    imposed = request.cells, request.steps
+    ladder = ladder_for(request.problem, request.model, tolerance, *imposed)
+    if request.tolerance is None:
+        refuse_free(ladder, *imposed)
+    return ladder
+
+
+def runs(
+    request: Request,
+    tolerance: float,
+    name: str = "friction",
+    *,
+    ladder: Ladder | None = None,
+    share: float = RUN_SHARE,
+    slope: float = math.inf,
+) -> Answer:
+    """Refine the runs of a request until the error of one value is within the tolerance.
+
+    Parameters
+    ----------
+    request : Request
+        The request.
+    tolerance : float
+        Absolute tolerance.
+    name : str
+        Name of the value in run.Run.values.
+    ladder : Ladder or None
+        Resolutions.  None means those of the problem.
+    share : float
+        Tolerance of a run, divided by the tolerance.
+    slope : float
+        Under a force: rise of the friction with the velocity, see run.Settings.
+
+    Returns
+    -------
+    Answer
+        The answer of refine.refine.
+    """
+    # imported here because they load compiled code
+    from microslip.answer.ladder import with_mass
+    from microslip.answer.refine import refine
+
+    problem, drive, unresolved = request.problem, request.problem.drive, ""
+    ladder = ladder or ladder_of(request, tolerance)
+    if drive is not None and drive.mass > 0.0:
+        ladder, unresolved = with_mass(ladder, problem, request.model, tolerance)
+    unit, work = problem.largest_energy, 0.0
+    if name == "velocity":  # its error changes the drift and the forces
+        assert drive is not None and drive.force is not None
+        work = 2.0 * math.pi * problem.mean_load * problem.unit_drift * abs(drive.force)
+        unit = slope * unit + work
+    run, every = _run_of(request, share * tolerance, slope), (problem, *problem.readings)
+    answer = refine(run, ladder, every, tolerance, name, energy_unit=unit, drive_work=work)
+    return answer.changed(reason=answer.reason or unresolved)
+
+
+def _run_of(
+    request: Request, tolerance: float, slope: float
+) -> Callable[[Problem, Resolution, Run | None], Run]:
+    """Function that runs a problem at one resolution, see refine.refine.
+
+    The runs raise budget.Spent if the budget of the request is exceeded.
+    """
+    from microslip.solver.run import Settings
+    from microslip.solver.simulate import simulate
+    from microslip.solver.stick_edge import edge_focus
+
+    own, free = request.problem, request.problem.drive is None
+    repeats = free and own.motion.periodic and own.velocity > 0.0
+    repeats = repeats and request.method == method_names.SHIPPED
+
+    @cache  # the search for the slip front is charged once
+    def settings() -> Settings:
+        method = method_names.method_named(request.method)
+        focus = None
+        if free:
+            focus = edge_focus(own, request.model, request.budget, request.progress)
+        return Settings(method, budget=request.budget, focus=focus, slope=slope)
+
+    def run(problem: Problem, resolution: Resolution, guess: Run | None) -> Run:
+        usual = settings()
+        request.progress(resolution)
+        first = simulate(problem, request.model, resolution, tolerance, guess, usual)
+        if first.converged or not repeats:
+            return first
+        tighter = replace(usual, tighter=True)
+
+        def run_at(velocity: float, guess: Run | None) -> Run:
+            there = replace(problem, velocity=velocity)
+            return simulate(there, request.model, resolution, tolerance, guess, tighter)
+
+        return second_attempt(first, run_at, problem.velocity, FASTEST_START / problem.unit_drift)
+
+    return run
+
+
+def second_attempt(
+    first: Run, run_at: Callable[[float, Run | None], Run], velocity: float, fastest: float
+) -> Run:
+    """Run at a velocity after a run that did not converge.
+
+    Parameters
+    ----------
+    first : run.Run
+        The run that did not converge.
+    run_at : callable
+        `run_at(velocity, guess)` returns a run.Run with steps that are solved to a smaller
+        tolerance.
+    velocity : float
+        Dimensionless velocity.
+    fastest : float
+        Largest velocity of the continuation, except for the first multiple of `velocity`.
+
+    Returns
+    -------
+    run.Run
+        The run, with the effort of all attempts and `effort.retried` equal to 1.  If all attempts
+        fail, it is the first one, whose reason is the most informative.
+    """
+    attempts, at = [first, run_at(velocity, None)], velocity
+    while not attempts[-1].converged and FACTOR * at <= max(fastest, FACTOR * velocity):
+        at *= FACTOR
+        attempts.append(run_at(at, None))
+    above, factor = attempts[-1], FACTOR
+    while above.converged and at > velocity and factor > SMALLEST_FACTOR:
+        lower = max(at / factor, velocity)
+        attempts.append(run_at(lower, above))
+        if attempts[-1].converged:
+            above, at = attempts[-1], lower
+        else:
+            factor = factor**0.5
+    result = above if above.converged and at == velocity else first
+    effort = sum((one.effort for one in attempts[1:]), replace(first.effort, retried=1))
+    return replace(result, effort=effort)
+
+
+def result_of_runs(
+    request: Request,
+    answer: Answer,
+    largest: float | None,
+    name: str = "friction",
+    **more: Estimate,
+) -> Result:
+    """Build the Result of a refinement.
+
+    Parameters
+    ----------
+    request : Request
+        The request.
+    answer : Answer
+        The answer of `runs`.
+    largest : float or None
+        Largest accepted error, or None if any error is accepted.
+    name : str
+        Name of the requested value.
+    **more : Estimate
+        Estimates of the Result that replace those of the answer.
+    """
+    problem, requested, reason = request.problem, answer.estimates[name], answer.reason
+    error = requested.error
+    if not (reason or largest is None or error <= largest):
+        where = "at the imposed resolution the error" if answer.imposed else "the estimated error"
+        reason = f"{where} is {error:.1e}, above the tolerance of {largest:g}"
+        file_error = requested.by_source.get("model", 0.0) if problem.readings else 0.0
+        if file_error > 0.5 * error:
+            reason += f": the file's own resolution leaves {file_error:.1e} open"
+    names = ("friction", "dissipation" if problem.motion.periodic else "torque")
+    estimates = {name: answer.estimates[name] for name in names if name in answer.estimates} | more
+    if "friction" not in more:
+        estimates["friction"] = within_friction(problem, estimates["friction"])
+    values = {name: one for name, one in answer.values.items() if name not in ("finest", "imposed")}
+    if request.budget.exhausted:
+        values["effort"] = request.budget.taken
+    return request.result(estimates, reason, model=request.model, **values)
+
+
+def within_friction(problem: Problem, friction: Estimate) -> Estimate:
+    """Clip the friction to its range: 0 to 1, or -1 to 1 for motions that can propel.
+
+    Values outside this range result from rounding and discretisation errors.  If the error exceeds
+    the width of the range, the result is the middle of the range with half the width as its error.
+    """
+    least = -1.0 if problem.propels else 0.0
+    if not math.isfinite(friction.value):
+        return replace(friction, value=math.nan)
+    half = 0.5 * (1.0 - least)
+    if friction.error > 2.0 * half:
+        return Estimate(1.0 - half, {"model": half})
+    return replace(friction, value=min(max(friction.value, least), 1.0))

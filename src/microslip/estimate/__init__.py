@@ -1,1 +1,0 @@
-"""Discretisation error: levels of resolution, Richardson extrapolation, refinement."""

@@ -1,0 +1,159 @@
+"""Dissipated energy per period: closed forms, limits and drives."""
+
+import math
+
+import numpy as np
+import pytest
+from scipy.integrate import quad
+
+import microslip
+from microslip.pressures.by_name import pressure_named
+from microslip.theory import hertz, masing
+from microslip.theory.indenters import torsion_energy
+
+INDENTERS = ("hertz", "power:exponent=1", "power:exponent=8", "punch:flat=0.5")
+
+
+def mindlin_deresiewicz(force):
+    """24/5 (1 - (1 - L)^(5/3)) - 4 L (1 + (1 - L)^(2/3)) for the amplitude L of the force."""
+    rest = 1.0 - force
+    return 24.0 / 5.0 * (1.0 - rest ** (5 / 3)) - 4.0 * force * (1.0 + rest ** (2 / 3))
+
+
+@pytest.mark.parametrize("amplitude", [1e-3, 0.1, 0.5, 1.0, 3.0])
+def test_a_loop_of_a_sphere(amplitude):
+    """Beyond u_lim both strokes of the loop are longer, under full friction."""
+    longer = max(amplitude - 1.0, 0.0)
+    force = hertz.mindlin_force(min(amplitude, 1.0))
+    exact = mindlin_deresiewicz(force) + 4.0 * longer
+    assert masing.loop_energy(amplitude) == pytest.approx(exact, rel=1e-9)
+
+
+def test_a_small_loop_has_the_cube_of_its_amplitude():
+    """Mindlin and Deresiewicz: L^3 / 27 times 4 for small forces, with L = 3 A / 2."""
+    assert masing.loop_energy(1e-4) == pytest.approx(0.5 * 1e-12, rel=1e-3)
+
+
+@pytest.mark.parametrize("amplitude", [0.01, 0.5, 1.0, 4.0])
+@pytest.mark.parametrize("poisson", [0.0, 0.4])
+def test_a_loop_of_torsion(amplitude, poisson):
+    """8 W - 4 T phi, with the work of Lubkin's torque over the angle."""
+    angle = float(hertz.bore_angle(amplitude, poisson))
+
+    def torque(turned):
+        return float(hertz.lubkin_torque(hertz.lubkin_stick_radius(turned, poisson)))
+
+    work = quad(torque, 0.0, angle, epsabs=1e-13, epsrel=1e-12)[0]
+    loop = 8.0 * work - 4.0 * torque(angle) * angle
+    sphere = pressure_named("hertz")
+    assert torsion_energy(sphere, angle, poisson) == pytest.approx(loop, rel=1e-7, abs=1e-9)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("pressure", INDENTERS)
+@pytest.mark.parametrize(("motion", "model"), [("transverse", "radial"), ("bore", "polar")])
+def test_runs_agree_with_the_static_limit_in_closed_form(motion, model, pressure):
+    exact = microslip.solve(motion, 0.0, 0.6, pressure=pressure)
+    result = microslip.solve(motion, 0.0, 0.6, pressure=pressure, model=model)
+    assert exact.model == "closed-form"
+    apart = abs(result.dissipated_energy - exact.dissipated_energy)
+    assert apart <= result.dissipated_energy_error + exact.dissipated_energy_error
+    assert result.dissipated_energy_error < 0.02 * exact.dissipated_energy
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("model", ["radial", "mdr", "polar", "cartesian"])
+def test_a_slow_motion_dissipates_the_loop_of_mindlin_and_deresiewicz(model):
+    """The slow advance adds its own work, mu_macro times the way."""
+    velocity, amplitude = 1e-3, 0.4
+    exact = mindlin_deresiewicz(hertz.mindlin_force(amplitude))
+    result = microslip.solve("transverse", velocity, amplitude, model=model, tolerance=1e-2)
+    way = 2.0 * math.pi * velocity
+    assert exact < result.dissipated_energy + result.dissipated_energy_error
+    assert result.dissipated_energy - result.dissipated_energy_error < exact + 2.0 * way
+
+
+@pytest.mark.parametrize(("velocity", "amplitude"), [(0.1, 0.7), (0.1, 2.7), (3.0, 2.0)])
+@pytest.mark.parametrize("model", ["radial", "mdr"])
+def test_runs_agree_with_masing_along_a_line(velocity, amplitude, model):
+    exact = microslip.solve("longitudinal", velocity, amplitude)
+    result = microslip.solve("longitudinal", velocity, amplitude, model=model)
+    assert exact.model == "closed-form"
+    apart = abs(result.dissipated_energy - exact.dissipated_energy)
+    assert apart <= result.dissipated_energy_error
+
+
+@pytest.mark.parametrize(
+    ("motion", "model", "velocity"), [("transverse", "radial", 40.0), ("bore", "polar", 20.0)]
+)
+def test_runs_agree_with_the_bounds_of_fast_sliding(motion, model, velocity):
+    exact = microslip.solve(motion, velocity, 1.0)
+    result = microslip.solve(motion, velocity, 1.0, model=model, tolerance=1e-4)
+    assert exact.model == "closed-form"
+    apart = abs(result.dissipated_energy - exact.dissipated_energy)
+    assert apart <= result.dissipated_energy_error + exact.dissipated_energy_error
+
+
+@pytest.mark.slow
+def test_a_rigid_contact_dissipates_its_way():
+    """At large amplitudes the energy is mu F_z times the way, except at the two reversals.
+
+    In each reversal the contact sticks over at most 2 u_lim.
+    """
+    way = quad(lambda t: math.hypot(3.0, 30.0 * math.cos(t)), 0.0, 2.0 * math.pi)[0]
+    result = microslip.solve("transverse", 3.0, 30.0)
+    assert 0.0 < way - result.dissipated_energy < 4.0
+    rigid = microslip.solve("transverse", 3.0, 30.0, model="rigid")
+    assert rigid.dissipated_energy == pytest.approx(way, abs=rigid.dissipated_energy_error)
+
+
+def test_static_loops_of_the_reduced_models():
+    """Rigid: 4 A.  Slider: 4 (A - 1).  Dahl: the integral of its exact loop."""
+    amplitude, stiffness = 1.7, pressure_named("hertz").stiffness
+    exact = {
+        "rigid": 4.0 * amplitude,
+        "slider": 4.0 * (amplitude - 1.0),
+        "dahl": 4.0 * amplitude - 4.0 * math.tanh(stiffness * amplitude) / stiffness,
+    }
+    for model, energy in exact.items():
+        result = microslip.solve("transverse", 0.0, amplitude, model=model).dissipated_energy
+        assert result == pytest.approx(energy, rel=1e-9), model
+
+
+def test_an_oscillating_load_dissipates_the_work_of_the_drag():
+    """Without an oscillation in the plane only the drive does work, mu_macro times the load."""
+    result = microslip.solve("normal:indentation=1", 0.3, 0.8)
+    mean = pressure_named("hertz").total(1.0 + 0.8 * np.sin(np.linspace(0.0, 2.0 * np.pi, 2001)))
+    load = float(np.mean(mean[1:]))
+    exact = 2.0 * math.pi * 0.3 * result.mu_macro * load
+    assert result.dissipated_energy == pytest.approx(exact, rel=1e-6)
+
+
+def test_a_contact_at_rest_dissipates_the_energy_of_the_static_limit():
+    rest = microslip.solve("transverse", amplitude=0.3, force=0.2)
+    assert rest.velocity == 0.0
+    still = microslip.solve("transverse", 0.0, 0.3)
+    assert rest.dissipated_energy == still.dissipated_energy
+
+
+@pytest.mark.slow
+def test_a_stiff_spring_and_a_prescribed_velocity_dissipate_the_same():
+    free = microslip.solve("transverse", 0.3, 1.0)
+    spring = microslip.solve("transverse", 0.3, 1.0, stiffness=1e4)
+    apart = abs(free.dissipated_energy - spring.dissipated_energy)
+    assert apart <= free.dissipated_energy_error + spring.dissipated_energy_error
+
+
+def test_the_energy_of_a_fast_contact_has_the_relative_error_of_its_velocity():
+    result = microslip.solve("transverse", amplitude=12.0, force=0.98, tolerance=1e-3)
+    finer = microslip.solve("transverse", amplitude=12.0, force=0.98, tolerance=1e-4)
+    assert result.velocity > 30.0
+    assert result.dissipated_energy_error < 1e-3 * result.dissipated_energy
+    apart = abs(result.dissipated_energy - finer.dissipated_energy)
+    assert apart <= result.dissipated_energy_error
+
+
+def test_a_steady_motion_has_no_energy_per_period():
+    result = microslip.solve("continuous-bore", 0.3)
+    assert result.dissipated_energy is None
+    assert "dissipated_energy" not in result.to_dict()

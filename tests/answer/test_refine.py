@@ -1,0 +1,300 @@
+"""Refinement of manufactured runs with known limits."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from microslip.answer import refine as refinement
+from microslip.answer.ladder import Ladder
+from microslip.answer.refine import (
+    READING_SAFETY,
+    SAFETY,
+    SMALLEST_SHARE,
+)
+from microslip.answer.request import RUN_SHARE
+from microslip.solver.budget import Spent
+from microslip.solver.effort import Effort
+from microslip.solver.run import Run
+
+EXACT, EXACT_TORQUE = 0.4, 0.7
+LADDER = Ladder(start=8, angles=0.5, steps=2)
+
+
+def refine(run, ladder, tolerance, readings=(), **energy):
+    """Refine with functions in place of problems; `readings` replace other interpolations."""
+    every = (run, *readings)
+    return refinement.refine(lambda run, *place: run(*place), ladder, every, tolerance, **energy)
+
+
+def value_of(refined):
+    return refined.estimates["friction"]
+
+
+class FakeRun:
+    """Runs with mu = EXACT + coefficient / cells^power, and a random part of the second term."""
+
+    def __init__(self, coefficient=0.0, power=2.0, scatter=0.0, seed=0, most=99):
+        self.coefficient, self.power, self.most = coefficient, power, most
+        self.scatter, self.seed = scatter, seed
+        self.asked, self.guesses, self.runs = [], [], []
+
+    def __call__(self, resolution, guess):
+        if len(self.asked) == self.most:
+            raise Spent("all is spent")
+        draw = np.random.default_rng([self.seed, resolution.cells])
+        excess = self.coefficient * resolution.cells**-self.power
+        excess *= 1.0 + self.scatter * draw.uniform(-1.0, 1.0)
+        number = len(self.asked) + 1
+        self.asked.append(resolution)
+        self.guesses.append(guess)
+        mu, torque = EXACT + excess, EXACT_TORQUE - 2.0 * excess
+        left = 1e-9 / number, 1e-10 * number
+        values = {"friction": mu, "torque": torque}
+        self.runs.append(Run(values, *left, number, Effort(1, 10, 100, 20)))
+        return self.runs[-1]
+
+
+def test_the_energy_is_extrapolated_with_errors_in_its_own_unit():
+    """Energies 5 + 0.03 / cells^2 and a unit of 40 for the errors of the runs."""
+
+    def run(resolution, guess):
+        energy = 5.0 + 0.03 / resolution.cells**2
+        return Run({"friction": 0.4, "dissipation": energy}, 1e-6, 2e-6, 1)
+
+    found = refine(run, LADDER, 1e-3, energy_unit=40.0)
+    plain, energy = found.estimates["friction"].by_source, found.estimates["dissipation"]
+    assert energy.value == pytest.approx(5.0, abs=1e-12)
+    for source in ("periodicity", "solver"):
+        assert energy.by_source[source] == pytest.approx(40.0 * plain[source])
+    # the smallest error is a fraction of the geometric mean of 5 and 40, or of a force's work
+    assert energy.by_source["resolution"] == pytest.approx(
+        200.0**0.5 * plain["resolution"], rel=0.01
+    )
+    found = refine(run, LADDER, 1e-3, energy_unit=40.0, drive_work=20.0)
+    assert found.estimates["dissipation"].by_source["resolution"] == pytest.approx(
+        20.0 * plain["resolution"]
+    )
+
+
+def test_three_levels_are_run_each_from_the_one_before():
+    fake = FakeRun(0.1)
+    result = refine(fake, LADDER, 1e-3)
+    assert result.converged and result.reason == "" and result.periodic
+    assert fake.asked == [LADDER.resolution(level) for level in (4, 8, 16)]
+    assert fake.guesses == [None, *fake.runs[:2]]
+    assert value_of(result).value == pytest.approx(EXACT, abs=1e-14)
+    assert result.estimates["torque"].value == pytest.approx(EXACT_TORQUE, abs=1e-14)
+    assert result.observed_order == pytest.approx(2.0) and result.cells == fake.asked[-1].cells
+    assert (result.periods, result.effort) == (3, Effort(3, 30, 300, 60))
+
+
+def test_the_error_is_the_sum_of_its_sources():
+    result = refine(FakeRun(0.14), LADDER, 1e-3)
+    assert value_of(result).by_source.keys() == {"resolution", "periodicity", "solver"}
+    assert value_of(result).error == sum(value_of(result).by_source.values())
+    assert value_of(result).by_source["resolution"] == pytest.approx(
+        SAFETY * 0.14 / result.cells**2
+    )
+
+
+def test_no_error_is_estimated_below_a_share_of_the_tolerance():
+    result = refine(FakeRun(0.0), LADDER, 1e-3)
+    assert value_of(result).by_source["resolution"] == SMALLEST_SHARE * 1e-3
+
+
+def test_levels_are_added_until_the_error_is_within_the_tolerance():
+    fake = FakeRun(3.0)
+    result = refine(fake, LADDER, 1e-3)
+    assert result.converged and value_of(result).error <= 1e-3
+    cells = [resolution.cells for resolution in fake.asked]
+    assert len(set(cells)) == len(cells) and max(cells) > 64
+    # each run starts from the run at half its level, if there is one
+    by_cells = dict(zip(cells, fake.runs, strict=True))
+    halves = [by_cells.get(n // 2) if n > 6 else None for n in cells]
+    assert fake.guesses == [halves[k] if n > 6 else None for k, n in enumerate(cells)]
+
+
+def test_distances_and_residuals_are_weighted_as_the_runs_enter_the_value():
+    """The weight of a run is the change of the value by a change of the run."""
+    fake = FakeRun(0.3)
+    result = refine(fake, LADDER, 1e-3)
+    step = 1e-7
+
+    def response(resolution):
+        again = FakeRun(0.3)
+
+        def run(at, guess):
+            one = again(at, guess)
+            shifted = replace(one, values=one.values | {"friction": one.mu + step})
+            return shifted if at == resolution else one
+
+        return abs(value_of(refine(run, LADDER, 1e-3)).value - value_of(result).value) / step
+
+    weights = np.array([response(resolution) for resolution in fake.asked])
+    for source, name in (("periodicity", "distance"), ("solver", "residual")):
+        expected = weights @ [getattr(run, name) for run in fake.runs]
+        assert value_of(result).by_source[source] == pytest.approx(expected, rel=1e-6)
+
+
+def test_runs_that_keep_to_their_tolerance_take_a_twelfth_of_it():
+    fake = FakeRun(0.3)
+
+    def run(resolution, guess):
+        return replace(fake(resolution, guess), distance=RUN_SHARE * 1e-3)
+
+    result = refine(run, LADDER, 1e-3)
+    assert result.converged and value_of(result).by_source["periodicity"] == pytest.approx(
+        1e-3 / 12.0
+    )
+
+
+@settings(max_examples=100, deadline=None, derandomize=True)
+@given(
+    st.floats(-2.0, 1.0).map(lambda x: 10**x),
+    st.sampled_from([-1.0, 1.0]),
+    st.floats(1.25, 4.0),
+    st.floats(-4.0, -1.0).map(lambda x: 10**x),
+)
+def test_smooth_errors_are_covered(size, sign, power, tolerance):
+    result = refine(FakeRun(sign * size, power), LADDER, tolerance)
+    assert not result.converged or value_of(result).error <= tolerance
+    assert abs(value_of(result).value - EXACT) <= value_of(result).error
+    assert abs(result.estimates["torque"].value - EXACT_TORQUE) <= 2.0 * value_of(result).error
+
+
+def test_scattered_errors_are_covered_nearly_always():
+    draw, held = np.random.default_rng(7), []
+    for seed in range(300):
+        size, tolerance = 10 ** draw.uniform(-2.0, 0.5), 10 ** draw.uniform(-4.0, -2.0)
+        result = refine(FakeRun(size, scatter=0.3, seed=seed), LADDER, tolerance)
+        held.append(abs(value_of(result).value - EXACT) <= value_of(result).error)
+    assert np.mean(held) > 0.99
+
+
+# An imposed resolution
+
+
+def test_an_imposed_resolution_is_the_answer_and_not_its_limit():
+    """The error is the distance to the limit, and the error of the limit."""
+    fake = FakeRun(3.0)
+    ladder = Ladder(16, angles=0, steps=1, cells=12 / 16, imposed=64)
+    result = refine(fake, ladder, 1e-3)
+    assert value_of(result).value == fake.runs[-1].mu == EXACT + 3.0 / 144
+    assert result.cells == 12 and len(fake.asked) == 3
+    assert value_of(result).by_source["resolution"] == pytest.approx((1.0 + SAFETY) * 3.0 / 144)
+    assert value_of(result).by_source["periodicity"] == pytest.approx(fake.runs[-1].distance)
+    assert result.converged and result.reason == ""
+
+
+@pytest.mark.parametrize("power", [1.0, 1.5, 2.0, 3.0])
+def test_the_error_of_an_imposed_resolution_is_covered(power):
+    result = refine(FakeRun(0.3, power), replace(LADDER, imposed=64), 1e-3)
+    assert abs(value_of(result).value - EXACT) <= value_of(result).error
+
+
+def test_an_imposed_resolution_has_the_smallest_error_of_a_chosen_one():
+    """The first level for 1e-2 is 8, and for 1e-3 it is 16; coarser levels are of second order."""
+    for level, tolerance in ((8, 1e-2), (16, 1e-3), (4, 4e-2)):
+        result = refine(FakeRun(0.0), replace(LADDER, imposed=level), 1e-3)
+        assert value_of(result).by_source["resolution"] == pytest.approx(SMALLEST_SHARE * tolerance)
+
+
+# End of the refinement
+
+
+@pytest.mark.parametrize("cells", [4, 8, 16])
+def test_a_run_that_does_not_converge_ends_it(cells):
+    fake = FakeRun(30.0)
+
+    def run(resolution, guess):
+        one = fake(resolution, guess)
+        if resolution.cells == cells:
+            return replace(one, reason="lost its way", distance=np.inf)
+        return one
+
+    result = refine(run, LADDER, 1e-3)
+    assert not result.converged and not result.periodic and result.reason == "lost its way"
+    assert len(fake.asked) == 3
+    assert value_of(result).error == np.inf
+
+
+def test_the_finest_level_is_named():
+    fake = FakeRun(1e3)
+    result = refine(fake, LADDER, 1e-4)
+    assert not result.converged and result.periodic and fake.asked[-1].cells == 12 * 16
+    assert result.reason == f"the error is still {value_of(result).error:.1e} with 192 cells"
+    assert abs(value_of(result).value - EXACT) <= value_of(result).error
+
+
+def test_errors_that_no_finer_level_cures_are_reported():
+    for spoilt in ({"distance": 3e-3}, {"residual": 1e-3}):
+        fake = FakeRun(0.1)
+
+        def run(resolution, guess, fake=fake, spoilt=spoilt):
+            return replace(fake(resolution, guess), **spoilt)
+
+        result = refine(run, LADDER, 1e-3)
+        assert value_of(result).error > 1e-3 and result.converged and len(fake.asked) == 3
+
+
+def test_what_was_known_before_the_budget_was_spent_is_the_answer():
+    enough = refine(FakeRun(3.0), LADDER, 0.01)
+    result = refine(FakeRun(3.0, most=4), LADDER, 1e-3)
+    assert not result.converged and result.cells == 16
+    assert result.reason == f"all is spent: the error is still {value_of(result).error:.1e}"
+    assert abs(value_of(result).value - EXACT) <= value_of(result).error and enough.converged
+
+
+def test_nothing_is_known_of_a_budget_that_is_spent_at_once():
+    result = refine(FakeRun(most=2), LADDER, 1e-3)
+    assert (
+        not result.converged
+        and np.isnan(value_of(result).value)
+        and value_of(result).error == np.inf
+    )
+    assert result.reason == "all is spent: there is no error estimate yet"
+
+
+# Readings of a pressure
+
+
+def shifted(fake, by):
+    def run(resolution, guess):
+        one = fake(resolution, guess)
+        return replace(one, values=one.values | {"friction": EXACT + by})
+
+    return run
+
+
+def test_readings_are_run_at_the_finest_level_and_their_differences_are_an_error():
+    fake, other = FakeRun(), FakeRun()
+    result = refine(fake, LADDER, 1e-3, [shifted(other, 4e-5), shifted(other, -3e-5)])
+    assert value_of(result).by_source["model"] == pytest.approx(READING_SAFETY * 7e-5)
+    assert other.asked == 2 * [fake.asked[-1]] and other.guesses == 2 * [fake.runs[-1]]
+    assert result.converged and value_of(result).error <= 1e-3
+
+
+def test_finer_runs_make_room_for_readings_that_are_apart():
+    result = refine(FakeRun(), LADDER, 1e-3, [shifted(FakeRun(), 1.6e-4)])
+    assert result.converged and value_of(result).error <= 1e-3 and result.cells == 24
+
+
+def test_readings_that_are_too_far_apart_end_it():
+    result = refine(FakeRun(), LADDER, 1e-3, [shifted(FakeRun(), 3e-4)])
+    assert value_of(result).error > 1e-3 and result.cells == 16
+
+
+def test_a_coarse_run_that_does_not_converge_counts_in_full():
+    """The value does not depend on this run, but its error can hide the difference of the
+    levels."""
+    fake = FakeRun()
+
+    def run(resolution, guess):
+        made = fake(resolution, guess)
+        return replace(made, reason="lost", distance=0.01) if not guess else made
+
+    result = refine(run, LADDER, 1e-3)
+    assert not result.converged and value_of(result).by_source["periodicity"] > 0.01
