@@ -25,13 +25,12 @@ def configuration(points, per_job, more=0):
     """Configuration of a steady bore at 1,000 velocities. more: number of additional ratios."""
     ratios = -(-points // VELOCITIES)
     poisson = [round(0.5 * k / ratios, 9) for k in range(ratios + more)]
-    velocity = {"log": {"start": 0.01, "stop": 100, "count": VELOCITIES}}
+    velocity = {"log": [0.01, 100, VELOCITIES]}
+    sweep = {"motion": "continuous-bore", "velocity": velocity, "poisson": poisson}
+    curves = {"kind": "curves", "sweep": "continuous_bore"}
     return {
-        "sweeps": {"continuous_bore": {"velocity": velocity, "poisson": poisson}},
-        "histories": {
-            "field": {"cells": 4},
-            "transients": {"travel": 1.0, "cells": 4, "steps": 16},
-        },
+        "sweeps": {"continuous_bore": sweep},
+        "figures": {"curves": curves},
         "points_per_job": per_job,
     }
 
@@ -59,7 +58,7 @@ class Project:
 
     def computed(self):
         """Number of points computed in the last run, from the logs of all jobs."""
-        logs = self.folder.glob("results/logs/solve/continuous_bore/*.log")
+        logs = self.folder.glob("results/logs/**/*.log")
         return sum(int(n) for log in logs for n in re.findall(r"(\d+) computed", log.read_text()))
 
 
@@ -83,8 +82,10 @@ def measure(points, per_job):
         output, seconds, _ = project.snakemake()
         assert "Nothing to be done" in output
         rows.append(("second run, nothing to do, s", f"{seconds:.1f}"))
+        files = sum(path.is_file() for path in Path(folder, "results").rglob("*"))
+        rows.append(("files in the results folder", f"{files:,}"))
         write(yaml.safe_dump(configuration(points, per_job, more=1)))
-        for log in Path(folder).glob("results/logs/solve/continuous_bore/*.log"):
+        for log in Path(folder).glob("results/logs/**/*.log"):
             log.unlink()
         _, seconds, _ = project.snakemake()
         rows.append(("one more Poisson's ratio: new points computed", f"{project.computed():,}"))

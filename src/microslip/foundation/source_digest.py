@@ -70,6 +70,8 @@ class Sources:
     def closure(self, names: Iterable[str], inside: Callable[[str], bool] = bool) -> set[str]:
         """Paths of files, and of all modules that they import directly or indirectly.
 
+        A table module.csv belongs to the module module.py.
+
         inside: function that returns False for the path of an imported module to be omitted.
         """
         closure: set[str] = set()
@@ -78,7 +80,7 @@ class Sources:
             if (name := queue.pop()) not in closure:
                 closure.add(name)
                 queue += filter(inside, self._imports(self._parsed(name)[1]))
-        return closure
+        return closure | {n for n in self.names if n[-4:] == ".csv" and f"{n[:-4]}.py" in closure}
 
     @property
     def solver(self) -> set[str]:
