@@ -36,7 +36,7 @@ FIRST = (
     *("test_figures", "test_odd_files", "test_bad", "test_compiled", "test_terminal"),  # need none
     *("test_workflow_", "test_docs", "test_explorer", "test_point"),
     *("test_pressure", "test_static_loop", "test_normal", "test_period"),
-    *("test_stability", "test_sweep_command", "test_fit", "test_drives"),
+    *("test_stability", "test_sweep", "test_fit", "test_drives"),
 )
 """Beginnings of the names of long files, which run first, so that all processes end together."""
 

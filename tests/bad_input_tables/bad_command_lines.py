@@ -108,23 +108,31 @@ NAMES = [
 ]
 
 OPTIONS = [
-    ("", "COMMAND is missing", "allowed: point, sweep, predict, fit, response"),
+    ("", "COMMAND is missing", "allowed: point, predict, fit, response"),
     ("pont", "COMMAND = 'pont'", "did you mean point?"),
-    ("--json", "--json", "COMMAND before other options"),
-    ("point --poisson 0.3", "--poisson", "MOTION before other options"),
-    ("point", "MOTION is missing", "transverse, longitudinal, zigzag, bore, continuous-bore,"),
+    ("export", "COMMAND = 'export'", "export iwan, export table"),
+    ("--json", "unknown option --json;", "allowed: --help, --version"),
+    ("point --poisson 0.3", "required: MOTION"),
     ("point bores --velocity 1", "MOTION = 'bores'", "did you mean bore?"),
     ("point transverse --speed 1 --amplitude 1", "option --speed;", "did you mean --velocity?"),
     ("predict transverse --velocity 1", "option --velocity;", "did you mean --speed?"),
     ("point transverse --amplitude 1", "--velocity: needed;", "or a force in its place"),
-    ("point transverse --velocity 1", "required: --amplitude"),
+    ("point transverse --velocity 1", "--amplitude: transverse needs an amplitude"),
+    (f"{STEADY} --amplitude 1", "--amplitude = '1'", "continuous-bore has no amplitude"),
     (f"{TRANSVERSE} --step 8", "unknown option --step;", "did you mean --steps?"),
     (f"{TRANSVERSE} '--a\nb'", "unknown option --a b;", "allowed: --help"),
     (f"{TRANSVERSE} bore", "unrecognized arguments: bore"),
     (f"{PREDICTED} mm", "unrecognized arguments: mm", "allowed: options, each with one value"),
     (f"{PREDICTED} --nu 0.3 --radius-across '1 um'", "--radius-across = '1 um'", "of ratio"),
     ("fit transverse a-file --map m.csv", "--map = 'm.csv'", "a path that ends in .nc"),
-    ("fit transverse a-file --map nosuch.nc", "--map: nosuch.nc is not there"),
+    ("fit transverse a-file --map nosuch.nc", "--map = 'nosuch.nc': nosuch.nc is not there"),
+    ("fit transverse a-file --output fit.csv", "--output = 'fit.csv'", "ends in .nc"),
+    ("fit transverse a-file --figure fit.jpg", "--figure = 'fit.jpg'", "ends in .png or .pdf"),
+    ("fit transverse a-file --mu 0.3", "unknown option --mu;"),
+    ("fold a-file", "--output: needed"),
+    ("response a-file --output none/a.csv", "--output = 'none/a.csv'", "a folder that can be"),
+    ("export iwan --material steel", "--mu: needed; also missing: load, radius"),
+    ("export iwan --elements 2.5", "--elements = '2.5'", "whole number"),
 ]
 
 COMMAND_LINES = [*NUMBERS, *GRAMMAR, *OUT_OF_RANGE, *TWICE, *NAMES, *OPTIONS]

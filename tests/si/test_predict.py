@@ -14,7 +14,7 @@ from bad_input_tables.odd_quantities import Q
 
 import microslip
 from microslip.answer.answer import Estimate
-from microslip.app import cli, predict_command
+from microslip.app import cli
 from microslip.si import inputs, output
 from microslip.si.materials import Material
 
@@ -142,10 +142,8 @@ def test_a_new_input_takes_one_line_in_the_table(monkeypatch, capsys, tmp_path):
     table = microslip.predict_table("continuous-bore", tmp_path / "rooms.csv", **shared)
     assert table.temperature_K.values.tolist() == [280.0, 300.0]
     assert table.temperature_K.attrs["units"] == "K"
-    monkeypatch.setitem(predict_command.GROUPS, "bodies", predict_command.options_of("bodies"))
     assert json.loads(reads("", capsys, "--temperature", "293 K", "--json"))["temperature_K"] == 293
-    with pytest.raises(SystemExit):
-        cli.main(["predict", "--help"])
+    assert cli.main(["predict", "--help"]) == 0
     assert "temperature of the room" in " ".join(capsys.readouterr().out.split())
 
 

@@ -4,7 +4,7 @@ import xarray as xr
 from stubs import sweep_stub
 
 import microslip
-from microslip.app import question
+from microslip.app import commands
 from microslip.datasets import certified_map, netcdf
 from microslip.si.map import FrictionMap
 from microslip.sweeps import evaluate, map_refinement
@@ -83,4 +83,5 @@ def open_without_points(monkeypatch):
 
     monkeypatch.setattr(FrictionMap, "at", outside)
     dataset = xr.Dataset(attrs={"motion": "transverse"})
-    monkeypatch.setattr(question, "_opened_map", lambda _: dataset)
+    dataset.encoding["source"] = "certified.nc"
+    monkeypatch.setattr(commands, "opened_map", lambda *_: dataset)

@@ -1,48 +1,28 @@
-"""The command line.  `microslip point MOTION ...` solves one point, and `microslip sweep` solves
-many points."""
+"""The command line: `microslip COMMAND ...`."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from importlib import import_module
+import argparse
+from pathlib import Path
 
 from microslip import __version__
-from microslip.app import option_parser
-from microslip.app.question import SPIN, respond
+from microslip.app.commands import COMMANDS, SPIN
+from microslip.app.parser import Parser, option, with_options
+from microslip.app.terminal import complain
+from microslip.foundation.errors import CacheError, InputError, shown
 
-COMMANDS = {
-    "point": "macroscopic friction at one (velocity, amplitude)",
-    "sweep": "the workflow: maps, datasets and figures, by Snakemake",
-    "predict": "friction of a real contact, in SI units",
-    "fit": "coefficient of friction and u_lim from measured friction",
-    "response": "forces of a contact that follows the path of a file",
-    "fold": "one period of a motion from a long record, such as that of a vibrometer",
-    "export": "an Iwan model or a friction table of a contact, for other programs",
-}
-"""Commands, each with a help text.  The module NAME_command adds the options of a command."""
-OWN_PARSERS = {"sweep": "sweep_command"}
-"""Commands that parse their words themselves, each with its module."""
-
-
-def build_parser(words: Sequence[str] = ()) -> option_parser.OneLineParser:
-    """Return the parser of the command line `words`.  Only the first command gets its options."""
-    parser = option_parser.OneLineParser(
-        prog="microslip",
-        description="How far friction falls when a frictional contact is vibrated: an elastic "
-        "sphere on a flat (Hertz contact, Coulomb friction at every point) slides forward while "
-        "it also oscillates or rotates.  point and sweep take dimensionless quantities, predict "
-        f"takes units.  {SPIN}",
-        epilog="Exit codes: 0 done, 1 not converged, 2 bad input, 74 the output cannot be written, "
-        "130 interrupted, 141 broken pipe.  sweep returns Snakemake's code.",
-    )
-    parser.add_argument("--version", action="version", version=f"microslip {__version__}")
-    commands = parser.add_subparsers(required=True, metavar="COMMAND")
-    for name, summary in COMMANDS.items():
-        command = commands.add_parser(name, help=summary)
-        if name in words[:1]:
-            module = import_module(f"microslip.app.{name}_command")
-            module.fill(command, *(words[1:2] if name == "point" else ()))
-    return parser
+SWEEP = "the workflow: maps, datasets and figures, by Snakemake"
+TEXT = (
+    "How far friction falls when a frictional contact is vibrated: an elastic sphere on a flat "
+    "(Hertz contact, Coulomb friction at every point) slides forward while it also oscillates or "
+    f"rotates.  point and sweep take dimensionless quantities, predict takes units.  {SPIN}"
+)
+CODES = (
+    "Exit codes: 0 done, 1 not converged, 2 bad input, 74 the output cannot be written, 130 "
+    "interrupted, 141 broken pipe.  sweep returns Snakemake's code."
+)
+SOURCES = ("measured", "path", "record", "table")
+"""Arguments with the path of a file that is read."""
 
 
 def main(words: list[str]) -> int:
@@ -56,10 +36,79 @@ def main(words: list[str]) -> int:
     Returns
     -------
     int
-        0 if converged, 1 if not converged, 2 for bad input.  `sweep` returns the exit code of
+        0 if the answer is complete, 1 if not, 2 for bad input.  `sweep` returns the exit code of
         Snakemake.
     """
-    command = next(iter(words), None)
-    if command in OWN_PARSERS:
-        return import_module(f"microslip.app.{OWN_PARSERS[command]}").main(words[1:])
-    return respond(build_parser(words).parse_args(option_parser.joined(words)))
+    if words[:1] == ["sweep"]:
+        from microslip.app import sweep
+
+        return sweep.main(words[1:])
+    name = next((one for one in COMMANDS if words[: one.count(" ") + 1] == one.split()), None)
+    if name is None:
+        return _without_command(words)
+    parser, words = parser_of(name), words[name.count(" ") + 1 :]
+    if {"-h", "--help"} & set(words):
+        parser.print_help_with("motions", COMMANDS[name].motions())
+        return 0
+    return respond(name, parser.parse(words))
+
+
+def _without_command(words: list[str]) -> int:
+    """Print the list of commands, or refuse the words."""
+    commands = {name: one.summary for name, one in COMMANDS.items()} | {"sweep": SWEEP}
+    usage = "%(prog)s [-h] [--version] COMMAND ..."
+    parser = Parser(prog="microslip", usage=usage, description=TEXT, epilog=CODES)
+    parser.add_argument("--version", action="version", version=f"microslip {__version__}")
+    if {"-h", "--help"} & set(words):
+        parser.print_help_with("commands, each with a --help of its own", commands)
+        return 0
+    if words and not words[0].startswith("-"):
+        parser.refuse(f"COMMAND = {words[0]!r}", words[0], commands)
+    parser.parse(words)  # prints the version
+    parser.error(f"COMMAND is missing; allowed: {', '.join(commands)}")
+
+
+def parser_of(name: str) -> Parser:
+    """The parser of a command in COMMANDS."""
+    command = COMMANDS[name]
+    parser = Parser(prog=f"microslip {name}", description=command.text)
+    parser.add(command.places, place=True)
+    for title, options in command.groups().items():
+        parser.add(options, parser.add_argument_group(title))
+    text = "print one JSON object and nothing else"
+    parser.add_argument("--json", action="store_true", help=text)
+    return parser
+
+
+def respond(name: str, options: argparse.Namespace) -> int:
+    """Print the answer to a parsed command line, or an error message.
+
+    Returns the exit code: 0 if the answer is complete, 1 if not, 2 for bad input.
+    """
+    command, spellings = COMMANDS[name], options.spellings
+    readers = {
+        **command.places,
+        **{n: one for group in command.groups().values() for n, one in group.items()},
+    }
+    try:
+        arguments = {n: readers[n].read(n, getattr(options, n)) for n in spellings}
+        output, figure = arguments.get("output"), arguments.get("figure")
+        sources = [Path(arguments[n]).resolve() for n in SOURCES if n in arguments]
+        if output is not None and Path(output).resolve() in sources:
+            raise InputError(
+                "output", output, "allowed is another file than the table that is read"
+            )
+        answer = command.answer(**arguments).write(output, figure)
+    except InputError as error:
+        argument, value = option(error.argument), error.value
+        if error.argument in spellings:
+            argument, value = spellings[error.argument], getattr(options, error.argument)
+        text = "" if value is None or value is True else f" = {shown(value)}"
+        names = () if error.argument == "table" else readers
+        complain(f"microslip {name}: {argument}{text}: {with_options(error.allowed, names)}")
+        return 2
+    except CacheError as error:
+        complain(f"microslip {name}: {error}")
+        return 2
+    answer.print(options.json)
+    return 0 if answer.complete else 1

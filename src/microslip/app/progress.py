@@ -1,47 +1,46 @@
-"""Display of a calculation's elapsed time on standard error."""
+"""Progress of a calculation on a terminal."""
 
 from __future__ import annotations
 
 import sys
 import threading
-import time
-from collections.abc import Iterator
-from contextlib import contextmanager, suppress
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 
-FIRST_LINE, BETWEEN_LINES = 2.0, 1.0
-"""Seconds until a terminal first shows the elapsed time, and seconds between updates.  Most
-calculations end before the time is shown."""
-BETWEEN_LINES_OF_A_FILE = 15.0
-"""Seconds between two progress lines if standard error is not a terminal."""
+FIRST, BETWEEN = 2.0, 1.0
+"""Seconds until the progress is first shown, and between updates.  Most calculations end before."""
 
 
 @contextmanager
-def elapsed_time(title: str) -> Iterator[None]:
-    """Context manager that shows a calculation's title and elapsed time on standard error.
+def progress(title: str, total: int | None = None) -> Iterator[Callable[[str], None]]:
+    """Context manager that shows a title, the number of finished steps and the elapsed time.
 
-    On a terminal, one line is updated.  In a file, a line is added every BETWEEN_LINES_OF_A_FILE
-    seconds.
+    It yields a function that counts a step and shows a text about it.  Nothing is shown if standard
+    error is not a terminal.
     """
+    if not sys.stderr.isatty():
+        yield lambda text: None
+        return
+    from tqdm import tqdm
+
+    form = None if total else "{desc} {elapsed}"
     ended = threading.Event()
-    thread = threading.Thread(target=_show, args=[title, ended], daemon=True)
-    thread.start()
-    try:
-        yield
-    finally:
-        ended.set()
-        thread.join()
+    with tqdm(
+        desc=title, total=total, bar_format=form, leave=False, delay=FIRST, miniters=0
+    ) as bar:
 
+        def step(text: str) -> None:
+            bar.set_description_str(" ".join([title, text]).strip(), refresh=False)
+            bar.update()
 
-def _show(title: str, ended: threading.Event) -> None:
-    form, first, pause = "{}\n", BETWEEN_LINES_OF_A_FILE, BETWEEN_LINES_OF_A_FILE
-    if sys.stderr.isatty():
-        form, first, pause = "\r{}", FIRST_LINE, BETWEEN_LINES
-    start, text = time.monotonic(), ""
-    with suppress(OSError, ValueError):  # standard error was closed
-        while not ended.wait(pause if text else first):
-            text = f"{title}: {time.monotonic() - start:.0f} s"
-            sys.stderr.write(form.format(text))
-            sys.stderr.flush()
-        if text and sys.stderr.isatty():  # the answer replaces the line
-            sys.stderr.write(f"\r{' ' * len(text)}\r")
-            sys.stderr.flush()
+        def tick() -> None:  # the elapsed time goes on between two steps
+            while not ended.wait(BETWEEN):
+                bar.update(0)
+
+        thread = threading.Thread(target=tick, daemon=True)
+        thread.start()
+        try:
+            yield step
+        finally:
+            ended.set()
+            thread.join()

@@ -7,7 +7,6 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from microslip.answer.answer import Estimate, Result
-from microslip.answer.force import GAP_MARGIN
 from microslip.answer.limits import (
     LARGEST_FORCE,
     is_even,
@@ -20,7 +19,6 @@ from microslip.answer.limits import (
     problem_of as checked_problem,
 )
 from microslip.answer.point import solve
-from microslip.answer.shakedown import shakedown
 from microslip.foundation.arguments import (
     LARGEST,
     LARGEST_BODY,
@@ -231,6 +229,8 @@ def _friction(
     if near and threshold is not None:
         reason = "the force differs from its threshold by less than the error of the threshold, "
         reason += f"{threshold.error:.1e} of mu times the load"
+        from microslip.answer.force import GAP_MARGIN  # late: compiled code
+
         drive["force"] = min(threshold.value + GAP_MARGIN * threshold.error, LARGEST_FORCE)
         faster = solve_at(contact, None, tolerance, **drive).mean_velocity
         half = 0.5 * (faster.value + faster.error)
@@ -282,6 +282,8 @@ def _rest(contact: Contact) -> tuple[dict[str, Estimate | None], str]:
         return {}, "computed for a round contact only"
     settings: dict[str, Any] = {"poisson": float(contact.poisson), "pressure": contact.pressure}
     try:
+        from microslip.answer.shakedown import shakedown  # late: compiled code
+
         rest = shakedown(
             contact.motion, float(contact.amplitude), float(drive["force"]), **settings
         )

@@ -13,22 +13,11 @@ from bad_input_tables.bad_configurations import FILES, GOOD, changed
 from stubs import in_process
 from stubs.in_process import ENVIRONMENT
 
-from microslip.app import sweep_command
 from microslip.config import load
 
 ROOT = Path(__file__).parents[2]
 SWEEP = [sys.executable, "-m", "microslip", "sweep"]
 SNAKEMAKE = [str(Path(sys.executable).with_name("snakemake")), "-s", str(ROOT / "Snakefile")]
-
-
-# Help
-
-
-def test_help_names_every_configuration():
-    shipped = sweep_command.configurations()
-    assert {"config", "extended", "certified", "accuracy", "claims"} <= shipped.keys()
-    text = in_process.run("sweep", "--help").stdout
-    assert all(name in text for name in shipped)
 
 
 # Refused arguments and configurations
@@ -81,16 +70,8 @@ def test_bad_arguments_are_one_line_before_snakemake_starts(arguments, parts, he
     refused(in_process.run("sweep", *arguments.split()), parts)
 
 
-@pytest.mark.parametrize("target", ["fig2_transverse_map", "bore", "results/bore.nc", "all"])
-def test_a_target_is_handed_to_snakemake(target, here, monkeypatch):
-    started = []
-    monkeypatch.setattr("snakemake.cli.main", started.append)
-    in_process.run("sweep", target)
-    assert target in started[0]
-
-
 @pytest.mark.parametrize("place", ["the package", "here"])
-def test_the_name_of_a_configuration_stands_for_its_file(place, here, monkeypatch):
+def test_targets_and_the_name_of_a_configuration_are_handed_to_snakemake(place, here, monkeypatch):
     started = []
     monkeypatch.setattr("snakemake.cli.main", started.append)
     if place == "here":
@@ -101,6 +82,9 @@ def test_the_name_of_a_configuration_stands_for_its_file(place, here, monkeypatc
     folder = here if place == "here" else ROOT
     assert Path(started[0][option + 1]).resolve() == folder / "config" / "extended.yaml"
     assert "extended" not in started[0]
+    for target in ("fig2_transverse_map", "bore", "results/bore.nc", "all"):
+        in_process.run("sweep", target)
+        assert target in started.pop()
 
 
 def test_a_bad_key_is_one_line_in_a_file_and_in_the_default(here):

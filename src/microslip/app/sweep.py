@@ -15,48 +15,44 @@ import re
 import shutil
 import sys
 import tempfile
-import textwrap
 from contextlib import redirect_stderr, redirect_stdout
 from importlib import import_module
 from pathlib import Path
+from typing import TYPE_CHECKING
 
+from microslip.app.parser import Option, Parser
 from microslip.app.terminal import complain
-from microslip.config import load
-from microslip.config.settings import RULES, Configuration
 from microslip.foundation import extras, files
 from microslip.foundation.errors import CacheError, InputError
 from microslip.foundation.spec import near_miss
+
+if TYPE_CHECKING:
+    from microslip.config.settings import Configuration
 
 PACKAGE = Path(__file__).parents[1]
 SETS_CORES = re.compile(r"-[cje]|--(cores|jobs|executor|profile|workflow-profile)(=|$)")
 """Pattern of arguments that set the number of parallel jobs, directly or by a profile."""
 KEY_AND_VALUE = re.compile(r"[A-Za-z_][\w-]*\w=")
-
-HELP = """\
-usage: microslip sweep [CONFIGURATION | TARGET ...] [--configfile FILE] [options of Snakemake]
-
-Run the workflow in the current folder: maps of friction over velocity and amplitude, as datasets in
-results/ and figures in results/figures/. Existing results are not computed again. The sweeps of
-the paper are transverse, bore (spin: rotation about the contact normal) and continuous_bore.
-
-  CONFIGURATION      name of a configuration in the folder config, here or in the package:
-                     {configurations}
-  TARGET             name of a dataset or a figure of the configuration, such as bore, or a file,
-                     such as results/bore.nc; default: all datasets and figures
-  --configfile FILE  the configuration; default: config/config.yaml if it exists, else the sweeps of
-                     the paper. Put targets before it: all names after it are files
-  --cores N          number of jobs at the same time, at least 1; default: all cores
-  --dry-run          list the jobs without running them
-  --report FILE      after a run: one page (.html or .zip) of figures, captions and provenance
-  -h, --help         show this
-
-All other options are those of Snakemake, see snakemake --help. The exit code is that of Snakemake,
-and 2 for bad input. Default options are in profiles/default, here or in the package.
-
-  microslip sweep --cores 2
-  microslip sweep extended --cores 2
-  microslip sweep --cores 2 --configfile mine.yaml --config points_per_job=10
-"""
+PRODUCTS = (".nc", ".html", ".pdf", ".png")
+"""File extensions of products, which are no configurations."""
+TEXT = (
+    "Run the workflow in the current folder: maps of friction over velocity and amplitude, as "
+    "datasets in results/ and figures in results/figures/.  Existing results are not computed "
+    "again.  A CONFIGURATION is one of {}, from the folder config, here or in the package.  A "
+    "TARGET is a dataset or a figure of the configuration, such as bore, or a file, such as "
+    "results/bore.nc (all of them)."
+)
+CODES = (
+    "All other options are those of Snakemake, see snakemake --help.  The exit code is that of "
+    "Snakemake, and 2 for bad input.  Default options are in profiles/default.  Examples: "
+    "microslip sweep --cores 2; microslip sweep extended; "
+    "microslip sweep --configfile mine.yaml --config points_per_job=10"
+)
+OPTIONS = {
+    "configfile": Option("FILE", "the configuration (config/config.yaml); targets go before it"),
+    "cores": Option("N", "number of jobs at the same time, at least 1 (all cores)"),
+    "report": Option("FILE", "after a run: a page (.html or .zip) of figures and provenance"),
+}
 
 
 def main(arguments: list[str]) -> int:
@@ -65,8 +61,11 @@ def main(arguments: list[str]) -> int:
     Returns exit code 2 for bad input.  Otherwise Snakemake raises SystemExit with its exit code.
     """
     if {"-h", "--help"} & set(arguments):
-        names = textwrap.wrap(", ".join(configurations()), 75)
-        print(HELP.format(configurations=f"\n{21 * ' '}".join(names)), end="")
+        usage = "microslip sweep [CONFIGURATION | TARGET ...] [--dry-run] [options of Snakemake]"
+        text = TEXT.format(", ".join(configurations()))
+        parser = Parser(usage=usage, description=text, epilog=CODES)
+        parser.add(OPTIONS)
+        parser.print_help()
         return 0
     with redirect_stdout(sys.__stdout__):  # also for the jobs of Snakemake
         return _run(arguments)
@@ -76,15 +75,19 @@ def _run(arguments: list[str]) -> int:
     if hint := extras.missing("snakemake"):
         complain(f"microslip sweep: {hint}")
         return 2
+    from microslip.config.load import ConfigError
+
     try:
         os.getcwd()
         words = ["--snakefile", str(snakefile()), *_named(arguments)]
         if "SNAKEMAKE_PROFILE" not in os.environ and not any(map(SETS_CORES.match, arguments)):
             words = ["--cores", "all", *words]
         _check(words)
-    except (InputError, load.ConfigError, FileNotFoundError) as error:
-        place = "the current folder: " if getattr(error, "strerror", None) else ""
-        complain(f"microslip sweep: {place}{getattr(error, 'strerror', None) or error}")
+    except FileNotFoundError as error:
+        complain(f"microslip sweep: the current folder: {error.strerror or error}")
+        return 2
+    except (InputError, ConfigError) as error:
+        complain(f"microslip sweep: {error}")
         return 2
     _spare_cache()
     from snakemake.cli import main as snakemake
@@ -98,29 +101,26 @@ def _run(arguments: list[str]) -> int:
 
 
 def configurations() -> dict[str, Path]:
-    """Return the configurations in the folder config of the package and of the current folder."""
+    """Configurations in the folder config of the package and of the current folder, by name."""
     folders = (snakefile().parent / "config", Path("config"))
     return {file.stem: file for folder in folders for file in sorted(folder.glob("*.yaml"))}
 
 
 def _named(arguments: list[str]) -> list[str]:
     """Replace the name of a configuration in front by the option --configfile."""
-    name = next(iter(arguments), "")
-    if name not in configurations() or "--configfile" in arguments:
+    file = configurations().get(next(iter(arguments), ""))
+    if file is None or "--configfile" in arguments:
         return arguments
-    return [*arguments[1:], "--configfile", os.path.relpath(configurations()[name])]
+    return [*arguments[1:], "--configfile", os.path.relpath(file)]
 
 
 def snakefile() -> Path:
-    """Return the path of this package's Snakefile.  Raises FileNotFoundError.
+    """Path of this package's Snakefile.
 
     The file is in the folder `bundle` of an installed package, or at the top of a source tree.
     """
-    places = (PACKAGE / "bundle", PACKAGE.parents[1])
-    for place in places:
-        if (place / "Snakefile").is_file():
-            return place / "Snakefile"
-    raise FileNotFoundError(f"no Snakefile in {' or '.join(map(str, places))}")
+    places = (PACKAGE / "bundle" / "Snakefile", PACKAGE.parents[1] / "Snakefile")
+    return next(filter(Path.is_file, places), places[1])
 
 
 def _spare_cache() -> None:
@@ -163,30 +163,32 @@ def _check(arguments: list[str]) -> None:
             "--configfile", "twice", "Snakemake would ignore the first; allowed is --configfile A B"
         )
     configuration = _configuration(options)
-    known = [*RULES, *configuration.datasets, *configuration.figures]
+    names = ["all", *configuration.datasets, *configuration.figures]
     for target in options.targets:
-        if not ({".", "/"} & set(target) or target in known):
-            names = ", ".join([*known[: len(RULES[:1])], *known[len(RULES) :]])
-            hint = near_miss(target, [*known, *configurations()])
-            raise InputError("TARGET", target, f"{hint}allowed is one of {names}, or a file")
+        if not ({".", "/"} & set(target) or target in names):
+            hint = near_miss(target, [*names, *configurations()])
+            allowed = f"{hint}allowed is one of {', '.join(names)}, or a file"
+            raise InputError("TARGET", target, allowed)
 
 
 def _configuration(options: argparse.Namespace) -> Configuration:
-    """Return the configuration.  Raises ConfigError if the Snakefile would refuse it."""
+    """The configuration.  Raises ConfigError if the Snakefile would refuse it."""
     from snakemake.cli import parse_config
     from snakemake.utils import update_config
 
+    from microslip.config import load
+
     for index, file in enumerate(map(str, options.configfile or ())):
-        is_product = file.endswith((".nc", ".html", ".pdf", ".png"))
+        is_product = file.endswith(PRODUCTS)
         if is_product or not os.path.isfile(file):
             problem = "not a configuration" if is_product else "no such file"
             hint = "; targets go before --configfile" if index or is_product else ""
             raise InputError("--configfile", file, f"{problem}; allowed is a YAML file{hint}")
+    folder = options.directory or "."
     paths = [os.path.relpath(file) for file in options.configfile or ()]
     if not paths:
-        places = (Path(options.directory or "."), snakefile().parent)
-        defaults = [os.path.relpath(place / "config" / "config.yaml") for place in places]
-        paths = [next(filter(os.path.lexists, defaults), defaults[-1])]
+        defaults = (Path(place, "config/config.yaml") for place in (folder, snakefile().parent))
+        paths = [os.path.relpath(next(filter(os.path.lexists, defaults)))]
     mapping: dict = {}
     for file in paths:
         update_config(mapping, load.read_yaml(file))
@@ -195,23 +197,21 @@ def _configuration(options: argparse.Namespace) -> Configuration:
     folders = [os.path.dirname(os.path.abspath(file)) for file in paths]
     configuration = load.from_mapping(mapping, source=source, folders=folders)
     load.refuse_unsolvable(configuration, source=source)
-    results = Path(options.directory or ".", configuration.results)
     try:
-        files.refuse_unusable([results], [])
+        files.refuse_unusable([Path(folder, configuration.results)], [])
     except CacheError as error:
         raise load.ConfigError(f"{source}: results: {error}") from None
     return configuration
 
 
 def _parsed(arguments: list[str]) -> argparse.Namespace | None:
-    """Return the arguments as parsed by Snakemake, or None if Snakemake will print its own
-    message."""
+    """The arguments as parsed by Snakemake, or None if Snakemake will print its own message."""
     from snakemake.cli import parse_args
 
     messages = io.StringIO()
     try:
         with redirect_stderr(messages):
-            _, options = parse_args(arguments)
+            return parse_args(arguments)[1]
     except SystemExit as error:
         if error.code in (0, None):
             raise  # --version
@@ -220,4 +220,3 @@ def _parsed(arguments: list[str]) -> argparse.Namespace | None:
         raise SystemExit(2) from None
     except Exception:  # Snakemake raises it again
         return None
-    return options

@@ -1,0 +1,136 @@
+"""The answer of a command: text, JSON, CSV and netCDF files, figures."""
+
+from __future__ import annotations
+
+import csv
+import io
+import json
+import math
+import os
+import sys
+from collections.abc import Callable, Mapping, Sequence
+from pathlib import Path
+from typing import Any, NamedTuple
+
+from microslip.foundation import extras
+from microslip.foundation.errors import CacheError, InputError
+from microslip.foundation.files import writing_beside
+
+
+class Answer(NamedTuple):
+    """The answer of a command.
+
+    Attributes
+    ----------
+    plain : object
+        The answer as JSON values.
+    text : str
+        The answer as text.
+    complete : bool
+        True for exit code 0.
+    csv : callable or None
+        csv(): content of the .csv file of --output.  None if there is no such file.
+    dataset : xr.Dataset or None
+        Content of the .nc file of --output, and of the figure.
+    figure : str
+        Name of the figure in report.figures.drawing.
+    is_table : bool
+        True if the text has the rows of --output.  They are then not printed with this option.
+    """
+
+    plain: Any
+    text: str
+    complete: bool
+    csv: Callable[[], str] | None = None
+    dataset: Any = None
+    figure: str = ""
+    is_table: bool = False
+
+    def write(self, output: str | None, figure: str | None) -> Answer:
+        """Write the files of --output and --figure, and return the answer to print.
+
+        Raises InputError if a file cannot be written.
+        """
+        if figure is not None:
+            from microslip.report.figures.drawing import draw, save
+
+            save(draw(self.figure, {self.figure: self.dataset}), figure)
+        if output is None or self.csv is None and self.dataset is None:
+            return self
+        try:
+            with writing_beside(output) as beside:
+                if self.csv is not None and output.lower().endswith(".csv"):
+                    beside.write_text(self.csv(), encoding="utf-8", newline="\n")
+                else:
+                    self.dataset.to_netcdf(beside, engine="netcdf4")
+        except (OSError, CacheError) as error:
+            raise InputError("output", output, f"cannot be written: {error}") from None
+        lines = self.text.splitlines()
+        lines = [line for line in lines if line.startswith("#") or not self.is_table]
+        return self._replace(text="\n".join(lines))
+
+    def print(self, as_json: bool) -> None:
+        """Print the answer.  Characters that standard output lacks, such as those of units, are
+        printed as escapes."""
+        text = self.text
+        if as_json:
+            from microslip.sweeps.evaluate import plain
+
+            text = json.dumps(plain(self.plain))
+        encoding = getattr(sys.stdout, "encoding", None) or "utf-8"
+        if text:
+            print(text.encode(encoding, "backslashreplace").decode(encoding))
+
+
+def csv_text(columns: Mapping[str, Any], comments: Sequence[str] = (), digits: int = 0) -> str:
+    """Content of a CSV file.  NaN is an empty cell.
+
+    columns: values by name, or (unit, values).  digits: number of significant digits, or 0 for all.
+    """
+
+    def cell(value: Any) -> Any:
+        if not isinstance(value, float):
+            return value
+        return "" if math.isnan(value) else f"{value:.{digits}g}" if digits else value
+
+    headings, lists = [], []
+    for name, values in columns.items():
+        unit, values = values if isinstance(values, tuple) else ("1", values)
+        headings.append(name if unit == "1" else f"{name} [{unit}]")
+        lists.append(values.tolist() if hasattr(values, "tolist") else values)
+    stream = io.StringIO()
+    stream.writelines(f"# {one}\n" for one in comments)
+    writer = csv.writer(stream, lineterminator="\n")
+    writer.writerow(headings)
+    writer.writerows(map(cell, row) for row in zip(*lists, strict=True))
+    return stream.getvalue()
+
+
+def output_file(*endings: str) -> Callable[[str, str], str]:
+    """Reader of an option for the name of a new file.  endings: allowed file extensions."""
+
+    def read(argument: str, text: str) -> str:
+        file, allowed = Path(text), ""
+        if file.suffix.lower() not in endings:
+            allowed = f"a name that ends in {' or '.join(endings)}"
+        elif file.is_dir() or not (file.parent.is_dir() and os.access(file.parent, os.W_OK)):
+            allowed = "a file in a folder that can be written to"
+        if allowed:
+            raise InputError(argument, text, f"allowed is {allowed}")
+        if ".png" in endings and (hint := extras.missing("matplotlib")):
+            raise InputError(argument, text, hint)
+        return text
+
+    return read
+
+
+def opened_map(argument: str, text: str) -> Any:
+    """Reader of the option --map: the dataset of a .nc file, or of a sweep by its name."""
+    from microslip.datasets.open_map import open_map
+
+    try:
+        dataset = open_map(text)
+    except (InputError, CacheError) as error:
+        raise InputError(argument, text, getattr(error, "allowed", str(error))) from None
+    dataset.encoding["source"] = text  # for messages
+    return dataset

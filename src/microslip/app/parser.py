@@ -1,0 +1,140 @@
+"""Parsing of command lines.  Bad input gives one line on standard error and exit code 2."""
+
+from __future__ import annotations
+
+import argparse
+import re
+from collections.abc import Callable, Collection, Iterable, Mapping
+from typing import Any, NamedTuple, NoReturn
+
+from microslip.app.terminal import complain
+from microslip.foundation.spec import near_miss
+
+SYNONYMS = {"--speed": "--velocity", "--velocity": "--speed"}
+"""Options that have another name in another command."""
+SECOND_NAMES = {"nu": ["--poisson"], "poisson": ["--nu"]}
+"""Second names of options, by argument."""
+NEGATIVE = re.compile(r"-\s*([0-9.,]|inf|nan)", re.IGNORECASE)
+"""Pattern of the first characters of a negative number.  No option matches it."""
+
+
+class Option(NamedTuple):
+    """An option that takes a value, or a positional argument.
+
+    Attributes
+    ----------
+    metavar, help : str
+        Placeholder of the value in the help text, and the help text.
+    read : callable
+        read(argument, text) returns the value of a text, or raises InputError about the argument.
+    """
+
+    metavar: str
+    help: str
+    read: Callable[[str, str], Any] = lambda argument, text: text
+
+
+class Parser(argparse.ArgumentParser):
+    """Argument parser that reports bad input in one line.  Options cannot be abbreviated."""
+
+    def __init__(self, **settings: Any):
+        super().__init__(**settings, allow_abbrev=False)
+        self.set_defaults(spellings={})
+
+    def error(self, message: str) -> NoReturn:
+        complain(f"{self.prog}: {message} (see {self.prog} --help)")
+        raise SystemExit(2)
+
+    def add(self, options: Mapping[str, Option], group: Any = None, place: bool = False) -> None:
+        """Add options by the name of the Python argument.  place: True for positional arguments."""
+        for name, one in options.items():
+            words: dict[str, Any] = {} if place else {"dest": name}
+            names = [name] if place else [option(name), *SECOND_NAMES.get(name, ())]
+            text = one.help.replace("%", "%%")
+            (group or self).add_argument(
+                *names, **words, action=_Store, metavar=one.metavar, help=text
+            )
+
+    def print_help_with(self, title: str, texts: Mapping[str, str]) -> None:
+        """Print the help text with a list of names, each with a text."""
+        self.usage = self.usage or self.format_usage().removeprefix("usage: ")
+        group = self.add_argument_group(title)
+        for name, text in texts.items():
+            group.add_argument(name, nargs="?", help=text.replace("%", "%%"))
+        self.print_help()
+
+    def parse(self, words: list[str]) -> argparse.Namespace:
+        """Parse words.  The attribute `spellings` of the result contains the option, as it is
+        written on the command line, of each argument."""
+        options, others = self.parse_known_args(_joined(words))
+        for word in others:
+            if word.startswith("-"):
+                known = [one for one in self._option_string_actions if one.startswith("--")]
+                name = word.partition("=")[0]
+                self.refuse(f"unknown option {name}", name, known)
+        if others:
+            allowed = "allowed: options, each with one value, in quotes if it has a space"
+            self.error(f"unrecognized arguments: {' '.join(others)}; {allowed}")
+        return options
+
+    def refuse(self, problem: str, word: str, allowed: Collection[str]) -> NoReturn:
+        """End with an error message about a word, with the most similar of the allowed words."""
+        synonym = SYNONYMS.get(word, "")
+        hint = f"did you mean {synonym}? " if synonym in allowed else near_miss(word, allowed)
+        self.error(f"{problem}; {hint}allowed: {', '.join(allowed)}")
+
+
+class _Store(argparse.Action):
+    """Action that stores a value and the spelling of its option, and refuses a second value."""
+
+    def __call__(
+        self,
+        parser: argparse.ArgumentParser,
+        namespace: argparse.Namespace,
+        value: object,
+        option_string: str | None = None,
+    ) -> None:
+        spelling = option_string or str(self.metavar)
+        if first := namespace.spellings.get(self.dest):
+            same = "" if first == spelling else f", as {first} the first time"
+            parser.error(f"{spelling} is given twice{same}; allowed: once")
+        namespace.spellings[self.dest] = spelling
+        setattr(namespace, self.dest, value)
+
+
+def option(argument: str) -> str:
+    """Option of a Python argument, such as --contact-radius for contact_radius.  An environment
+    variable, in capitals, is returned unchanged."""
+    return argument if argument.isupper() else f"--{argument.replace('_', '-')}"
+
+
+def with_options(text: str, arguments: Iterable[str] = ()) -> str:
+    """Replace the Python arguments in a message by options.
+
+    Of the names without an underscore, only `decimal` and `encoding` are replaced, because the
+    others are also ordinary words.
+    """
+    text = re.sub(r"\b(decimal|encoding) = ", r"--\1 ", text)
+    names = "|".join(name for name in arguments if "_" in name)
+    if not names:
+        return text
+    return re.sub(rf"(?:\ba )?\b({names})\b", lambda match: option(match[1]), text)
+
+
+def _joined(words: list[str]) -> list[str]:
+    """Join each negative number to its option, as in --velocity=-1e-3.
+
+    Otherwise argparse would read the number as an option.
+    """
+    joined: list[str] = []
+    for word in words:
+        if (
+            NEGATIVE.match(word)
+            and joined
+            and joined[-1].startswith("--")
+            and "=" not in joined[-1]
+        ):
+            joined[-1] += f"={word}"
+        else:
+            joined.append(word)
+    return joined
