@@ -125,7 +125,7 @@ def test_a_signal_ends_a_command_in_the_middle_of_a_kernel(number, code, word, t
 def test_kernels_hold_no_lock_that_would_keep_an_interrupt_waiting():
     assert OPTIONS["nogil"] is True
     sources = {path: path.read_text() for path in PACKAGE.rglob("*.py")}
-    assert sum("import kernel" in text for text in sources.values()) > 10
+    assert sum("import kernel" in text for text in sources.values()) > 5
     by_themselves = [p for p, text in sources.items() if re.search(r"\bn?jit\b", text)]
     assert [path.name for path in by_themselves] == ["compiled.py"]
     assert not [p for p, t in sources.items() if re.search(r"@kernel\(.*nogil", t)]

@@ -7,40 +7,23 @@ import pytest
 from microslip.foundation import spec
 from microslip.foundation.errors import InputError
 
-
-@pytest.mark.parametrize("text", ["0", "-0", "0e-400", "+.0E5"])
-def test_what_is_written_as_0_is_0(text):
-    assert spec.read("size", text) == 0.0
+NUMBERS = [("0", 0.0), ("-0", 0.0), ("0e-400", 0.0), ("+.0E5", 0.0), ("5e-324", math.ulp(0.0))]
+NUMBERS += [("1.7e308", 1.7e308), ("-Infinity", -math.inf), (" \N{MINUS SIGN}2 ", -2.0)]
 
 
-@pytest.mark.parametrize(
-    ("text", "number"), [("5e-324", math.ulp(0.0)), ("1.7e308", 1.7e308), ("-Infinity", -math.inf)]
-)
-def test_the_ends_of_the_range_are_read(text, number):
+@pytest.mark.parametrize(("text", "number"), NUMBERS)
+def test_a_number_is_the_nearest_float(text, number):
     assert spec.read("size", text) == number
-
-
-@pytest.mark.parametrize(
-    ("text", "problem"),
-    [
-        ("2e-324", "nearer 0"),
-        ("-1e-400", "nearer 0"),
-        (f"0.{'0' * 400}1", "nearer 0"),
-        ("1.8e308", "beyond the range"),
-    ],
-)
-def test_a_number_that_would_be_0_or_infinite_is_refused(text, problem):
-    with pytest.raises(InputError, match=f"^size = .*: {problem}.*; allowed is "):
-        spec.read("size", text)
 
 
 ARABIC_THREE, WIDE_ONE = "\N{ARABIC-INDIC DIGIT THREE}", "\uff11"
 NO_NUMBERS = ["", "fast", "1,000.5", "1_000", ARABIC_THREE, WIDE_ONE, "1 2", ".", "30deg", "1\n2"]
+OUT_OF_RANGE = ["2e-324", "-1e-400", f"0.{'0' * 400}1", "1.8e308"]
 
 
-@pytest.mark.parametrize("text", NO_NUMBERS)
+@pytest.mark.parametrize("text", NO_NUMBERS + OUT_OF_RANGE)
 def test_other_texts_are_refused(text):
-    with pytest.raises(InputError, match="allowed is a number$"):
+    with pytest.raises(InputError, match="^size = .*allowed is (0 or )?a number"):
         spec.read("size", text)
 
 
@@ -50,8 +33,7 @@ def test_other_texts_than_whole_numbers_are_refused(text):
         spec.read("cells", text, whole=True)
 
 
-@pytest.mark.parametrize("value", ["1e-400", "1e400"])
-def test_so_it_is_beside_a_name(value):
-    text = f"admm:penalty={value}"
-    with pytest.raises(InputError, match=f"in it 'penalty={value}': .* floating-point numbers"):
-        spec.split(text, "method", ["admm"])
+@pytest.mark.parametrize("value", ["1e-400", "1e400", "x", ""])
+def test_a_number_after_a_name_is_refused_with_its_text(value):
+    with pytest.raises(InputError, match=f"in it 'penalty={value}': .* as in admm:key=0.5"):
+        spec.split(f"admm:penalty={value}", "method", ["admm"])

@@ -21,15 +21,8 @@ _PARTIAL: set[Path] = set()
 
 
 def content_of(path: str | os.PathLike, most: int = MOST_BYTES) -> bytes:
-    """Read the content of a file.  most: largest allowed size in bytes.
-
-    Raises
-    ------
-    OSError
-        If the file cannot be read.
-    ValueError
-        If the file is larger than `most`, or is a device that never ends.
-    """
+    """Read the content of a file.  Raises OSError, and ValueError for more than `most` bytes or a
+    device that never ends."""
     with open(path, "rb") as file:
         content = file.read(most + 1)
     if len(content) > most:
@@ -38,18 +31,15 @@ def content_of(path: str | os.PathLike, most: int = MOST_BYTES) -> bytes:
 
 
 def refuse_no_folder(folder: object) -> None:
-    """Raise CacheError if the name of a folder is empty, is not a string, or begins with ~.
-
-    A shell replaces ~ by the home folder.  Without a shell, a folder with the name ~ would be
-    created.
-    """
-    path = os.fspath(folder) if isinstance(folder, str | os.PathLike) else ""
-    name = path if isinstance(path, str) else ""
-    if not name.strip() or "\0" in name:
-        raise CacheError(f"{shown(folder)} is not allowed; allowed: the name of a folder")
-    if Path(name).parts[:1] == ("~",):
-        home = "allowed: the name of a folder, with that of the home folder in place of ~"
-        raise CacheError(f"{shown(name)} is not allowed; {home}")
+    """Raise CacheError if the name of a folder is empty, is not a string, or begins with ~, which
+    only a shell replaces by the home folder."""
+    name = os.fspath(folder) if isinstance(folder, str | os.PathLike) else ""
+    problem = "allowed: the name of a folder"
+    if isinstance(name, str) and Path(name).parts[:1] == ("~",):
+        problem = "allowed: the name of a folder, with that of the home folder in place of ~"
+    elif isinstance(name, str) and name.strip() and "\0" not in name:
+        return
+    raise CacheError(f"{shown(folder)} is not allowed; {problem}")
 
 
 def refuse_unusable(folders: Iterable[str | Path], files: Iterable[str | Path]) -> None:
@@ -57,16 +47,15 @@ def refuse_unusable(folders: Iterable[str | Path], files: Iterable[str | Path]) 
 
     folders, files: paths that a run will make.  Their parent folders are checked as well.
     """
-    try:
-        for folder in map(Path, folders):
+    for folder in map(Path, folders):
+        with _advice("use", folder):
             for place in (*reversed(folder.parents), folder):
                 if os.path.lexists(place) and not place.is_dir():
                     raise CacheError(f"{place} is not a folder; allowed: a folder, or a new name")
-        for file in map(Path, files):
+    for file in map(Path, files):
+        with _advice("use", file):
             if file.is_dir():
                 raise CacheError(f"{file} is a folder; allowed there: a file, or nothing yet")
-    except OSError as error:
-        raise CacheError(advice("use", folder, error)) from error
 
 
 def write_atomically(path: Path, content: bytes) -> None:
@@ -87,21 +76,14 @@ def writing_beside(path: str | os.PathLike[str]) -> Iterator[Path]:
     beside = _unique_beside(path)
     _PARTIAL.add(beside)
     try:
-        path.parent.mkdir(parents=True, exist_ok=True)
-        yield beside
-        with open(beside, "rb") as file:
-            os.fsync(file.fileno())
-        os.replace(beside, path)
-    except OSError as error:
-        raise CacheError(advice("write", path, _cause(error, beside))) from error
-    except RuntimeError as error:
-        # netCDF raises this error if HDF5 cannot write.
-        if not str(error).startswith("NetCDF: "):
-            raise
-        raise CacheError(advice("write", path, _cause(error, beside))) from error
+        with _advice("write", path):
+            path.parent.mkdir(parents=True, exist_ok=True)
+            yield beside
+            with open(beside, "rb") as file:
+                os.fsync(file.fileno())
+            os.replace(beside, path)
     finally:
-        # The temporary file exists only after an error or an interrupt.
-        with suppress(OSError):
+        with suppress(OSError):  # the temporary file exists only after an error or an interrupt
             beside.unlink()
         _PARTIAL.discard(beside)
 
@@ -118,24 +100,16 @@ def _unique_beside(path: Path) -> Path:
     return path.with_name(f".{path.name}.{uuid.uuid4().hex[:16]}.part")
 
 
-def _cause(error: Exception, beside: Path) -> Exception:
-    """Try to write a small file to the same folder.  Return the error from this attempt, or the
-    original error if the attempt succeeds.
-
-    This is needed because HDF5 reports a full disk as "Permission denied" or "HDF error".
-    """
-    if getattr(error, "errno", None) in NO_WRITING:
-        return error
-    try:
-        check_room(beside.parent)
-    except OSError as truth:
-        return truth
-    return error
+def refuse_unwritable(folder: Path) -> None:
+    """Create a folder, and raise CacheError if it cannot be written to."""
+    with _advice("write to", folder):
+        folder.mkdir(parents=True, exist_ok=True)
+        _check_room(folder)
 
 
-def check_room(folder: Path) -> None:
+def _check_room(folder: Path) -> None:
     """Write a small file to a folder and remove it.  Raises OSError if this fails."""
-    trial = _unique_beside(Path(folder, "room"))
+    trial = _unique_beside(folder / "room")
     try:
         with open(trial, "wb") as file:
             file.write(bytes(LEAST_ROOM))
@@ -144,15 +118,6 @@ def check_room(folder: Path) -> None:
     finally:
         with suppress(OSError):
             trial.unlink()
-
-
-def refuse_unwritable(folder: Path) -> None:
-    """Create a folder, and raise CacheError if it cannot be written to."""
-    try:
-        folder.mkdir(parents=True, exist_ok=True)
-        check_room(folder)
-    except OSError as error:
-        raise CacheError(advice("write to", folder, error)) from error
 
 
 def clear_abandoned(folder: Path) -> list[Path]:
@@ -167,6 +132,27 @@ def clear_abandoned(folder: Path) -> list[Path]:
                 path.unlink()
                 removed.append(path)
     return removed
+
+
+@contextmanager
+def _advice(verb: str, path: Path) -> Iterator[None]:
+    """Context manager that converts errors of the operating system to CacheError.
+
+    HDF5 reports a full disk as "Permission denied", "HDF error" or RuntimeError.  The cause is the
+    error of a second attempt to write to the folder.
+    """
+    try:
+        yield
+    except (OSError, RuntimeError) as error:
+        if not isinstance(error, OSError) and not str(error).startswith("NetCDF: "):
+            raise
+        cause: Exception = error
+        if verb == "write" and getattr(error, "errno", None) not in NO_WRITING:
+            try:
+                _check_room(path.parent)
+            except OSError as other:
+                cause = other
+        raise CacheError(advice(verb, path, cause)) from error
 
 
 def advice(verb: str, path: str | Path, error: Exception) -> str:

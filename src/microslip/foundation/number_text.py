@@ -4,7 +4,6 @@ allows."""
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
 from decimal import ROUND_CEILING, ROUND_FLOOR, Context, Decimal
 
 ERROR_DIGITS = 2
@@ -17,26 +16,19 @@ correct."""
 ROUNDING = 1e-12
 """Error below which a zero is printed without its error.  It is the rounding error of numbers near
 1."""
-FIXED = -4, 7
+SIZES = -4, 7
 """Range of decimal exponents in which numbers are printed without an exponent."""
-_ROUNDED_UP = Context(prec=ERROR_DIGITS, rounding=ROUND_CEILING)
-_WIDE = Context(prec=800)
+WIDE = Context(prec=800)
 """Decimal context with enough digits for calculations with any two floats."""
-_WITHOUT_ROUNDING_ERROR = Context(prec=12)
-"""Decimal context that rounds to digits without the rounding error of floats."""
 SEPARATOR = " +- "
-
-
-def error_text(error: float) -> str:
-    """Format an error with two significant digits, rounded up.  Infinity, NaN and 0 are unchanged.
-
-    The shortest decimal representation of the float is rounded.  So 0.01 stays 0.01, although its
-    float is slightly larger.
-    """
-    error = float(error)
-    if math.isfinite(error):
-        error = float(_rounded_up(error))
-    return f"{error:.{ERROR_DIGITS}g}"
+PREFIXES = tuple(
+    zip(
+        ("G", "M", "k", "", "m", "u", "n", "p"),
+        (1e9, 1e6, 1e3, 1.0, 1e-3, 1e-6, 1e-9, 1e-12),
+        strict=True,
+    )
+)
+"""Metric prefixes of printed units, and their sizes."""
 
 
 def number_text(
@@ -64,9 +56,7 @@ def number_text(
         numbers near 1, is printed as 0.  Its printed error is then the error plus the absolute
         value of the number.
     """
-    value, error = float(value), float(error)
-    text = _text(value, error, digits)
-    return f"{text} {unit}".rstrip()
+    return f"{_text(float(value), float(error), digits)} {unit}".rstrip()
 
 
 def _text(value: float, error: float, digits: int) -> str:
@@ -76,46 +66,37 @@ def _text(value: float, error: float, digits: int) -> str:
         return f"{_plain(value, digits)}{SEPARATOR}{error:g}"
     if error <= EXACT * abs(value):
         return _plain(value, digits, zeros=error > 0.0)
-    if abs(value) <= error <= ROUNDING:
-        return "0"
     if abs(value) <= max(error, ROUNDING):
-        return f"0{SEPARATOR}{_short(_rounded_up(abs(value) + error))}"
-    rounded = _rounded_up(error)
-    exponent = rounded.adjusted() + 1 - ERROR_DIGITS
-    number = Decimal(repr(value)).quantize(Decimal((0, (1,), exponent)), context=_WIDE)
-    low, high = FIXED
-    if low <= number.adjusted() < high:
-        return f"{number:f}{SEPARATOR}{rounded.quantize(number, context=_WIDE):f}"
+        rest = _short(_rounded(abs(value) + error, ERROR_DIGITS, ROUND_CEILING))
+        return "0" if error <= ROUNDING and abs(value) <= error else f"0{SEPARATOR}{rest}"
+    above = _rounded(error, ERROR_DIGITS, ROUND_CEILING)
+    place = Decimal((0, (1,), above.adjusted() + 1 - ERROR_DIGITS))
+    number = Decimal(repr(value)).quantize(place, context=WIDE)
     power = number.adjusted()
-    parts = [part.scaleb(-power, context=_WIDE) for part in (number, rounded)]
-    parts[1] = parts[1].quantize(parts[0], context=_WIDE)
-    return f"({parts[0]:f}{SEPARATOR}{parts[1]:f})e{power:+03d}"
+    if SIZES[0] <= power < SIZES[1]:
+        return f"{number:f}{SEPARATOR}{above.quantize(number, context=WIDE):f}"
+    number, above = (part.scaleb(-power, context=WIDE) for part in (number, above))
+    return f"({number:f}{SEPARATOR}{above.quantize(number, context=WIDE):f})e{power:+03d}"
 
 
 def _plain(value: float, digits: int, zeros: bool = False) -> str:
-    """Format a number with `digits` significant digits.  Only very large and very small numbers
-    have an exponent.
-
-    zeros: True to keep trailing zeros.
-    """
-    if value == 0.0:
-        return "0"
-    number = Context(prec=digits).create_decimal(Decimal(repr(value)))
-    if zeros:
-        place = Decimal((0, (1,), number.adjusted() + 1 - digits))
-        return _short(number.quantize(place, context=_WIDE))
-    return _short(number.normalize())
+    """Format a number with `digits` significant digits.  zeros: True to keep trailing zeros."""
+    number = _rounded(value, digits)
+    if not zeros or not number:
+        return _short(number.normalize())
+    return _short(number.quantize(Decimal((0, (1,), number.adjusted() + 1 - digits)), context=WIDE))
 
 
 def _short(number: Decimal) -> str:
     """Format a decimal with all its digits.  Only very large and very small numbers have an
     exponent."""
-    low, high = FIXED
-    return f"{number:f}" if low <= number.adjusted() < high else f"{float(number):g}"
+    is_usual = not number or SIZES[0] <= number.adjusted() < SIZES[1]
+    return f"{number or abs(number):f}" if is_usual else f"{float(number):g}"
 
 
-def _rounded_up(error: float) -> Decimal:
-    return _ROUNDED_UP.create_decimal(Decimal(repr(error)))
+def _rounded(number: float, digits: int, rounding: str | None = None) -> Decimal:
+    """Round the shortest decimal representation of a float: 0.01 stays 0.01."""
+    return Context(prec=digits, rounding=rounding).create_decimal(Decimal(repr(number)))
 
 
 def interval_text(low: float, high: float, unit: str = "", *, error: float = 0.0) -> str:
@@ -136,50 +117,18 @@ def interval_text(low: float, high: float, unit: str = "", *, error: float = 0.0
         low, high = (max(low - error, 0.0) if low >= 0.0 else low - error), high + error
     size = max((abs(end) for end in (low, high) if math.isfinite(end)), default=0.0)
     width = high - low if math.isfinite(high - low) else size
-    digits = ERROR_DIGITS if width > EXACT * size else EXACT_DIGITS
-    place = Decimal(repr(width if width > EXACT * size else size)).adjusted() + 1 - digits
-    ends = _outwards(low, place, ROUND_FLOOR), _outwards(high, place, ROUND_CEILING)
-    if digits == EXACT_DIGITS or size and not 10.0 ** FIXED[0] <= size < 10.0 ** FIXED[1]:
-        texts = [end if isinstance(end, str) else _short(end.normalize()) for end in ends]
-    else:
-        texts = [end if isinstance(end, str) else f"{end:f}" for end in ends]
-    return f"{texts[0]} to {texts[1]} {unit}".strip()
-
-
-def _outwards(end: float, place: int, rounding: str) -> Decimal | str:
-    """Round the end of an interval to a multiple of a power of 10.  Infinity and NaN become
-    texts."""
-    if not math.isfinite(end):
-        return f"{end:g}"
-    number = _WITHOUT_ROUNDING_ERROR.create_decimal(Decimal(repr(end)))
-    return number.quantize(Decimal((0, (1,), place)), rounding=rounding, context=_WIDE) + 0
-
-
-def aligned(columns: Mapping[str, tuple[Sequence[float], Sequence[float] | None]]) -> list[str]:
-    """Lines of a right-aligned table of numbers and their errors.
-
-    columns: values and their errors (None for exact values), by the heading of the column.
-    """
+    is_wide = width > EXACT * size
+    digits = ERROR_DIGITS if is_wide else EXACT_DIGITS
+    place = Decimal((0, (1,), Decimal(repr(width if is_wide else size)).adjusted() + 1 - digits))
+    is_usual = is_wide and (not size or 10.0 ** SIZES[0] <= size < 10.0 ** SIZES[1])
     texts = []
-    for heading, (values, errors) in columns.items():
-        errors = [0.0] * len(values) if errors is None else errors
-        cells = [number_text(*pair) for pair in zip(values, errors, strict=True)]
-        width = max(map(len, (heading, *cells)))
-        texts.append([f"{cell:>{width}}" for cell in (heading, *cells)])
-    return ["  ".join(row) for row in zip(*texts, strict=True)]
-
-
-PREFIXES = (
-    ("G", 1e9),
-    ("M", 1e6),
-    ("k", 1e3),
-    ("", 1.0),
-    ("m", 1e-3),
-    ("u", 1e-6),
-    ("n", 1e-9),
-    ("p", 1e-12),
-)
-"""Metric prefixes of printed units, and their sizes."""
+    for end, rounding in ((low, ROUND_FLOOR), (high, ROUND_CEILING)):
+        if math.isfinite(end):
+            number = _rounded(end, 12).quantize(place, rounding=rounding, context=WIDE) + 0
+            texts.append(f"{number:f}" if is_usual else _short(number.normalize()))
+        else:
+            texts.append(f"{end:g}")
+    return f"{' to '.join(texts)} {unit}".strip()
 
 
 def prefixed(value: float, unit: str) -> tuple[str, float]:

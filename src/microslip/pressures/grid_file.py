@@ -237,18 +237,21 @@ def _variables(data: Any) -> Values:
         if set(variable.dimensions) != expected:
             dimensions = ", ".join(variable.dimensions) or "none"
             raise ValueError(f"{name} has the dimensions {dimensions}; {VARIABLES}")
-        if getattr(variable.dtype, "kind", "") not in ("i", "u", "f"):
-            raise ValueError(f"{name} holds {variable.dtype}; allowed: numbers")
+        attributes = {key: variable.getncattr(key) for key in variable.ncattrs()}
+        held = attributes.get("dtype", variable.dtype)  # xarray stores booleans as integers
+        if held == "bool" or getattr(variable.dtype, "kind", "") not in ("i", "u", "f"):
+            raise ValueError(f"{name} holds {held}; allowed: numbers")
         _refuse_many(variable.size)
         chunk = variable.chunking()  # None in netCDF 3 files
         if isinstance(chunk, list) and math.prod(chunk) * variable.dtype.itemsize > LARGEST_CHUNK:
             shape = " x ".join(map(str, chunk))
             allowed = f"allowed: chunks of at most {LARGEST_CHUNK / 1e6:g} MB"
             raise ValueError(f"{name} is stored in chunks of {shape}; {allowed}")
-        attributes = {key.lower(): variable.getncattr(key) for key in variable.ncattrs()}
-        units[name] = attributes.get("units", attributes.get("unit"))
-        if not isinstance(units[name], str | None):
-            raise ValueError(f"{name} has the units {units[name]}; allowed: a text")
+        given = [text for key, text in attributes.items() if key.lower() in ("unit", "units")]
+        if len(given) > 1 or not all(isinstance(text, str) for text in given):
+            found = ", ".join(map(str, given))[:80]
+            raise ValueError(f"{name} has the units {found}; allowed: one attribute units, a text")
+        units[name] = given[0] if given else None
         values.append(np.ma.filled(np.ma.asarray(variable[:], float), np.nan))
     if not values[2].size:
         raise ValueError("no points; allowed: two or more along each coordinate")
