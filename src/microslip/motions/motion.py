@@ -231,9 +231,13 @@ class Motion:
             else np.zeros_like(phase)
             for name in PLANE
         )
-        unit = float(hertz.bore_angle(1.0, poisson))
-        speed = velocity * unit * amplitude if self.edge_velocity else velocity
-        return speed * phase + forward, lateral, unit * turn
+        if self.edge_velocity or self.rotates:
+            unit = float(hertz.bore_angle(1.0, poisson))
+            velocity, turn = (
+                velocity * unit * amplitude if self.edge_velocity else velocity,
+                unit * turn,
+            )
+        return velocity * phase + forward, lateral, turn
 
     def drift(self, velocity: float, amplitude: float, poisson: float) -> float:
         """Mean forward displacement per radian of phase, in u_lim.

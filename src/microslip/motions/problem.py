@@ -155,17 +155,17 @@ class Problem:
         """Radius towards which rings are graded, or None; see Motion."""
         return self.motion.focus(self._sign * self.velocity, self.size, self.pressure)
 
-    @property
+    @cached_property
     def unit_drift(self) -> float:
         """Mean forward displacement per radian of phase at velocity 1, in u_lim."""
         return self.motion.drift(1.0, self.size, self.poisson)
 
-    @cached_property
+    @property
     def drift(self) -> float:
         """Mean forward displacement per radian of phase, in u_lim."""
-        return self.motion.drift(self.velocity, self.size, self.poisson)
+        return self.unit_drift * self.velocity
 
-    @property
+    @cached_property
     def stroke(self) -> float:
         """Half the peak-to-peak displacement of the edge of the contact, in u_lim."""
         return self.motion.stroke(self.size, self.poisson)
