@@ -3,11 +3,9 @@
 import numpy as np
 import pytest
 
-from microslip.contact.contact import energy_norm
 from microslip.contact.influence import ring_influence
 from microslip.contact.modes import PolarContact
 from microslip.contact.operators import multiply
-from microslip.contact.path import EULER, SDIRK2, make_path
 from microslip.contact.rings import make_rings
 from microslip.contact.splitting import PENALTIES, best_penalty
 
@@ -120,41 +118,3 @@ def test_resolvents_undo_the_shifted_operator(cells, angles, rotates, nu, focus,
         assert inverse(apply(state) + shift * state) == pytest.approx(state, abs=1e-10)
         back = inverse(state)
         assert apply(back) + shift * back == pytest.approx(state, abs=1e-10)
-
-
-MOTIONS = {
-    True: [(0, 0, 0), (0, 0, 0.7), (0.2, 0, 0.4), (0.5, 0, -0.9), (0.5, 0, -0.8)],
-    False: [(0, 0, 0), (0, 0.6, 0), (0.2, 0.3, 0), (0.4, -0.5, 0), (0.45, -0.45, 0)],
-}
-"""Paths with and without rotation: rows of forward, lateral and angle."""
-
-
-@pytest.mark.parametrize("integrator", [EULER, SDIRK2], ids=lambda method: method.name)
-@pytest.mark.parametrize(("rotates", "nu"), [(True, 0.0), (True, 0.3), (False, 0.3)])
-def test_a_previous_march_saves_work_and_changes_nothing(rotates, nu, integrator, rng):
-    contact = PolarContact(8, 6, rotates, nu, 0.5)
-    rows = np.array(MOTIONS[rotates], dtype=float)
-
-    def displacement(phase, sign=1.0):
-        return tuple(sign * np.interp(phase, np.arange(len(rows)), column) for column in rows.T)
-
-    path = make_path(displacement, np.arange(len(rows)), integrator)
-    ones = np.ones((6, 8))
-    state = 0.5 * contact.bound * np.stack([ones, 0.0 * ones])
-    near_by = state + 1e-3 * contact.bound * rng.normal(size=state.shape)
-    exact = contact.march(path, state, 1e-12)
-    for tolerance in (1e-4, 1e-7):
-        previous = contact.march(path, near_by, tolerance)
-        fields = previous.fields.copy()
-        plain = contact.march(path, state, tolerance)
-        warm = contact.march(path, state, tolerance, previous=previous)
-        assert np.array_equal(previous.fields, fields)
-        assert warm.iterations < 0.8 * plain.iterations
-        for march in (plain, warm):
-            assert march.residual <= march.solves * tolerance
-            assert energy_norm(contact, march.state - exact.state) < 10 * march.solves * tolerance
-            assert march.forces == pytest.approx(exact.forces, abs=10 * march.solves * tolerance)
-    # a far initial guess leads to the same state
-    path_back = make_path(lambda t: displacement(t, -1.0), np.arange(len(rows)), integrator)
-    misled = contact.march(path, state, 1e-7, previous=contact.march(path_back, -state, 1e-7))
-    assert energy_norm(contact, misled.state - exact.state) < 10 * misled.solves * 1e-7

@@ -6,7 +6,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
-from microslip.contact.coulomb import coulomb_residual, project, shrink
+from microslip.contact.coulomb import coulomb_residual, project
 
 POINTS = 4
 NUMBER = st.floats(-3.0, 3.0, allow_subnormal=False)
@@ -32,22 +32,6 @@ def test_projection_is_the_nearest_point_of_the_disc(q, bound):
         assert np.all(((q - nearest) * (other - nearest)).sum(axis=0) <= 1e-13)
 
 
-@settings(deadline=None)
-@given(NUMBER, NUMBER, st.floats(0.0, 3.0))
-def test_shrink_is_the_factor_of_the_projection(forward, lateral, bound):
-    factor = shrink(forward, lateral, bound)
-    assert 0.0 <= factor <= 1.0
-    q = np.array([[forward], [lateral]])
-    assert factor * q == pytest.approx(project(q, np.array([bound])), abs=1e-15)
-
-
-def test_zero_bound_and_zero_traction():
-    zero = np.zeros((2, 1))
-    assert np.array_equal(project(zero, np.zeros(1)), zero)
-    assert np.array_equal(project(zero + 1.0, np.zeros(1)), zero)
-    assert 0.0 <= shrink(0.0, 0.0, 0.0) <= 1.0  # any factor is correct for a traction of 0
-
-
 @pytest.mark.parametrize(
     ("q", "slip", "expected"),
     [
@@ -65,12 +49,3 @@ def test_residual_counts_every_breach(q, slip, expected):
     q, slip = np.reshape(q, (2, 1, 1)), np.reshape(slip, (2, 1, 1))
     one = np.ones(1)
     assert coulomb_residual(q, slip, one, 7 * one, one) == pytest.approx(7 * expected, rel=1e-12)
-
-
-@pytest.mark.slow
-@settings(deadline=None)
-@given(VECTORS, VECTORS, BOUNDS, BOUNDS, BOUNDS)
-def test_residual_is_positive_unless_solved(q, slip, bound, weight, scale):
-    residual = coulomb_residual(q, slip, bound, weight, scale)
-    step = weight * size(project(q + slip / scale, bound) - q)
-    assert residual == pytest.approx(step.sum(), rel=1e-12, abs=1e-14)

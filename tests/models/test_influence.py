@@ -78,13 +78,6 @@ def test_coupling_kernels_are_angular_means(r, s):
     assert pair == pytest.approx(expected, rel=1e-9, abs=1e-12)
 
 
-@pytest.mark.parametrize(("r", "s"), RADII)
-def test_coupling_kernels_below_mode_one_are_those_of_swapped_radii(r, s):
-    _, pair = both_kernels(s, r)
-    expected = [coupling_mean(2 - m, r, s) for m in range(1, 9)]
-    assert pair[:8] == pytest.approx(expected, rel=1e-9, abs=1e-12)
-
-
 # Ring averages
 
 RING_EDGES = np.array([0.0, 0.45, 0.7, 1.2, np.pi / 2])
@@ -142,14 +135,6 @@ def test_ring_influence_is_reciprocal_and_positive_definite(focus):
     assert itself == pytest.approx(itself.T, rel=1e-4)
 
 
-@pytest.mark.parametrize("uncoupled", [0, 3])
-def test_ring_influence_without_coupling_has_the_same_direct_part(uncoupled):
-    near, far = ring_influence(RING_EDGES, 5, False)
-    coupled, _ = ring_influence(RING_EDGES, 5, True)
-    assert not far.any()
-    assert near[uncoupled] == pytest.approx(coupled[uncoupled], rel=1e-9)
-
-
 # The whole operator of the contacts
 
 
@@ -189,38 +174,6 @@ def test_operator_is_reciprocal_and_positive_definite(name, nu):
     assert np.linalg.eigvalsh(energy).min() > 0
 
 
-@pytest.mark.parametrize("nu", [0.0, 0.5])
-@pytest.mark.parametrize("name", CONTACTS)
-def test_operator_commutes_with_the_mirror(name, nu, rng):
-    contact = CONTACTS[name](nu)
-    state = rng.normal(size=(2, *contact.forward_position.shape))
-    image = contact.mirrored(contact.displacement(state))
-    assert contact.displacement(contact.mirrored(state)) == pytest.approx(image, abs=1e-12)
-    assert contact.mirrored(contact.mirrored(state)) == pytest.approx(state, abs=0)
-    # the mirror reverses the lateral force and the torque
-    turned = forces(contact, contact.mirrored(state))
-    assert turned == pytest.approx(forces(contact, state) * [1, -1, -1], abs=1e-12)
-
-
-def test_square_operator_commutes_with_point_reflection_and_quarter_turn(rng):
-    contact = CartesianContact(8, 0.4)
-    state = rng.normal(size=(2, 8, 8))
-    displacement = contact.displacement(state)
-    assert contact.displacement(state[:, ::-1, ::-1]) == pytest.approx(
-        displacement[:, ::-1, ::-1], abs=1e-12
-    )
-
-    def quarter_turn(field):
-        """Rotate a field by a quarter turn: forward becomes -lateral, and lateral becomes
-        forward."""
-        forward, lateral = field
-        return np.stack([lateral.T[:, ::-1], -forward.T[:, ::-1]])
-
-    assert contact.displacement(quarter_turn(state)) == pytest.approx(
-        quarter_turn(displacement), abs=1e-12
-    )
-
-
 def smooth_traction(coefficients, z):
     """Traction over the friction bound: Sum c[a, b] z^a conj(z)^b."""
     return sum(c * z**a * z.conj() ** b for (a, b), c in np.ndenumerate(coefficients))
@@ -243,13 +196,6 @@ def direct_displacement(coefficients, nu, z):
     kappa = nu / (2 - nu)
     chords = np.sum(w * half**2 * (q + kappa * turn**2 * q.conj()), axis=1)
     return chords.sum() * np.pi / 48 / (np.pi * hertz.G_STAR)
-
-
-def test_direct_displacement_of_the_hertz_traction():
-    """The displacement at nu = 0 is u = 1 - |z|^2 / 2 in u_lim (Cattaneo)."""
-    for z in (0.0 + 0j, 0.6 + 0j, 0.3 - 0.7j):
-        displacement = direct_displacement(np.ones((1, 1)), 0.0, z)
-        assert displacement == pytest.approx(1 - abs(z) ** 2 / 2, abs=1e-13)
 
 
 def random_smooth_traction(rng, rotates):
@@ -306,91 +252,4 @@ def test_flat_punch_traction_displaces_the_disc_uniformly(nu):
     assert fitted_order(cells, errors) == pytest.approx(2.0, abs=0.5)
 
 
-@pytest.mark.parametrize("u", [0.3, 0.7])
-def test_mindlin_traction_displaces_the_stick_zone_uniformly(u):
-    stick = hertz.mindlin_stick_radius(u)
-    cells, errors = [12, 24, 48], []
-    for n in cells:
-        contact = RadialContact.resolved(n, float(stick))
-        radii = np.sin(make_rings(n, float(stick)).psi)
-        inner = stick**3 * hertz.load_inside(radii / stick)  # load of the inner contact
-        mean = np.diff(hertz.load_inside(radii) - inner) / contact.weight
-        displacement = contact.displacement(np.stack([mean, 0 * mean])[:, None])[0, 0]
-        sticks = radii[1:] <= stick * (1 + 1e-12)
-        errors.append(np.abs(displacement[sticks] - u).max())
-        assert np.all(displacement[~sticks] < u)
-    assert errors[-1] < 1e-3
-    assert fitted_order(cells, errors) == pytest.approx(2.0, abs=0.5)
-
-
-@pytest.mark.parametrize("nu", [0.0, 0.4])
-def test_lubkin_traction_turns_the_stick_zone_rigidly(nu):
-    stick = 0.6
-    angle = hertz.lubkin_angle(stick, nu)
-    cells, errors = [12, 24, 48], []
-    for n in cells:
-        contact = PolarContact(n, 4, True, nu, stick)
-        radius, psi = contact.rings.radius, contact.rings.psi
-        t, w = unit_gauss(20)
-        nodes = psi[:-1, None] + np.diff(psi)[:, None] * t
-        w = w * np.sin(2 * nodes)
-        mean = np.sum(w * hertz.lubkin_traction(np.sin(nodes), stick), axis=1) / np.sum(w, axis=1)
-        across = np.stack([contact.lateral_position, -contact.forward_position]) / radius
-        state = across * mean
-        displacement = contact.displacement(state)
-        sticks = np.sin(psi[1:]) <= stick * (1 + 1e-12)
-        errors.append(np.abs(displacement - angle * across * radius)[:, :, sticks].max() / angle)
-    assert errors[-1] < 1e-3
-    assert fitted_order(cells, errors) == pytest.approx(2.0, abs=0.5)
-
-
 # Squares
-
-
-def square_displacement(nu, size, apart):
-    """Displacement at ``apart`` (complex) from the centre of a square under unit tractions.
-
-    Returns the displacement under a lateral and under a forward unit traction, as complex numbers.
-    Angular quadrature about the point integrates over the part of each ray within the square."""
-    kappa = nu / (2 - nu)
-    corners = apart - size / 2 * np.array([1 + 1j, -1 + 1j, -1 - 1j, 1 - 1j])
-    bends = np.sort(np.angle(corners))
-    x, w = unit_gauss(60)
-    total = np.zeros(2, complex)
-    for start, end in zip(bends, np.append(bends[1:], bends[0] + 2 * np.pi), strict=True):
-        alpha = start + (end - start) * x
-        turn = np.exp(1j * alpha)
-        # z' = apart - rho e^{i alpha} lies within the square for near <= rho <= far
-        with np.errstate(divide="ignore"):
-            limits = [
-                ((component + sign * size / 2) / direction)
-                for component, direction in ((apart.real, turn.real), (apart.imag, turn.imag))
-                for sign in (-1, 1)
-            ]
-        near = np.maximum(np.minimum(*limits[:2]), np.minimum(*limits[2:]))
-        far = np.minimum(np.maximum(*limits[:2]), np.maximum(*limits[2:]))
-        length = np.maximum(far, 0.0) - np.maximum(near, 0.0)
-        length = np.maximum(length, 0.0) * w * (end - start)
-        for k, q in enumerate((1.0, 1j)):
-            total[k] += np.sum(length * (q + kappa * turn**2 * np.conj(q)))
-    return total / (np.pi * hertz.G_STAR)
-
-
-@pytest.mark.parametrize("nu", [0.0, 0.3, 0.5])
-def test_square_coefficients_are_the_integral_over_a_square(nu):
-    """Opposite corners are included, because the convolution must not wrap around."""
-    cells = 6
-    contact = CartesianContact(cells, nu)
-    z = contact.lateral_position + 1j * contact.forward_position
-    for source in [(0, 0), (2, 3), (5, 0)]:
-        exact = np.array(
-            [[square_displacement(nu, 2 / cells, point - z[source]) for point in row] for row in z]
-        )
-        for k, component in enumerate([1, 0]):  # lateral, then forward unit traction
-            state = np.zeros((2, cells, cells))
-            state[component][source] = 1.0
-            displacement = contact.displacement(state)
-            assert displacement[1] + 1j * displacement[0] == pytest.approx(exact[:, :, k], abs=1e-9)
-    assert contact.compliance[0, 0] == pytest.approx(
-        square_displacement(0.0, 2 / cells, 0j)[0].real, rel=1e-12
-    )

@@ -10,9 +10,8 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from reference_march import solved_stage
 
-from microslip.contact.contact import energy_norm, forces, forward_slip
+from microslip.contact.contact import forces, forward_slip
 from microslip.contact.coulomb import project
 from microslip.contact.modes import PolarContact
 from microslip.contact.path import EULER, SDIRK2, half_period_phases, make_path
@@ -94,15 +93,6 @@ def test_forces_are_those_of_mindlin_and_deresiewicz(name):
     assert fitted_order(cells, errors) == pytest.approx(2.0, abs=0.45)
 
 
-def test_sliding_carries_the_whole_friction_and_no_more():
-    u, expected = mindlin_deresiewicz([1.5, -1.0])
-    assert expected[8] == 1.0 and expected[-1] == -1.0
-    for contact in (RadialContact.resolved(8), PolarContact(6, 4, False), CartesianContact(8)):
-        march = contact.march(through(np.outer(u, [1, 0, 0])), at_rest(contact), 1e-8)
-        assert march.forces[[8, 16], 0] == pytest.approx([1.0, -1.0], abs=1e-7)
-        assert np.abs(march.forces[:, 0]).max() <= 1 + 1e-14
-
-
 # Lubkin: pure twist
 
 
@@ -129,80 +119,7 @@ def test_torque_of_pure_twist_is_lubkins(name, nu):
     assert fitted_order(cells, errors) == pytest.approx(2.0, abs=0.45)
 
 
-@pytest.mark.parametrize("nu", [0.0, 0.3])
-@pytest.mark.parametrize("stick", [0.7, 0.5])
-def test_stick_radius_of_pure_twist_is_lubkins(stick, nu):
-    angle = hertz.lubkin_angle(stick, nu)
-    for contact, width in [
-        (PolarContact(24, 4, True, nu), np.pi / 2 / 24),
-        (PolarContact(24, 4, True, nu, stick), np.pi / 2 / 24),
-        (CartesianContact(24, nu), 2 / 24),
-    ]:
-        state = contact.march(through([[0, 0, 0], [0, 0, angle]]), at_rest(contact), 1e-8).state
-        slips = np.hypot(*state) >= contact.bound * (1 - 1e-9)
-        radius = np.hypot(contact.lateral_position, contact.forward_position)
-        loaded = np.broadcast_to(contact.bound > 0, radius.shape)
-        assert radius[slips & loaded].min() == pytest.approx(stick, abs=width)
-        assert radius[~slips & loaded].max() == pytest.approx(stick, abs=width)
-
-
-@pytest.mark.parametrize(
-    ("build", "motion", "forbidden"),
-    [
-        (lambda: RadialContact.resolved(6), [0.4, 0.3, 0], [2]),
-        (lambda: CartesianContact(6, 0.3), [0.4, 0.3, 0], [2]),
-        (lambda: CartesianContact(6, 0.3), [0.4, 0, 0.8], [1]),
-        (lambda: PolarContact(6, 4, False, 0.3), [0.4, 0.3, 0], [2]),
-        (lambda: PolarContact(6, 4, True, 0.3), [0.4, 0, 0.8], [1]),
-    ],
-    ids=["radial", "cartesian", "cartesian, turned", "polar", "polar, turned"],
-)
-def test_forces_that_symmetry_forbids_are_zero(build, motion, forbidden):
-    """A translation has no torque, and a motion with lateral mirror symmetry has no lateral
-    force."""
-    contact = build()
-    march = contact.march(through([[0, 0, 0], motion]), at_rest(contact), 1e-8)
-    assert march.forces[:, forbidden] == pytest.approx(0.0, abs=1e-7)
-
-
 # The models without partial slip
-
-
-@pytest.mark.parametrize("amplitude", [0.3, 0.6, 0.9])
-def test_slider_has_the_static_friction_of_eq_7(amplitude):
-    """The excess over the static friction is proportional to the velocity."""
-    excess = []
-    for velocity in (1e-4, 1e-5):
-        problem = Problem(Transverse(), velocity, amplitude, 0.0)
-        run = simulate(problem, "slider", Resolution(1, 1, 192), 1e-7)
-        assert run.converged
-        excess.append(run.mu - paper.static_slider(amplitude))
-    assert abs(excess[1]) < 2e-4
-    assert excess[0] / excess[1] == pytest.approx(10.0, rel=0.3)
-
-
-@pytest.mark.parametrize("tolerance", [1e-5, 1e-7])
-def test_a_slow_slider_is_found_from_above_its_static_limit(tolerance):
-    """Below the limit a state drifts by only 3e-5 in a march, so that a search from there would
-    take thousands of marches."""
-    problem = Problem(Transverse(), 1e-5, 0.3, 0.0)
-    run = simulate(problem, "slider", Resolution(1, 1, 192), tolerance)
-    assert run.converged
-    assert run.periods < 10
-    assert run.mu == pytest.approx(paper.static_slider(0.3), abs=5e-5)
-
-
-def test_slider_is_the_closed_return_mapping():
-    """The slider is a spring of unit stiffness whose force is limited to 1 after each step."""
-    motions = np.cumsum(np.random.default_rng(5).normal(size=(200, 3)) * [0.4, 0.4, 0.0], axis=0)
-    expected = [np.zeros(2)]
-    for before, after in pairwise(motions):
-        trial = expected[-1] + (after - before)[:2]
-        expected.append(trial / max(1.0, np.hypot(*trial)))
-    contact = slider_contact()
-    march = contact.march(through(motions), at_rest(contact), 1e-14)
-    assert march.forces[:, :2] == pytest.approx(np.array(expected), abs=1e-12)
-    assert np.hypot(*march.forces[:, :2].T).max() == pytest.approx(1.0, abs=1e-15)
 
 
 @pytest.mark.parametrize(("velocity", "amplitude"), [(1e-3, 1.0), (0.1, 0.5), (1.0, 3.0), (10, 2)])
@@ -397,63 +314,12 @@ def test_every_step_obeys_coulomb_and_balances_energy(name, increments):
         q = march.state
 
 
-def random_state(contact, rng):
-    """Tractions within the bound, with the symmetry of the contact's points."""
-    shape = at_rest(contact).shape
-    return project(rng.normal(size=shape) * contact.bound, contact.bound)
-
-
-@pytest.mark.parametrize("name", SMALL)
-@settings(max_examples=10, deadline=None)
-@given(increments=STEPS, seed=st.integers(0, 2**32 - 1))
-def test_backward_euler_is_a_contraction(name, increments, seed):
-    """The energy norm of the difference of two states never grows in a step."""
-    contact, symmetry, tolerance = small(name)
-    rng = np.random.default_rng(seed)
-    states = [random_state(contact, rng), random_state(contact, rng)]
-    apart = energy_norm(contact, states[0] - states[1])
-    motions = motions_from(increments, FREE[symmetry])
-    for before, after in pairwise(motions):
-        path = through([before, after])
-        states = [contact.march(path, q, tolerance).state for q in states]
-        distance = energy_norm(contact, states[0] - states[1])
-        assert distance <= apart * (1 + 1e-12) + 3 * np.sqrt(tolerance)
-        apart = distance
-
-
 @pytest.mark.parametrize("name", SMALL)
 def test_equal_marches_give_equal_bits(name):
     contact, symmetry, _ = small(name)
     path = through([[0, 0, 0], np.array([0.4, 0.3, 0.8]) * FREE[symmetry]])
     one, other = (contact.march(path, forward_slip(contact), 1e-6) for _ in range(2))
     assert np.array_equal(one.fields, other.fields) and np.array_equal(one.forces, other.forces)
-
-
-@pytest.mark.parametrize("name", SMALL)
-def test_sliding_far_forgets_the_start(name):
-    contact, _, tolerance = small(name)
-    rng = np.random.default_rng(3)
-    states = [random_state(contact, rng), random_state(contact, rng)]
-    start = energy_norm(contact, states[0] - states[1])
-    path = through(np.outer(np.linspace(0, 8, 17), [1, 0, 0]))
-    ends = [contact.march(path, q, tolerance).state for q in states]
-    assert energy_norm(contact, ends[0] - ends[1]) < 0.02 * start
-
-
-@pytest.mark.parametrize("name", SMALL)
-@pytest.mark.parametrize("size", [0.05, 0.3, 1.0, 3.0])
-def test_step_solution_is_that_of_plain_descent(name, size):
-    contact, symmetry, tolerance = small(name)
-    rng = np.random.default_rng(int(100 * size))
-    before = random_state(contact, rng)
-    motion = size * rng.normal(size=3) * FREE[symmetry]
-    b = rigid(contact, motion) + contact.displacement(before)
-    expected = solved_stage(operator(contact), b, contact.bound, at_rest(contact))
-    state = contact.march(through([np.zeros(3), motion]), before, tolerance).state
-    assert energy_norm(contact, state - expected) < 3 * np.sqrt(tolerance * 1e-2)
-    assert forces(contact, state) == pytest.approx(
-        forces(contact, expected), abs=30 * tolerance + 1e-9
-    )
 
 
 # Order of the integrators
@@ -472,23 +338,6 @@ def smooth(name):
     """The entry with its contact, which is created once."""
     build, *rest = SMOOTH[name]
     return build(), *rest
-
-
-@pytest.mark.parametrize("name", SMOOTH)
-def test_order_of_the_integrators_on_a_smooth_stretch(name):
-    """All points slip; errors are energy norms of states."""
-    contact, motion, velocity, amplitude = smooth(name)
-    tolerance = 1e-8 if name == "cartesian" else 1e-10
-
-    def state(steps, integrator):
-        path = half_period(motion, velocity, amplitude, 0.3, steps, integrator)
-        return contact.march(path, forward_slip(contact), tolerance).state
-
-    reference = state(384, SDIRK2)
-    steps = [12, 24, 48]
-    for integrator in (EULER, SDIRK2):
-        errors = [energy_norm(contact, state(n, integrator) - reference) for n in steps]
-        assert fitted_order(steps, errors) == pytest.approx(integrator.order, abs=0.25)
 
 
 @pytest.mark.parametrize("name", ["radial", "polar"])

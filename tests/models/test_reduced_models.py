@@ -5,10 +5,8 @@ import pytest
 from scipy.integrate import quad, solve_ivp
 
 import microslip
-from microslip.contact.contact import forces
 from microslip.contact.path import EULER, make_path
-from microslip.contact.reduced import DahlContact, mdr_contact
-from microslip.contact.ring_contact import RadialContact
+from microslip.contact.reduced import mdr_contact
 from microslip.pressures.hertz import HERTZ
 from microslip.theory import hertz, paper
 
@@ -35,17 +33,6 @@ def test_springs_in_a_row_load_like_the_half_space(u):
         assert march.forces[-1, 1] == pytest.approx(expected, abs=0.5 / cells**2)
 
 
-def test_springs_in_a_row_unload_by_masings_rule():
-    path = straight([0.0, 0.8, 0.3])
-    loops = []
-    for contact in (mdr_contact(128), RadialContact.resolved(64)):
-        state = np.zeros((2, 1, len(contact.bound)))
-        loops.append(contact.march(path, state, 1e-12).forces[:, 1])
-    first, turn = hertz.mindlin_force(0.8), 2.0 * hertz.mindlin_force(0.25)
-    assert loops[0][1:] == pytest.approx([first, first - turn], abs=2e-4)
-    assert loops[0] == pytest.approx(loops[1], abs=1e-3)
-
-
 @pytest.mark.parametrize("amplitude", [0.25, 0.5, 0.75])
 def test_static_limit_of_springs_in_a_row(amplitude):
     """The forward force of each spring is sqrt(bound^2 - (G* y)^2)."""
@@ -55,29 +42,6 @@ def test_static_limit_of_springs_in_a_row(amplitude):
     assert result.converged
     assert abs(result.mu_macro - expected) <= result.mu_macro_error + 1e-9
     assert abs(expected - paper.static_limit_transverse(amplitude)) > 5e-3  # another limit
-
-
-def test_springs_in_a_row_come_close_to_the_rings():
-    """The neglected interaction is a few percent of friction, and less at high velocity."""
-    apart = []
-    for velocity in (0.03, 0.3, 3.0):
-        rows, rings = (
-            microslip.solve("transverse", velocity, 0.7, model=model).mu_macro
-            for model in ("mdr", "radial")
-        )
-        apart.append(abs(rows - rings))
-    assert apart[0] < 0.03 and apart[2] < 0.2 * apart[0]
-
-
-def test_a_bristle_loads_exponentially():
-    march = DahlContact(HERTZ.stiffness).march(
-        straight([0.0, 0.2, 0.7]), np.zeros((2, 1, 1)), 1e-12
-    )
-    expected = 1.0 - np.exp(-HERTZ.stiffness * np.array([0.0, 0.2, 0.7]))
-    assert march.forces[:, 1] == pytest.approx(expected, rel=1e-13)
-    # the initial stiffness is that of the half-space
-    slope = (hertz.mindlin_force(1e-6) - hertz.mindlin_force(0.0)) / 1e-6
-    assert slope == pytest.approx(HERTZ.stiffness, rel=1e-5)
 
 
 @pytest.mark.slow
@@ -96,28 +60,8 @@ def test_a_bristle_solves_its_differential_equation(velocity, amplitude):
     assert result.converged and abs(result.mu_macro - expected) <= result.mu_macro_error
 
 
-def test_a_bristle_resists_no_infinitely_slow_motion():
-    assert microslip.solve("transverse", 0.0, 0.1, model="dahl").mu_macro == 0.0
-    slow = microslip.solve("transverse", 1e-4, 0.5, model="dahl")
-    assert slow.converged and slow.mu_macro < 1e-3
-
-
-@pytest.mark.parametrize("model", ["slider", "dahl", "mdr"])
-def test_long_strokes_make_all_models_rigid(model):
-    result = microslip.solve("transverse", 20.0, 60.0, model=model)
-    expected = paper.large_amplitude_transverse(20.0, 60.0)
-    assert result.converged and result.mu_macro == pytest.approx(expected, abs=0.02)
-
-
 @pytest.mark.parametrize("model", ["dahl", "mdr"])
 def test_what_has_no_extension_cannot_turn(model):
     for motion, amplitude in (("bore", 1.0), ("continuous-bore", None)):
         with pytest.raises(ValueError, match="model"):
             microslip.solve(motion, 0.5, amplitude, model=model)
-
-
-def test_full_slip_carries_the_whole_friction():
-    for contact in (mdr_contact(7, 0.6), DahlContact(HERTZ.stiffness)):
-        ones = np.ones((1, len(contact.bound)))
-        full_slip = np.stack([ones, 0.0 * ones]) * contact.bound
-        assert forces(contact, full_slip)[0] == pytest.approx(1.0)

@@ -11,40 +11,12 @@ from microslip.contact.reduced import slider_contact
 from microslip.contact.ring_contact import RadialContact
 from microslip.motions.named import Transverse
 
-# Friction of ``exponential_contact`` after six half periods from forward slip, from a solver in
-# complex numbers, Gauss-Seidel and dense Newton, which shares no code with this one
-KNOWN = [
-    (4, 12, 0.005, 0.5, 0.3443567651),
-    (8, 16, 0.005, 0.5, 0.3207923574),
-    (12, 12, 0.0001, 0.9, 0.0005847364),
-    (10, 12, 0.1, 0.1, 0.9928784007),
-    (16, 16, 0.1, 1.5, 0.1959517441),
-    (8, 24, 1, 0.5, 0.9621146413),
-    (9, 12, 1, 5, 0.4176065584),
-    (32, 24, 0.01, 0.7, 0.0947968418),
-]
-"""(rings, steps, velocity, amplitude, mean forward force in the last half period)"""
-
 
 def half_period(velocity, amplitude, steps, integrator=SDIRK2):
     def displacement(phase):
         return Transverse().displacement(phase, velocity, amplitude, 0.0)
 
     return make_path(displacement, half_period_phases(steps), integrator)
-
-
-def plain_half_period(velocity, amplitude, steps):
-    """Half a period in equal steps."""
-    phase = np.linspace(-np.pi / 2, np.pi / 2, steps + 1)
-    return make_path(lambda t: Transverse().displacement(t, velocity, amplitude, 0.0), phase)
-
-
-def exponential_contact(cells):
-    """Rings with an artificial influence matrix, which no other code of the package computes."""
-    edges = np.sin(np.linspace(0.0, np.pi / 2, cells + 1))
-    radius, weight = 0.5 * (edges[1:] + edges[:-1]), np.pi * np.diff(edges**2)
-    kernel = 0.8 * np.exp(-2.0 * np.abs(radius[:, None] - radius))
-    return RadialContact(kernel * weight, 1.5 / np.pi * np.sqrt(1.0 - radius**2), weight)
 
 
 def some_state(contact, seed, share=1.0):
@@ -83,14 +55,3 @@ def test_another_march_as_first_guess_changes_the_effort_only():
         assert energy_norm(contact, led.state - alone.state) < 1e-9
     other = contact.march(half_period(0.02, 0.5, 12), start, tolerance)  # other steps
     assert np.array_equal(contact.march(path, start, tolerance, previous=other).state, alone.state)
-
-
-@pytest.mark.parametrize(("cells", "steps", "velocity", "amplitude", "mu"), KNOWN)
-def test_friction_is_what_it_was(cells, steps, velocity, amplitude, mu):
-    contact = exponential_contact(cells)
-    path = plain_half_period(velocity, amplitude, steps)
-    state, march = forward_slip(contact), None
-    for _ in range(6):
-        march = contact.march(path, state, 1e-10, previous=march)
-        state = contact.mirrored(march.state)
-    assert path.mean(march.forces[:, 0]) == pytest.approx(mu, abs=1e-8)

@@ -4,8 +4,7 @@ import numpy as np
 import pytest
 from models.test_squares import direct_sum
 
-from microslip.contact import squares as squares_contact
-from microslip.contact.contact import LATERAL, TORQUE, Body, energy_norm, forces, forward_slip
+from microslip.contact.contact import LATERAL, TORQUE, energy_norm, forces, forward_slip
 from microslip.contact.convolution import MIRROR, TURN, convolve, square_convolution, workspace
 from microslip.contact.path import make_path
 from microslip.contact.registry import MODELS
@@ -14,8 +13,6 @@ from microslip.motions.by_name import motion_named
 from microslip.motions.problem import Problem
 from microslip.pressures.by_name import pressure_named
 from microslip.pressures.hertz import HERTZ, Hertz
-from microslip.solver.discretise import Resolution
-from microslip.solver.simulate import simulate
 
 ELLIPSE = "ellipse:ratio=0.6"
 LOOP = "elliptic:forward=0.6,lateral=1,phase=70"
@@ -138,39 +135,6 @@ def test_a_march_is_that_of_all_squares(kind, motion, pressure):
     assert np.array_equal(again.state, other.state) and np.array_equal(again.forces, other.forces)
 
 
-@pytest.mark.parametrize("kind", KINDS)
-def test_a_pulled_march_is_that_of_all_squares(kind):
-    path, body = path_of(MOTIONS[kind][0], KINDS[kind][2], steps=8), Body(0.4, 0.0, 0.3, 0.0)
-    one, other = (
-        contact.march(path, forward_slip(contact), TOLERANCE, body=body)
-        for contact in both(kind, 8)
-    )
-    assert np.ptp(one.body[:, 0]) > 0.1
-    assert other.body == pytest.approx(one.body, abs=1e-10)
-    assert other.forces == pytest.approx(one.forces, abs=1e-10)
-    assert whole(kind, other.state) == pytest.approx(one.state, abs=1e-10)
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize("velocity", [0.0, 0.2])
-@pytest.mark.parametrize(
-    "motion, nu, images", [("transverse", 0.0, 4), (LOOP, 0.0, 4), (LOOP, 0.3, 2), ("bore", 0.3, 2)]
-)
-def test_a_run_finds_what_one_on_all_squares_does(motion, nu, images, velocity, monkeypatch):
-    problem = Problem(motion_named(motion), velocity, 0.6, nu, pressure_named(ELLIPSE))
-    run_of = simulate
-    resolution, tolerance = Resolution(12, 1, 12), 1e-9
-    other = run_of(problem, "cartesian", resolution, tolerance)
-    monkeypatch.setattr(squares_contact, "_images", lambda *tractions: 1)
-    one = run_of(problem, "cartesian", resolution, tolerance)
-    assert one.converged and other.converged
-    assert other.effort.work * one.effort.solves * images == one.effort.work * other.effort.solves
-    assert other.mu == pytest.approx(one.mu, abs=2e-9)
-    assert other.values.keys() == one.values.keys()
-    if "torque" in one.values:
-        assert other.values["torque"] == pytest.approx(one.values["torque"], abs=2e-9)
-
-
 def images_of(motion, nu, cells=8, pressure="hertz"):
     """Number of images of the contact that the registry builds."""
     contact = MODELS["cartesian"].build(
@@ -199,11 +163,6 @@ def test_fewer_squares_do_only_where_symmetry_lets_them():
     assert images_of("transverse", 0.0, cells=7) == images_of("bore", 0.3, cells=7) == 1
 
 
-@pytest.mark.parametrize("cells", [24, 96, 192])
-def test_loads_of_ellipses_are_even_but_for_rounding(cells):
-    assert images_of("transverse", 0.0, cells, ELLIPSE) == 4
-
-
 PLACES = {
     ((0, 3), (7, 3)): {(TURN, 0.0): 1, (MIRROR, 0.3): 2},
     ((0, 3), (0, 4)): {(TURN, 0.0): 1, (MIRROR, 0.3): 1},
@@ -230,13 +189,3 @@ def test_the_pressure_has_a_say(places, more):
     for (symmetry, nu), images in PLACES[places].items():
         assert contact_of(more, symmetry, nu).images == images
         assert contact_of(1e-13, symmetry, nu).images == (4 if (symmetry, nu) == (TURN, 0.0) else 2)
-
-
-def test_the_mean_of_the_images_is_taken():
-    """The loads are 4 i + j."""
-    loads = np.arange(16.0).reshape(4, 4)
-    mean = squares_contact._mean_of_images
-    assert np.array_equal(mean(loads, 4, TURN), np.full((2, 2), 7.5))
-    assert np.array_equal(mean(loads, 2, TURN), np.full((2, 4), 7.5))
-    assert np.array_equal(mean(loads, 2, MIRROR), np.full((2, 4), 6.0) + np.arange(4))
-    assert np.array_equal(mean(loads, 1, TURN), loads)

@@ -60,19 +60,6 @@ def test_what_a_mirror_leaves_is_half_of_the_disc(nu, rng):
 
 
 @pytest.mark.parametrize("nu", RATIOS)
-def test_the_mirror_across_the_forward_axis_commutes_with_the_operator(nu, rng):
-    disc = whole(nu)
-    field = smooth(disc, rng)
-    image = disc.mirrored(field)
-    assert disc.displacement(image) == pytest.approx(
-        disc.mirrored(disc.displacement(field)), abs=1e-12
-    )
-    assert np.array_equal(disc.mirrored(image), field)
-    across = disc.lateral_position * np.ones((2, 1, 1))
-    assert disc.mirrored(across)[1] == pytest.approx(disc.lateral_position, abs=1e-15)
-
-
-@pytest.mark.parametrize("nu", RATIOS)
 @pytest.mark.parametrize("rotates", [True, False])
 def test_a_motion_with_a_symmetry_is_marched_as_on_half_of_the_disc(nu, rotates):
     half = PolarContact(RINGS, ANGLES, rotates, nu, 0.6)
@@ -93,13 +80,3 @@ def test_a_motion_with_a_symmetry_is_marched_as_on_half_of_the_disc(nu, rotates)
     assert marches[1].state[:, :ANGLES] == pytest.approx(marches[0].state, abs=allowed)
     assert marches[1].forces == pytest.approx(marches[0].forces, abs=allowed)
     assert np.hypot(*marches[1].state).max() <= disc.bound.max() * (1.0 + 1e-12)
-
-
-def test_forces_are_sums_over_the_disc():
-    """Uniform lateral slip has no forward force, the lateral force 1, and no torque."""
-    disc = whole(0.3)
-    path = make_path(
-        lambda phase: (0.0 * phase, 50.0 * phase, 0.0 * phase), np.linspace(0.0, 1.0, 3), SDIRK2
-    )
-    forces = disc.march(path, np.zeros((2, 2 * ANGLES, RINGS)), 1e-10).forces[-1]
-    assert forces == pytest.approx([0.0, 1.0, 0.0], abs=1e-8)

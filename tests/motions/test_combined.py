@@ -9,7 +9,6 @@ from microslip.motions.by_name import motion_named
 from microslip.motions.problem import Problem
 from microslip.solver.discretise import Resolution
 from microslip.solver.simulate import simulate
-from microslip.theory import hertz
 
 
 def test_without_a_rotation_it_is_the_transverse_motion():
@@ -17,36 +16,6 @@ def test_without_a_rotation_it_is_the_transverse_motion():
     other = microslip.solve("transverse-bore:angle=0", 0.1, 0.6)
     assert other.model == "radial"
     assert_agree(one, other)
-
-
-def test_without_the_way_sideways_it_is_the_bore_at_another_velocity():
-    one = microslip.solve("bore", 0.3, 0.8, tolerance=3e-3)
-    angle = float(hertz.bore_angle(0.8))
-    other = microslip.solve("transverse-bore:lateral=0", 0.3 * angle, 0.8, tolerance=3e-3)
-    assert other.model == "polar"
-    assert_agree(one, other)
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize("phase", [0.0, 90.0])
-def test_a_small_part_changes_little(phase):
-    """The whole disc without symmetry is compared with rings."""
-    one = microslip.solve("transverse", 0.1, 0.6, tolerance=3e-3)
-    other = microslip.solve(f"transverse-bore:angle=0.01,phase={phase:g}", 0.1, 0.6, tolerance=3e-3)
-    assert other.model == "polar"
-    # the displacement of the edge changes by at most the angle, and friction by at most that
-    assert_agree(one, other, slack=float(hertz.bore_angle(0.006)))
-
-
-@pytest.mark.slow
-def test_turning_the_phase_by_half_a_period_is_looking_in_a_mirror():
-    """Reversing the lateral motion at the same rotation is a mirror image with reversed sliding
-    direction; friction does not change."""
-    both = [
-        microslip.solve(f"transverse-bore:phase={phase}", 0.1, 0.5, tolerance=5e-3)
-        for phase in (30, 210)
-    ]
-    assert both[0].mu_macro == pytest.approx(both[1].mu_macro, abs=1e-3)
 
 
 def test_the_motion_is_its_own_mirror_image_half_a_period_later():
@@ -73,19 +42,6 @@ def test_the_static_limit_is_approached_by_marches():
     assert guess == pytest.approx(limit.mu, abs=8e-3)
 
 
-@pytest.mark.parametrize(
-    ("name", "problem"),
-    [
-        ("transverse-bore:lateral=0,angle=0", "allowed is lateral or angle above 0"),
-        ("transverse-bore:angle=2", "angle = 2: allowed is a share in 0..1"),
-        ("transverse-bore:turn=1", "unknown number turn; allowed: lateral, angle, phase"),
-    ],
-)
-def test_what_is_no_motion_is_refused(name, problem):
-    with pytest.raises(ValueError, match=problem):
-        microslip.solve(name, 0.1, 0.5)
-
-
 @pytest.mark.slow
 @pytest.mark.parametrize(
     ("name", "velocity", "amplitude", "settings"),
@@ -104,19 +60,6 @@ def test_angular_points_of_the_whole_disc_agree_with_squares(name, velocity, amp
         for model in ("polar", "cartesian")
     )
     assert_agree(*both)
-
-
-@pytest.mark.long
-def test_a_load_that_oscillates_beside_both_tends_to_each_of_them():
-    """With almost no rotation, or almost no lateral motion, friction on the whole disc is that on
-    half of the disc."""
-    pairs = {"lateral=1,angle=0.001": "lateral=1", "lateral=0.001,angle=1": "angle=1"}
-    for parts, rest in pairs.items():
-        both = (
-            microslip.solve(f"normal:{shares}", 0.1, 0.5, tolerance=5e-3)
-            for shares in (parts, rest)
-        )
-        assert_agree(*both, slack=2e-3)
 
 
 def test_a_rigid_contact_that_knows_half_of_itself_says_so():

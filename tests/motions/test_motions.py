@@ -3,12 +3,8 @@ files."""
 
 import json
 import math
-import os
-import shutil
-import subprocess
 import sys
 from dataclasses import fields
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -58,29 +54,6 @@ def test_the_oscillation_turns_at_both_ends_of_half_a_period(motion):
         assert np.abs(part).max() <= abs(end[1]) + 1e-12
 
 
-def test_the_zigzag_has_one_speed_sideways():
-    _, lateral, _ = Zigzag().displacement(np.linspace(-1.5, 1.5, 31), 0.1, 0.7, 0.0)
-    assert np.diff(lateral) == pytest.approx(0.7 * 2.0 / np.pi * 0.1)
-
-
-@pytest.mark.parametrize(("velocity", "amplitude"), [(0.1, 1.0), (1.0, 3.0), (2.0, 0.5)])
-def test_a_rigid_zigzag_keeps_the_direction_of_its_slip(velocity, amplitude):
-    speed = 2.0 * amplitude / np.pi
-    rigid = microslip.solve("zigzag", velocity, amplitude, model="rigid", tolerance=1e-2)
-    exact = velocity / np.hypot(velocity, speed)
-    # at the turning points the direction changes within a step
-    assert rigid.mu_macro == pytest.approx(exact, abs=rigid.mu_macro_error + 1e-3)
-
-
-def test_an_elastic_zigzag_tends_to_the_rigid_one_at_large_amplitude():
-    """The elastic turn takes a displacement of about u_lim out of a stroke of 2 y0."""
-    exact = 0.5 / np.hypot(0.5, 200.0 / np.pi)
-    answer = microslip.solve("zigzag", 0.5, 100.0)
-    assert answer.converged
-    assert answer.mu_macro == pytest.approx(exact, rel=0.03)
-    assert answer.mu_macro > exact
-
-
 def test_the_static_limit_knows_the_turning_points_alone():
     """The static limit of the zigzag is that of the sine, which is known in closed form."""
     resolution = Resolution(64, 1, 0)
@@ -90,13 +63,6 @@ def test_the_static_limit_knows_the_turning_points_alone():
     )
     assert one == pytest.approx(other, abs=1e-9)
     assert one == pytest.approx(paper.static_limit_transverse(0.5), abs=1e-3)
-
-
-def test_a_slow_zigzag_tends_to_the_static_limit():
-    slow = microslip.solve("zigzag", 1e-5, 0.5, tolerance=1e-3)
-    limit = paper.static_limit_transverse(0.5)
-    assert slow.converged
-    assert -slow.mu_macro_error < slow.mu_macro - limit < 5e-3
 
 
 CUBE = '''"""To and fro across the motion like the cube of a sine: slow in the middle."""
@@ -192,54 +158,6 @@ def test_a_broken_file_is_an_error_of_its_motion_alone(broken, file):
     (line,) = refused.stderr.splitlines()
     assert refused.returncode == 2 and str(broken / file) in line and cause in line
     assert in_process.run("point", "longitudinal", *arguments).returncode == 0
-
-
-def test_a_name_of_two_files_is_an_error_of_its_motion_alone(tmp_path, monkeypatch):
-    """Python keeps the first module of a name, whichever folder the second file is in."""
-    for registry in (by_name.MOTIONS, by_name.BROKEN):
-        for name, value in registry.items():
-            monkeypatch.setitem(registry, name, value)
-    monkeypatch.setattr(motions, "__path__", list(motions.__path__))
-    places = [tmp_path / folder / "sine_cubed.py" for folder in ("one", "two")]
-    for place in places:
-        place.parent.mkdir()
-        place.write_text(CUBE)
-        by_name.find(place.parent)
-    del sys.modules["microslip.motions.sine_cubed"]
-    with pytest.raises(microslip.InputError) as caught:
-        microslip.solve("sine-cubed", 0.1, 0.5)
-    assert caught.value.argument == "motion"
-    assert caught.value.allowed == (
-        f"{places[1]}: {places[0]} has the same name; allowed is another name"
-    )
-    assert microslip.solve("longitudinal", 0.1, 0.5).converged
-
-
-@pytest.mark.long
-def test_broken_files_in_the_package_do_not_end_other_commands(tmp_path):
-    """Broken files do not change the digest of a result."""
-    package = Path(microslip.__file__).parent
-    without = shutil.ignore_patterns("__pycache__")
-    shutil.copytree(package, tmp_path / "microslip", ignore=without)
-    for folder in ("motions", "pressures", "solver/methods"):
-        (tmp_path / "microslip" / folder / "unfinished.py").write_text("MOTION = replace(")
-    command = [sys.executable, "-m", "microslip", "point", "longitudinal", "--velocity", "0.1"]
-    command += ["--amplitude", "0.5"]
-    place = os.environ | {"PYTHONPATH": str(tmp_path)}
-    process = subprocess.run(command, cwd=tmp_path, env=place, capture_output=True, text=True)
-    assert (process.returncode, process.stderr) == (0, "")
-    command += ["--method", "unfinished"]
-    process = subprocess.run(command, cwd=tmp_path, env=place, capture_output=True, text=True)
-    assert process.returncode == 2
-    assert "unfinished.py cannot be imported: SyntaxError in line 1" in process.stderr
-    assert process.stderr.count("\n") == 1
-
-
-@pytest.mark.parametrize("kind", [Force, Spring])
-def test_a_drive_has_no_default_for_the_number_that_it_is_named_by(kind):
-    with pytest.raises(TypeError, match="missing 1 required"):
-        kind()
-    assert kind(0.5).damping == 0.0
 
 
 @pytest.mark.parametrize(

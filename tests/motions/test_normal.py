@@ -2,21 +2,18 @@
 
 import numpy as np
 import pytest
-from stubs.agreement import assert_agree
 
 import microslip
-from microslip.contact.contact import energy_norm
 from microslip.contact.coulomb import project
 from microslip.contact.path import EULER, make_path
-from microslip.contact.reduced import load_on_springs, mdr_contact
+from microslip.contact.reduced import mdr_contact
 from microslip.contact.registry import MODELS
-from microslip.contact.ring_contact import RadialContact, load_on_rings
+from microslip.contact.ring_contact import RadialContact
 from microslip.motions.by_name import motion_named
 from microslip.motions.problem import Problem
 from microslip.pressures.hertz import HERTZ
 from microslip.solver.discretise import Resolution, contact_of, path_of
 from microslip.solver.simulate import simulate
-from microslip.theory import oscillating_load
 
 ALONE = [
     ("normal", 0.1, 0.5),
@@ -94,44 +91,6 @@ def test_rings_agree_with_springs_along_one_line(place):
         assert answer.mu_macro == pytest.approx(2.0 * fine - coarse, abs=1.2e-3)
 
 
-@pytest.mark.slow
-@pytest.mark.parametrize("place", ASIDE, ids=str)
-def test_certificates_hold_against_finer_runs(place):
-    answer, finer = (microslip.solve(*place, tolerance=t) for t in (1e-3, 2e-4))
-    assert answer.model == "radial"
-    assert_agree(answer, finer)
-
-
-@pytest.mark.long
-@pytest.mark.parametrize("motion", ["normal", "normal:forward=0.5", "normal:lateral=1"])
-def test_errors_fall_with_rings_and_steps(motion):
-    best = run(motion, 0.1, 0.7, cells=96, steps=512).mu
-    errors = [abs(run(motion, 0.1, 0.7, cells=n, steps=4 * n).mu - best) for n in (8, 32)]
-    assert errors[1] < 0.3 * errors[0] or errors[0] < 2e-4
-
-
-def test_the_mean_load_is_that_of_the_sum():
-    phase = np.linspace(0.0, 2.0 * np.pi, 200001)
-    for amplitude in (0.3, 1.0, 1.7):
-        height = np.maximum(1.0 + amplitude * np.sin(phase), 0.0)
-        for by_load, load in ((True, height), (False, height**1.5)):
-            mean = np.trapezoid(load, phase) / (2.0 * np.pi)
-            assert oscillating_load.mean_load(amplitude, by_load, HERTZ) == pytest.approx(
-                mean, abs=1e-9
-            )
-
-
-@pytest.mark.parametrize("carried", [load_on_rings, load_on_springs])
-def test_the_parts_of_a_contact_carry_its_load(carried):
-    edges, depths = np.linspace(0.0, 1.3, 14), np.array([0.0, 0.3, 1.0, 1.69])
-    load = carried(HERTZ, edges, depths)
-    assert load[:, 0] == pytest.approx(0.0)
-    assert load[:, -1] == pytest.approx(HERTZ.total(depths))
-    assert (np.diff(load, axis=1) >= -1e-15).all()
-    assert HERTZ.total(HERTZ.of_load(depths)) == pytest.approx(depths)
-    assert HERTZ.total(HERTZ.radius(depths) ** 2) == pytest.approx(HERTZ.total(depths))
-
-
 @pytest.mark.parametrize("build", [RadialContact.resolved, mdr_contact])
 def test_a_contact_that_grows_keeps_load_and_stiffness(build):
     """At the reference depth the bounds do not change.  At another depth, load and stiffness (2 G*
@@ -147,37 +106,9 @@ def test_a_contact_that_grows_keeps_load_and_stiffness(build):
     assert stuck == pytest.approx(1.3 * HERTZ.stiffness, rel=0.03)
 
 
-def test_contact_that_is_lost_forgets():
-    """After a moment without contact, the state does not depend on the start of the march."""
-    name = motion_named("normal:lateral=0.7,phase=40")
-    motion = Problem(name, 0.2, 1.3, 0.0)
-    contact = contact_of(motion, "radial", Resolution(16, 1, 32))
-    path = make_path(motion.displacement, np.linspace(0.0, 2 * np.pi, 129), depth=motion.depth)
-    bound = contact.bounds(motion.depth(np.zeros(1)))[0]
-    starts = np.zeros((2, 1, 16)), np.stack([bound, 0.0 * bound])[:, None]
-    one, other = (contact.march(path, start, 1e-10) for start in starts)
-    assert energy_norm(contact, one.state - other.state) < 1e-8
-    assert not np.allclose(one.forces[1], other.forces[1])
-    away = name.depth(path.phase, 1.3, HERTZ) == 0.0
-    assert away.any()
-    assert not one.forces[away].any()
-
-
 def tractions_of(march, bounds):
     """Tractions of rings at the start and at every stage, (2, 1 + steps stages, rings)."""
     return project(np.moveaxis(march.fields[:, :, 0], 1, 0), bounds)
-
-
-@pytest.mark.parametrize("velocity", [0.001, 0.5])
-@pytest.mark.parametrize("name", ["normal:lateral=1", "normal:indentation=1,forward=0.6,phase=45"])
-def test_every_stage_keeps_within_the_bound_of_its_time(name, velocity):
-    motion = Problem(motion_named(name), velocity, 0.9, 0.0)
-    contact = contact_of(motion, "radial", Resolution(12, 1, 24))
-    path = path_of(motion, contact, 24)
-    march = contact.march(path, np.zeros((2, 1, 12)), 1e-9)
-    bounds = contact.bounds_along(path)
-    assert (np.hypot(*tractions_of(march, bounds)) <= bounds * (1 + 1e-12)).all()
-    assert march.residual <= march.solves * 1e-9
 
 
 @pytest.mark.parametrize("place", [*ALONG, *ASIDE], ids=str)
@@ -205,85 +136,6 @@ def test_work_is_dissipated(place):
     changes = np.diff(tractions, axis=0)
     numerical = 0.5 * np.sum(contact.weight * changes * (changes @ contact.influence.T))
     assert work == pytest.approx(lost.sum() + stored + numerical, abs=1e-7)
-
-
-def test_slow_sliding_tends_to_the_least_load():
-    """An infinitely slow contact slips at the moment of the smallest load only."""
-    for motion, power in (("normal", 1.0), ("normal:indentation=1", 1.5)):
-        mean = motion_named(motion).mean_load(0.6, HERTZ)
-        exact = 0.4**power / mean
-        assert microslip.solve(motion, 0.0, 0.6).mu_macro == pytest.approx(exact, abs=1e-12)
-        rings = microslip.solve(motion, 0.0, 0.6, model="radial")
-        assert abs(rings.mu_macro - exact) <= rings.mu_macro_error
-        errors = [run(motion, v, 0.6).mu - exact for v in (1e-2, 1e-3)]
-        assert 0.0 < errors[1] < 0.15 * errors[0] < 0.02
-
-
-@pytest.mark.parametrize("motion", ["normal", "normal:indentation=1"])
-def test_a_contact_that_lifts_off_has_no_static_friction(motion):
-    assert microslip.solve(motion, 0.0, 1.0).mu_macro == 0.0
-    assert microslip.solve(motion, 0.0, 1.8).mu_macro == 0.0
-    assert microslip.solve(motion, 1e-4, 1.5, model="radial").mu_macro < 1e-3
-
-
-@pytest.mark.parametrize("motion", ["normal", "normal:indentation=1", "normal:lateral=1"])
-def test_fast_sliding_feels_the_mean_load(motion):
-    for amplitude in (0.5, 1.5):
-        answer = microslip.solve(motion, 50.0, amplitude, model="radial")
-        assert answer.mu_macro == pytest.approx(1.0, abs=2e-3)
-
-
-def test_without_vibration_friction_is_that_of_coulomb():
-    assert microslip.solve("normal", 0.1, 0.0).mu_macro == 1.0
-    assert microslip.solve("normal", 0.1, 1e-4).mu_macro == pytest.approx(1.0, abs=1e-3)
-
-
-def test_a_small_change_of_the_load_is_one_of_the_indentation():
-    """The load is proportional to the power 3/2 of the indentation, so that a small relative change
-    of load is 3/2 of that of indentation."""
-    load = 1.0 - motion_named("normal").closed_form(1e-3, 0.015, HERTZ)[0]
-    indentation = 1.0 - motion_named("normal:indentation=1").closed_form(1e-3, 0.01, HERTZ)[0]
-    assert load == pytest.approx(indentation, rel=0.01)
-
-
-def test_a_small_normal_part_leaves_the_motion_in_the_plane():
-    """A small oscillation of the load hardly changes friction under a lateral or forward
-    oscillation."""
-    aside = microslip.solve("normal:load=0.0001,lateral=1", 0.1, 0.7)
-    assert aside.mu_macro == pytest.approx(
-        microslip.solve("transverse", 0.1, 0.7).mu_macro, abs=2e-3
-    )
-    along = microslip.solve("normal:load=0.0001,forward=1", 0.1, 0.7)
-    exact = microslip.solve("longitudinal", 0.1, 0.7).mu_macro
-    assert along.mu_macro == pytest.approx(exact, abs=2e-3)
-
-
-def test_half_a_period_suffices_where_it_is_mirrored():
-    """The load oscillates with twice the frequency of the lateral oscillation; marches over whole
-    periods have the same mean."""
-    name = motion_named("normal:lateral=1,normal_cycles=2")
-    assert name.half_period_mirror
-    assert not motion_named("normal:lateral=1").half_period_mirror
-    motion = Problem(name, 0.1, 0.8, 0.0)
-    contact = contact_of(motion, "radial", Resolution(16, 1, 64))
-    phase = np.linspace(-0.25, 1.75, 513) * np.pi
-    path = make_path(motion.displacement, phase, depth=motion.depth)
-    state = np.zeros((2, 1, 16))
-    for _ in range(12):
-        march = contact.march(path, state, 1e-9)
-        state = march.state
-    half = run(name.name, 0.1, 0.8, cells=16, steps=256)
-    assert path.mean(march.forces[:, 0]) == pytest.approx(half.mu, abs=1e-3)
-
-
-def test_friction_rises_with_velocity_and_falls_with_amplitude():
-    for motion in ("normal", "normal:indentation=1"):
-        whole = motion_named(motion).closed_form
-        table = np.array(
-            [[whole(v, a, HERTZ) for v in (1e-3, 0.03, 0.1, 0.4)] for a in (0.2, 0.7, 1.3)]
-        )
-        assert (np.diff(table, axis=1) > 0.0).all()
-        assert (np.diff(table, axis=0) < 0.0).all()
 
 
 def test_in_step_with_the_load_an_oscillation_drives_the_contact():
@@ -314,25 +166,6 @@ def test_what_is_no_motion_is_refused(motion, message):
 def test_models_that_know_one_load_are_refused(model):
     with pytest.raises(ValueError, match=f"model = '{model}': .* constant normal load"):
         microslip.solve("normal", 0.1, 0.5, model=model)
-
-
-@pytest.mark.parametrize("method", ["paper", "full-newton", "midpoint"])
-def test_methods_that_know_one_load_are_refused(method):
-    with pytest.raises(ValueError, match=f"method = '{method}'"):
-        microslip.solve("normal", 0.1, 0.5, model="radial", method=method)
-
-
-def test_a_method_with_another_integrator_finds_the_same():
-    answer = microslip.solve("normal", 0.1, 0.5, model="radial", method="euler", tolerance=1e-2)
-    exact, _ = motion_named("normal").closed_form(0.1, 0.5, HERTZ)
-    assert abs(answer.mu_macro - exact) <= answer.mu_macro_error
-
-
-def test_a_history_follows_the_load():
-    """The force of a fast sliding contact is proportional to the load."""
-    result = microslip.history("normal", 200.0, 0.7, start="full-slip", periods=1)
-    expected = 1.0 + 0.7 * np.sin(result.phase)
-    assert result.force_forward[1:] == pytest.approx(expected[1:], abs=1e-6)
 
 
 # Other indenters
@@ -371,17 +204,3 @@ def test_static_friction_of_power_laws(exponent):
     mean = np.mean((1.0 + 0.4 * np.sin(phase)) ** power)
     assert by_depth.mu_macro == pytest.approx(0.6**power / mean, abs=1e-9)
     assert microslip.solve("normal", 0.0, 1.0, pressure=pressure).mu_macro == 0.0
-
-
-def test_the_power_2_is_a_sphere_under_a_load_that_changes():
-    for motion in ("normal", "normal:indentation=1"):
-        one, other = (
-            microslip.solve(motion, 0.1, 1.2, pressure=name).mu_macro for name in ("hertz", "power")
-        )
-        assert other == pytest.approx(one, abs=1e-10)
-
-
-@pytest.mark.parametrize("pressure", ["ring", "ellipse"])
-def test_the_load_of_what_is_no_indenter_cannot_change(pressure):
-    with pytest.raises(ValueError, match=f"pressure = '{pressure}': does not go with normal"):
-        microslip.solve("normal", 0.1, 0.5, pressure=pressure)

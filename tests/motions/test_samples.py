@@ -64,12 +64,6 @@ def test_a_sampled_rotation_gets_the_answer_of_the_bore(amplitude):
     assert_agree(named, other)
 
 
-def test_a_force_drives_a_sampled_motion_as_the_named_one():
-    named = microslip.solve("transverse", force=0.5, amplitude=1.0)
-    other = microslip.solve(sampled(lateral=SINE), force=0.5, amplitude=1.0)
-    assert_agree(named, other)
-
-
 def test_few_samples_of_a_sharp_motion_have_a_larger_error():
     """The interpolation between samples is a source of the error of its own."""
     zigzag = 2.0 / np.pi * np.arcsin(np.sin(PHASE))

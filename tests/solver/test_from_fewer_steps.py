@@ -11,8 +11,8 @@ from microslip.motions.drive import Force, Spring
 from microslip.motions.problem import Problem
 from microslip.solver import simulate as module
 from microslip.solver.discretise import Resolution
-from microslip.solver.run import Settings, failed_run
-from microslip.solver.simulate import COARSENING, PREPARED_FROM, simulate
+from microslip.solver.run import Settings
+from microslip.solver.simulate import PREPARED_FROM, simulate
 from microslip.theory import paper
 
 PLACES = {
@@ -47,20 +47,3 @@ def test_the_state_is_the_same_and_takes_less(name, monkeypatch):
     # the effort includes the run with fewer steps
     assert ahead.effort.solves < 0.8 * plain.effort.solves
     assert ahead.effort.iterations < 0.8 * plain.effort.iterations
-
-
-def test_a_search_goes_on_without_one_that_failed(monkeypatch):
-    problem = Problem(motion_named("transverse"), 0.1, 1.0, drive=Spring(stiffness=1.0))
-    tried, really = [], simulate
-
-    def fails(problem, model, resolution, *others, **more):
-        if problem.drive is None:
-            return really(problem, model, resolution, *others, **more)
-        tried.append(resolution.steps)
-        return failed_run("on purpose")
-
-    monkeypatch.setattr(module, "simulate", fails)
-    fine = Resolution(8, 1, PREPARED_FROM)
-    result = really(problem, "radial", fine, 1e-4)
-    assert tried == [PREPARED_FROM // COARSENING]
-    assert result.converged and result.periods > 0.0

@@ -1,7 +1,5 @@
 """The accelerated search for the periodic state against a plain march until nothing changes."""
 
-from dataclasses import replace
-
 import numpy as np
 import pytest
 
@@ -195,24 +193,6 @@ def radial_run(velocity, amplitude, rings, steps, tolerance=1e-6, guess=None):
     return simulate(problem, "radial", Resolution(rings, 1, steps), tolerance, guess)
 
 
-def test_run_in_other_steps_spares_marches():
-    reference = radial_run(0.01, 0.5, 8, 12)
-    alone = radial_run(0.01, 0.5, 8, 16)
-    led = radial_run(0.01, 0.5, 8, 16, guess=reference)
-    assert led.converged and led.periods < alone.periods
-    assert led.mu == pytest.approx(alone.mu, abs=2e-6)
-    assert led.static_force == pytest.approx(alone.static_force, abs=1e-6)
-    other = radial_run(0.01, 0.5, 6, 16, guess=reference)  # a guess on other rings is not used
-    assert other.mu == radial_run(0.01, 0.5, 6, 16).mu
-
-
-def test_a_wild_guess_costs_effort_only():
-    reference = radial_run(0.01, 0.5, 8, 16)
-    led = radial_run(0.01, 0.5, 8, 16, guess=replace(reference, state=-reference.state))
-    assert led.converged and led.periods >= reference.periods
-    assert led.mu == pytest.approx(reference.mu, abs=2e-6)
-
-
 @pytest.mark.parametrize("steps", [16, 48])
 def test_all_effort_is_counted(steps):
     """A step has two stages, a ring two tractions, and a period two marches."""
@@ -220,9 +200,3 @@ def test_all_effort_is_counted(steps):
     assert run.effort.solves == 2 * run.periods * 2 * steps
     assert run.effort.work == 16 * run.effort.solves
     assert run.effort.updates == 16 * run.effort.iterations >= run.effort.work
-
-
-def test_vibration_much_slower_than_the_sliding_leaves_the_friction_as_it_is():
-    problem = Problem(Transverse(), 50.0, 0.5, 0.0)
-    run = simulate(problem, "radial", Resolution(6, 1, 12), 1e-6)
-    assert run.converged and run.mu == pytest.approx(1.0, abs=1e-4) and run.mu <= 1.0

@@ -76,18 +76,6 @@ def test_pointwise_form_agrees_with_the_closed_form_bore(amplitude, poisson):
     assert result == pytest.approx(float(paper.static_limit_bore(amplitude)), abs=3e-4)
 
 
-def test_squares_find_the_same_limits():
-    result = numerical_limit(Transverse(), 0.5, "cartesian", 32)
-    assert result == pytest.approx(float(paper.static_limit_transverse(0.5)), abs=5e-3)
-    result = numerical_limit(Bore(), 1.0, "cartesian", 32)
-    assert result == pytest.approx(float(paper.static_limit_bore(1.0)), abs=5e-3)
-
-
-def test_slider_limit_is_eq_7():
-    result = microslip.solve("transverse", 0.0, 0.5, model="slider")
-    assert result.mu_macro == pytest.approx(float(paper.static_slider(0.5)), abs=1e-6)
-
-
 @pytest.mark.slow
 @pytest.mark.parametrize(
     ("motion", "amplitude", "poisson"),
@@ -102,10 +90,3 @@ def test_slow_marches_approach_the_limit(motion, amplitude, poisson):
     assert np.all(np.diff(excess) < 0.0)
     last = limit.mu_macro_error + slow[-1].mu_macro_error
     assert -last < excess[-1] < 2e-3 + last
-
-
-def test_limits_lie_below_those_of_the_whole_stick_zone():
-    amplitude = np.linspace(0.05, 0.95, 19)
-    assert np.all(paper.static_limit_transverse(amplitude) < paper.static_transverse(amplitude))
-    amplitude = np.linspace(0.1, 4.0, 20)
-    assert np.all(paper.static_limit_bore(amplitude) < paper.static_bore(amplitude))

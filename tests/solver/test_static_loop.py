@@ -7,7 +7,6 @@ from scipy.integrate import quad
 import microslip
 from microslip.motions.by_name import motion_named
 from microslip.motions.problem import Problem
-from microslip.pressures.by_name import pressure_named
 from microslip.solver.discretise import Resolution
 from microslip.solver.simulate import simulate
 from microslip.solver.static_limit import largest_shift
@@ -58,16 +57,6 @@ def test_a_loop_of_no_width_has_the_limit_of_its_line(amplitude):
     within(along, float(paper.static_limit_longitudinal(amplitude)), 2e-4)
 
 
-def test_on_a_line_the_whole_period_says_what_the_turning_points_say():
-    motion, resolution = motion_named("transverse"), Resolution(16, 1, 64)
-    line = simulate(Problem(motion, 0.0, 0.5, 0.0), "radial", resolution, 1e-5).mu
-    # so narrow that it is a line, but not `straight`
-    loop = motion_named("elliptic:forward=1e-9,phase=0,forward_cycles=2")
-    assert not loop.straight
-    result = simulate(Problem(loop, 0.0, 0.5, 0.0), "radial", resolution, 1e-5).mu
-    assert result == pytest.approx(line, abs=2e-3)
-
-
 @pytest.mark.parametrize("amplitude", [0.1, 0.4, 0.7])
 def test_springs_on_a_circle_in_closed_form(amplitude):
     """A sticking spring at x has the force `amplitude`; its shift is 1 - x^2 - amplitude."""
@@ -88,34 +77,6 @@ def test_where_all_slides_the_mean_of_the_directions_is_left():
     assert late[0] < 0.05
     assert late[1] < 0.5 * late[0]
     assert microslip.solve("elliptic", 0.0, 3.0).mu_macro == pytest.approx(0.0, abs=1e-6)
-
-
-@pytest.mark.long
-def test_mirror_images_have_the_same_limit_or_the_opposite_one():
-    one, other = (
-        microslip.solve(f"elliptic:forward=0.5,phase={p}", 0.0, 0.5, tolerance=3e-3)
-        for p in (30, 210)
-    )
-    within(one, other.mu_macro, other.mu_macro_error)
-    drags, drives = (
-        microslip.solve(f"elliptic:forward=0.5,phase={p},forward_cycles=2", 0.0, 1.2)
-        for p in (0, 180)
-    )
-    within(drags, -drives.mu_macro, drives.mu_macro_error)  # the whole contact slides
-
-
-@pytest.mark.long
-def test_other_models_find_the_same_limit():
-    rings = microslip.solve("elliptic", 0.0, 0.5)
-    coarse = {"cells": 16, "steps": 64, "tolerance": 1e-2}
-    modes = microslip.solve("elliptic", 0.0, 0.5, model="polar", **coarse)
-    within(modes, rings.mu_macro, rings.mu_macro_error)
-    # the stick zone of an elliptic contact is an ellipse of the same shape
-    for pressure in ("hertz", "ellipse:ratio=0.7"):
-        problem = Problem(motion_named("elliptic"), 0.0, 0.5, 0.0, pressure_named(pressure))
-        squares = simulate(problem, "cartesian", Resolution(24, 1, 24), 1e-3)
-        assert squares.converged
-        assert squares.mu == pytest.approx(rings.mu_macro, abs=8e-3)
 
 
 @pytest.mark.slow
@@ -154,26 +115,6 @@ def test_a_load_that_oscillates_leaves_its_least(amplitude):
         ("normal:lateral=0.001", "auto"),
     ):
         within(microslip.solve(motion, 0.0, amplitude, model=model), exact, 1e-5)
-
-
-@pytest.mark.slow
-def test_a_contact_that_lifts_off_has_no_limit_but_what_drives_it():
-    across = microslip.solve("normal:lateral=1", 0.0, 1.2)
-    within(across, 0.0)
-    along = microslip.solve("normal:forward=1,phase=90", 0.0, 1.2)
-    assert along.converged and along.mu_macro < -0.4  # under load it moves backward only
-
-
-@pytest.mark.long
-def test_poissons_ratio_and_squares_without_symmetry_are_in():
-    softer = microslip.solve("elliptic", 0.0, 0.5, poisson=0.4, tolerance=5e-2)
-    assert softer.converged and softer.model == "polar"
-    imposed = {"cells": 16, "steps": 24, "tolerance": 5e-2}
-    turning = microslip.solve("transverse-bore:phase=90", 0.0, 0.5, **imposed)
-    assert turning.converged and turning.model == "cartesian"
-    alone = microslip.solve("transverse", 0.0, 0.5).mu_macro
-    # the rotation reduces the friction further
-    assert 0.0 < turning.mu_macro < alone - turning.mu_macro_error
 
 
 def test_a_state_that_does_not_settle_is_no_number(monkeypatch):

@@ -5,11 +5,6 @@ import pytest
 
 import microslip
 from microslip.answer.along import STARTS
-from microslip.contact.modes import PolarContact
-from microslip.contact.squares import CartesianContact
-from microslip.motions.named import ContinuousBore
-from microslip.motions.problem import Problem
-from microslip.solver.steady import steady_state
 from microslip.theory import hertz, paper
 
 VELOCITIES = np.geomspace(0.1, 10.0, 7)
@@ -62,21 +57,3 @@ def test_steady_field_is_eq_15_and_nothing_sticks(velocity):
     away = np.hypot(lateral + velocity, forward) > 0.1
     assert away.sum() > 0.9 * away.size
     assert (result / field["bound"])[:, away] == pytest.approx(direction[:, away], abs=2e-3)
-
-
-@pytest.mark.parametrize(
-    "build",
-    [lambda: PolarContact(8, 8, True, 0.3, 0.5), lambda: CartesianContact(10, 0.3)],
-    ids=["polar", "cartesian"],
-)
-def test_nothing_sticks_around_a_centre_of_rotation_inside(build):
-    """Claim 4: in the steady state every point slips with the rigid velocity."""
-    contact = build()
-    result = steady_state(contact, Problem(ContinuousBore(), 0.5, poisson=0.3), 1e-5)
-    assert result.converged
-    loaded = np.broadcast_to(contact.bound > 0, contact.forward_position.shape)
-    used = np.hypot(*result.state)[loaded] / np.broadcast_to(contact.bound, loaded.shape)[loaded]
-    assert used.min() > 1 - 1e-6 and used.max() <= 1 + 1e-12
-    velocity = np.stack([0.5 + contact.lateral_position, -contact.forward_position])
-    along = (result.state * velocity).sum(axis=0) / np.hypot(*velocity)
-    assert (along / np.where(loaded, contact.bound, 1.0))[loaded].min() > 1 - 1e-4

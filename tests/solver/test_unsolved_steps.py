@@ -50,12 +50,6 @@ def test_the_static_limit_on_a_line_includes_the_residual_of_its_steps(amplitude
     assert RINGS < error <= run.residual + RINGS
 
 
-def test_solved_steps_have_the_limit_of_the_closed_form():
-    run = run_on_a_line(0.5)
-    assert run.converged and run.residual <= 2e-7
-    assert abs(run.mu - paper.static_limit_transverse(0.5)) <= RINGS
-
-
 def test_the_static_limit_on_a_loop_does_not_converge(loose_steps):
     problem = Problem(motion_named("elliptic"), 0.0, 0.5, 0.0)
     run = simulate(problem, "radial", Resolution(12, 2, 16), 1e-4)

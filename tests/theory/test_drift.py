@@ -26,14 +26,6 @@ def test_friction_of_a_rigid_contact_balances_the_force_under_bore(force):
     assert bore_forward(velocity / rotation) == pytest.approx(force, rel=1e-6)
 
 
-def test_amplitudes_and_forces_broadcast():
-    forces, amplitudes = np.array([0.2, 0.5]), np.array([[1.0], [2.0]])
-    sideways, boring = transverse_drift(forces, amplitudes), bore_drift(forces, amplitudes)
-    assert sideways.shape == boring.shape == (2, 2)
-    assert sideways[1] == pytest.approx(2.0 * sideways[0])
-    assert np.array_equal(boring[0], boring[1])  # in units proportional to the amplitude
-
-
 @pytest.mark.parametrize("drift", [transverse_drift, bore_drift])
 def test_ends(drift):
     assert drift(0.0, 1.0) == 0.0

@@ -23,15 +23,6 @@ def test_stiffnesses_follow_the_density_of_a_sphere():
     assert below[-1] == pytest.approx(1.5, rel=1e-12)
 
 
-def test_elements_of_a_cone_are_equal():
-    # F = 1 - (1 - u)^2 has the constant density 2, of the stiffness 2 G* a = 2
-    model = microslip.iwan("power:exponent=1", elements=10)
-    assert model.stiffness == pytest.approx(np.full(10, 0.2))
-    slip = model.limit_force / model.stiffness
-    assert slip == pytest.approx(0.05 + 0.1 * np.arange(10))
-    assert model.force_error == pytest.approx(np.full(10, 0.2 * 0.1 / 8))
-
-
 def test_the_end_of_a_punch_slips_at_once():
     # the stiffness 2 G* b of its flat end remains until u = 1
     stiffness = 2.0 * microslip.Punch(0.8).G_star
@@ -55,18 +46,6 @@ def test_force_errors_are_within_the_tolerance_and_sharp(pressure, tolerance):
     assert difference.max() == pytest.approx(model.force_error.max(), rel=1e-6)
 
 
-@pytest.mark.parametrize("pressure", PRESSURES)
-def test_a_loop_has_at_most_the_error_of_any_path(pressure):
-    model = microslip.iwan(pressure, elements=1)
-    assert model.error <= model.error_on_any_path
-
-
-@pytest.mark.parametrize("path", [1.0, [[0.0, 1.0]], ["a"], [0.0, np.nan], [np.inf], None, [1j]])
-def test_a_path_that_is_not_one_of_finite_numbers_is_refused(path):
-    with pytest.raises(InputError, match="displacement"):
-        microslip.iwan(elements=2).force(path)
-
-
 @settings(max_examples=20, deadline=None)
 @given(st.sampled_from(PRESSURES), st.integers(1, 30), st.floats(-1.5, 1.5), st.floats(-1.5, 1.5))
 def test_loops_are_those_of_masing_within_the_error(pressure, elements, first, second):
@@ -87,14 +66,6 @@ def test_a_response_of_the_full_contact_agrees(pressure):
     difference = np.abs(model.force(path) - full.force_forward)
     assert np.all(difference <= model.error_on_any_path + full.force_error[:, 0])
     assert np.all(difference[:3] <= model.error + full.force_error[:3, 0])
-
-
-@settings(max_examples=20, deadline=None)
-@given(st.lists(st.floats(-2.0, 2.0), min_size=2, max_size=12), st.integers(1, 20))
-def test_random_paths_are_within_the_bound(path, elements):
-    model, fine = (microslip.iwan(elements=n) for n in (elements, 1000))
-    difference = np.abs(model.force(path) - fine.force(path)).max()
-    assert difference <= model.error_on_any_path + fine.error_on_any_path
 
 
 def test_the_error_contains_the_effect_of_poissons_ratio():

@@ -63,17 +63,3 @@ def test_a_loop_is_cut_where_it_no_longer_goes_back():
         at = kink_velocity(kinks_of(name), np.array(0.7))
         assert float(at) == pytest.approx(fastest, rel=1e-3)
     assert kinks_of("elliptic:forward=0") == Kinks()
-
-
-def test_a_load_that_oscillates_with_something_else_is_lost_from_some_amplitude_on():
-    for name in ("normal:lateral=1", "normal:load=0.5,forward=1", "normal:indentation=0.8,angle=1"):
-        (amplitude,) = kinks_of(name).amplitudes
-        motion, phase = motion_named(name), np.linspace(0.0, 2.0 * np.pi, 7201)
-        least = [
-            float(np.min(motion.depth(phase, factor * amplitude, HERTZ))) for factor in (0.99, 1.0)
-        ]
-        assert least[0] > 0.0 == pytest.approx(least[1], abs=1e-6)
-
-
-def test_most_motions_have_none_that_is_known():
-    assert kinks_of("transverse-bore") == kinks_of("bore", "punch") == Kinks()

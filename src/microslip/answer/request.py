@@ -138,7 +138,7 @@ def request_of(
     if progress is not None and not callable(progress):
         raise InputError("progress", progress, "allowed is a function of one argument")
     name = choose_model(problem, model)
-    method_names.check(method)
+    method_names.split(method)
     lack = method_names.missing(method)
     if lack:
         raise InputError("method", method, lack)

@@ -259,7 +259,7 @@ def _is_folder(text: str) -> bool:
 
 def _checked_method(text: Any) -> str:
     try:
-        method_names.check(text)
+        method_names.split(text)
     except InputError as error:
         raise Refusal(f"{error.value!r}: {error.allowed}") from None
     return text

@@ -117,8 +117,6 @@ class Contact(Protocol):
         of state[0].
     forward_position, lateral_position : np.ndarray
         Coordinates of the points divided by a, with the shape of state[0].
-    direct : bool
-        Whether the contact computes its periodic state directly, see DirectContact.
     stiffness : float
         Force for a uniform displacement u_lim without slip, divided by mu F_z, or an upper bound on
         this value.
@@ -139,7 +137,6 @@ class Contact(Protocol):
     compliance: np.ndarray
     forward_position: np.ndarray
     lateral_position: np.ndarray
-    direct: bool = False
     stiffness: float
     sticks: bool
     grading: float | None = None
@@ -180,16 +177,6 @@ class Contact(Protocol):
             Largest allowed residual of a stage, as a force divided by mu F_z.
         previous : Guess or None
             Earlier march along the same path from a similar state.  It provides initial guesses.
-        """
-
-
-class DirectContact(Contact, Protocol):
-    """A contact that computes its periodic state directly, without a search."""
-
-    def periodic_state(self, path: Path, mirror: bool) -> np.ndarray:
-        """Return the tractions of the periodic state at the start of the path.
-
-        mirror: True if the path is half a period, and its mirror image is the other half.
         """
 
 

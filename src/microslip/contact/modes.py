@@ -251,8 +251,7 @@ class PolarContact(RingContact):
         translations, whole discs, changing loads and fewer than FEWEST_PROLONGED rings.
         """
         few = len(self.rings.radius) < FEWEST_PROLONGED
-        grows = hasattr(self, "_joins")
-        if few or grows or not self.rotates or self.whole:
+        if few or self._joins is not None or not self.rotates or self.whole:
             return None
         focus, pressure = self._made_of
         rings, count = make_rings(state.shape[2], focus, pressure), state.shape[1]

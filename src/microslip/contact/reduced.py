@@ -47,7 +47,6 @@ class RigidContact(contact.Contact):
     """Rigid contact with points on rings and at angles on half the disc, or with a single point for
     a translation (see contact.contact)."""
 
-    direct = True
     sticks = False
     grading = GRADING
 
@@ -74,11 +73,6 @@ class RigidContact(contact.Contact):
         tractions."""
         return state[:, ::-1, :] * contact.MIRROR
 
-    def periodic_state(self, path: Path, mirror: bool) -> np.ndarray:
-        """Return the state after one march.  It does not depend on the initial state."""
-        end = self.march(path, np.zeros((2, *self.forward_position.shape)), 0.0).state
-        return self.mirrored(end) if mirror else end
-
     def march(
         self,
         path: Path,
@@ -101,7 +95,6 @@ class RigidContact(contact.Contact):
 class DahlContact(contact.Contact):
     """A single bristle (see contact.contact.Contact); states have shape (2, 1, 1)."""
 
-    direct = True
     sticks = False  # the static limit of friction is 0
     angles = 1
 
@@ -118,14 +111,6 @@ class DahlContact(contact.Contact):
     def mirrored(self, state: np.ndarray) -> np.ndarray:
         """Return the state with its lateral traction negated."""
         return state * contact.MIRROR
-
-    def periodic_state(self, path: Path, mirror: bool) -> np.ndarray:
-        """Solve the linear equation q = image(march(q)) for the two components."""
-        image = np.diag([1.0, -1.0]) if mirror else np.eye(2)
-        starts = np.vstack([np.zeros(2), np.eye(2)]).reshape(3, 2, 1, 1)
-        ends = np.array([image @ self.march(path, q, 0.0).state.ravel() for q in starts])
-        matrix = np.eye(2) - (ends[1:] - ends[0]).T
-        return np.linalg.solve(matrix, ends[0]).reshape(2, 1, 1)
 
     def march(
         self,

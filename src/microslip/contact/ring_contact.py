@@ -78,7 +78,7 @@ class RingContact(Contact):
     edges: np.ndarray | None = None
     resultants = np.ones(3)
     mirror_rows: np.ndarray | None = None
-    _joins: np.ndarray
+    _joins: np.ndarray | None = None
 
     def __init__(
         self,
@@ -260,6 +260,7 @@ class RingContact(Contact):
         growth = self._checked_growth
         load_within = growth.load_within(growth.pressure, growth.edges, depths)
         edge = growth.pressure.radius(depths) if edge is None else edge
+        assert self._joins is not None  # set by at_indentation
         outside, most = edge[:, None] <= self._joins, load_within[:, -1:]
         load_within[:, 1:-1] = np.where(outside, most, load_within[:, 1:-1])
         return np.maximum(np.diff(load_within, axis=1), 0.0) / self.area

@@ -14,21 +14,15 @@ DEPENDENT = 1e-8
 fraction of its full norm.  The value is about the square root of the rounding error."""
 
 
-@kernel
 def remember(pairs: np.ndarray, count: int, image: np.ndarray, change: np.ndarray) -> int:
     """Add an image and a change to `pairs`, shape (2, DEPTH + 1, n).
 
     If `pairs` is full, the oldest pair is dropped.  Returns the number of pairs.
     """
-    most, n = pairs.shape[1], pairs.shape[2]
-    if count == most:
-        for p in range(2):
-            for a in range(most - 1):
-                for i in range(n):
-                    pairs[p, a, i] = pairs[p, a + 1, i]
-        count = most - 1
-    for i in range(n):
-        pairs[0, count, i], pairs[1, count, i] = image[i], change[i]
+    if count == pairs.shape[1]:
+        pairs[:, :-1] = pairs[:, 1:]
+        count -= 1
+    pairs[0, count], pairs[1, count] = image, change
     return count + 1
 
 

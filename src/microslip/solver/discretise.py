@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 from functools import lru_cache
-from typing import Protocol
+from typing import Any
 
 import numpy as np
 
@@ -97,15 +97,7 @@ def contact_of(
     return contact.at_indentation(problem.deepest, float(problem.depth(np.array(problem.start))))
 
 
-class Graded(Protocol):
-    """Protocol of objects with a `grading` of the time steps, such as a contact."""
-
-    @property
-    def grading(self) -> float | None:
-        """See Contact."""
-
-
-def path_of(problem: Problem, contact: Graded, steps: int, integrator: Integrator = SDIRK2) -> Path:
+def path_of(problem: Problem, contact: Any, steps: int, integrator: Integrator = SDIRK2) -> Path:
     """Build the path of a problem, starting at a turning point.
 
     The path covers half a period if the second half is its mirror image, otherwise a whole period.
@@ -115,7 +107,8 @@ def path_of(problem: Problem, contact: Graded, steps: int, integrator: Integrato
     problem : Problem
         The problem.
     contact : Contact
-        The contact.  If `contact.grading` is not None, it replaces the grading for the problem.
+        The contact, or another object with a `grading`.  If it is not None, it replaces the
+        grading for the problem.
     steps : int
         Approximate number of steps in half a period.
     integrator : path.Integrator

@@ -12,6 +12,7 @@ Listing and checking names does not import the solver.
 from __future__ import annotations
 
 import ast
+from dataclasses import replace
 from functools import cache
 from importlib import import_module
 from importlib.util import find_spec
@@ -43,6 +44,8 @@ def _parsed(name: str) -> ast.Module | str | None:
     """Syntax tree of a method's file, the error message if parsing fails, or None if there is no
     file."""
     file = METHODS / f"{name.replace('-', '_')}.py"
+    if not file.stem.isidentifier():
+        return None
     try:
         return ast.parse(file.read_text(encoding="utf-8"), file)
     except FileNotFoundError:
@@ -52,20 +55,18 @@ def _parsed(name: str) -> ast.Module | str | None:
 
 
 def split(text: str) -> tuple[str, dict[str, float]]:
-    """Name and parameters of a method; raises InputError if the text cannot be parsed."""
+    """Name and parameters of a method; raises InputError if the text does not name a method.
+
+    Does not import the solver.
+    """
     if not isinstance(text, str):
         raise InputError("method", text, f"allowed is one of {', '.join(names())}")
-    name = text.partition(":")[0]
-    reason = _parsed(name) if name.replace("-", "_").isidentifier() else None
+    reason = _parsed(text.partition(":")[0])
     if isinstance(reason, str):
         raise InputError("method", text, reason)
-    return spec.split(text, "method", names())
-
-
-def check(text: str) -> None:
-    """Raise InputError if a text is not the name of a method.  Does not import the solver."""
-    name, numbers = split(text)
+    name, numbers = spec.split(text, "method", names())
     spec.refuse_unknown(text, "method", numbers, tuple(declared(name, "parameters") or ()))
+    return name, numbers
 
 
 def missing(text: str) -> str:
@@ -82,20 +83,19 @@ def missing(text: str) -> str:
 
 def method_named(text: str) -> Method:
     """Return the method.Method with a name, or raise an InputError that lists the allowed names."""
-    check(text)
-    from dataclasses import replace
+    from microslip.solver import method
 
     name, numbers = split(text)
     if name == SHIPPED:
-        return import_module("microslip.solver.method").SHIPPED
+        return method.SHIPPED
     file = name.replace("-", "_")
     try:
-        method = import_module(f"{methods.__name__}.{file}").METHOD
+        result = import_module(f"{methods.__name__}.{file}").METHOD
     except (Exception, SystemExit) as error:  # code written by users can raise any exception
         path = METHODS / f"{file}.py"
         reason = f"{path} cannot be imported: {described(error, path)}"
         raise InputError("method", text, reason) from error
-    return replace(method, parameters={**method.parameters, **numbers})
+    return replace(result, parameters={**result.parameters, **numbers})
 
 
 @cache
@@ -105,12 +105,7 @@ def declared(name: str, field: str) -> Any:
     Returns None if the field is not set.  `name` must not contain parameters.  The value must be a
     literal.
     """
-    if name == SHIPPED:
-        return None
     tree = _parsed(name)
-    if not isinstance(tree, ast.Module):
-        return None
-    for node in ast.walk(tree):
-        if isinstance(node, ast.keyword) and node.arg == field:
-            return ast.literal_eval(node.value)
-    return None
+    nodes = ast.walk(tree) if isinstance(tree, ast.Module) else ()
+    keywords = (node for node in nodes if isinstance(node, ast.keyword) and node.arg == field)
+    return next((ast.literal_eval(one.value) for one in keywords), None)

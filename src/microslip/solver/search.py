@@ -21,7 +21,7 @@ from typing import NamedTuple, cast
 
 import numpy as np
 
-from microslip.contact.contact import Body, Contact, DirectContact, March, StepFailure, energy_norm
+from microslip.contact.contact import Body, Contact, March, StepFailure, energy_norm
 from microslip.contact.coulomb import project
 from microslip.contact.path import Path
 from microslip.contact.ring_contact import RingContact
@@ -287,8 +287,6 @@ def find_periodic_state(
         If the tractions diverge.
     """
     contact, path, rate = period_map.contact, period_map.path, period_map.drift_rate
-    if contact.direct:
-        return _direct_state(period_map, goal)
     loosest, tightest = LOOSEST_NEAR if goal.near else LOOSEST, goal.step_tolerance
     inner = max(tightest, min(loosest, NOISE * rate.gain / path.solves))
     state = above = np.append(start, place)
@@ -333,14 +331,3 @@ def find_periodic_state(
         state = following
     assert best is not None  # there is at least one march
     return replace(best, marches=marches, iterations=iterations)
-
-
-def _direct_state(period_map: PeriodMap, goal: Goal) -> PeriodicState:
-    """The PeriodicState of a contact with a direct solution, checked by one march."""
-    contact = cast(DirectContact, period_map.contact)
-    start = contact.periodic_state(period_map.path, period_map.mirror)
-    state = np.append(start, AT_REST)
-    march = period_map.march(state, goal.step_tolerance, None)
-    distance = period_map.norm(period_map.step(state, march)[1])
-    converged = distance <= goal.tolerance
-    return PeriodicState(march, start, distance, distance, 1, march.iterations, converged)

@@ -22,14 +22,13 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import replace
 from functools import lru_cache
-from typing import NamedTuple, cast
+from typing import NamedTuple
 
 import numpy as np
 
 from microslip.contact.contact import (
     FORWARD,
     Contact,
-    DirectContact,
     forces,
     full_slip,
     rigid_displacement,
@@ -67,6 +66,8 @@ the square root of the distance between its traction and the bound."""
 ENOUGH = 4.0
 """Largest accepted ratio of the distance reached to the distance requested; rounding limits the
 search."""
+ROUNDING = 1e-12
+"""Tolerance of the periodic state of a contact that never sticks, which takes a few marches."""
 LARGEST_SHIFT = 1e-2
 """Largest shift of a ring outside the stick radius, divided by the largest friction bound."""
 
@@ -166,11 +167,13 @@ def loop_energy(
         Rigid displacement at a phase, as in `limit_on_a_line`.
     oscillating : np.ndarray or None
         Tractions of the oscillation at the first turning point, see StaticLimit.  None for a
-        contact that never sticks; the tractions are then computed directly.
+        contact that never sticks; the tractions are then those of the periodic state.
     """
     if oscillating is None:
         path = make_path(oscillation, np.pi * np.array([-0.5, 0.5, 1.5]), EULER)
-        oscillating = cast(DirectContact, contact).periodic_state(path, mirror=False)
+        cycle, goal = PeriodMap(contact, path, mirror=False), Goal(ROUNDING, ROUNDING)
+        start = np.zeros(cycle.shape)
+        oscillating = cycle.image(find_periodic_state(cycle, start, goal).march.state)
     place = np.array(oscillation(np.array(-0.5 * np.pi)), dtype=float)
     slip = rigid_displacement(contact, place) - contact.displacement(oscillating)
     return 4.0 * float(np.vdot(contact.weight * full_slip(contact, *oscillating), slip))

@@ -13,10 +13,14 @@ is imported only when it is first used.
 """
 
 from functools import cache
+from typing import Any
 
 import numpy as np
 import scipy
 
+IndenterPressure = Any
+"""Pressure under an axisymmetric indenter: the attributes and methods G_star, stiffness, bound,
+depth, radius, of_load, load, loading and total of pressure.Pressure."""
 G_STAR = 0.75
 """Reduced shear modulus 4G/(2-nu), dimensionless (from u_lim = 3 mu F_z / (4 G* a))."""
 TORQUE_FULL_SLIP = 3 * np.pi / 16

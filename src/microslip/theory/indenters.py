@@ -11,7 +11,7 @@ from collections.abc import Callable
 
 import numpy as np
 
-from microslip.theory.indenter_pressure import IndenterPressure
+from microslip.theory.hertz import IndenterPressure
 
 _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(128)
 _NODES, _WEIGHTS = 0.5 * (_NODES + 1.0), 0.5 * _WEIGHTS

@@ -24,7 +24,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from microslip.foundation.errors import InputError
-from microslip.theory.indenter_pressure import IndenterPressure
+from microslip.theory.hertz import IndenterPressure
 
 _GRID = 1.0 - np.linspace(0.0, 1.0, 4097)
 """Contact radii in the table from which the ends of the intervals are interpolated."""

@@ -13,13 +13,28 @@ import numpy as np
 
 from microslip.theory.hertz import checked, mindlin_force
 
-_NODES, _WEIGHTS = np.polynomial.legendre.leggauss(48)
-# Nodes are clustered at both ends, where the curves have half-integer powers.
-_ANGLES = 0.25 * np.pi * (_NODES + 1.0)
-_NODES, _WEIGHTS = np.sin(_ANGLES) ** 2, 0.25 * np.pi * _WEIGHTS * np.sin(2.0 * _ANGLES)
+Function = Callable[[np.ndarray], np.ndarray]
 _HALVINGS = 60
 
-Function = Callable[[np.ndarray], np.ndarray]
+
+def clustered_rule(count: int) -> tuple[np.ndarray, np.ndarray]:
+    """Gauss rule (nodes, weights) on 0..1, clustered at both ends, for half-integer powers."""
+    nodes, weights = np.polynomial.legendre.leggauss(count)
+    angles = 0.25 * np.pi * (nodes + 1.0)
+    return np.sin(angles) ** 2, 0.25 * np.pi * weights * np.sin(2.0 * angles)
+
+
+def last_true(condition: Function, low: np.ndarray, high: np.ndarray) -> np.ndarray:
+    """Points between low and high where a condition changes from true to false, shape (n,)."""
+    low, high = low.copy(), high.copy()
+    for _ in range(_HALVINGS):
+        middle = 0.5 * (low + high)
+        still = condition(middle)
+        low, high = np.where(still, middle, low), np.where(still, high, middle)
+    return 0.5 * (low + high)
+
+
+_NODES, _WEIGHTS = clustered_rule(48)
 
 
 def longitudinal(
@@ -115,7 +130,7 @@ def _mean(v: np.ndarray, x: np.ndarray, curve: Function) -> np.ndarray:
     end = back + 2.0 * np.pi
     stroke = travel(back) - travel(forth)
     # The loop closes when the sphere returns to the position of its last backward turn.
-    closed = _first(lambda phase: travel(phase) - travel(back), forth, end)
+    closed = last_true(lambda phase: travel(phase) < travel(back), forth, end)
 
     def backward(phase: np.ndarray) -> np.ndarray:
         return 1.0 - _turned(curve, travel(back) - travel(phase))
@@ -123,9 +138,9 @@ def _mean(v: np.ndarray, x: np.ndarray, curve: Function) -> np.ndarray:
     def forward(phase: np.ndarray) -> np.ndarray:
         return 1.0 - _turned(curve, stroke) + _turned(curve, travel(phase) - travel(forth))
 
-    sliding = _first(lambda phase: travel(back) - travel(phase) - 2.0, back, forth)
+    sliding = last_true(lambda phase: travel(back) - travel(phase) < 2.0, back, forth)
     area = _integral(backward, back, sliding) + _integral(backward, sliding, forth)
-    sliding = _first(lambda phase: travel(phase) - travel(forth) - 2.0, forth, closed)
+    sliding = last_true(lambda phase: travel(phase) - travel(forth) < 2.0, forth, closed)
     area += _integral(forward, forth, sliding) + _integral(forward, sliding, closed)
     return (area + end - closed) / (2.0 * np.pi)
 
@@ -133,17 +148,6 @@ def _mean(v: np.ndarray, x: np.ndarray, curve: Function) -> np.ndarray:
 def _turned(curve: Function, travel: np.ndarray) -> np.ndarray:
     """Change of the force since a turn. It is the curve of the first loading at twice the scale."""
     return 2.0 * curve(np.maximum(0.5 * travel, 0.0))
-
-
-def _first(function: Function, low: np.ndarray, high: np.ndarray) -> np.ndarray:
-    """Root of an increasing function in the interval [low, high], shape (n,). If there is no root,
-    it is `high`."""
-    low, high = low.copy(), high.copy()
-    for _ in range(_HALVINGS):
-        middle = 0.5 * (low + high)
-        below = function(middle) < 0.0
-        low, high = np.where(below, middle, low), np.where(below, high, middle)
-    return high
 
 
 def _integral(function: Function, start: np.ndarray, end: np.ndarray) -> np.ndarray:

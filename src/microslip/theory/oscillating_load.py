@@ -16,19 +16,15 @@ an indenter's pressure.Pressure.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
-from functools import partial
+from collections.abc import Iterator, Sequence
 from itertools import pairwise
 
 import numpy as np
 
-from microslip.theory.indenter_pressure import IndenterPressure
+from microslip.theory.hertz import IndenterPressure
+from microslip.theory.masing import clustered_rule, last_true
 
-_NODES, _WEIGHTS = np.polynomial.legendre.leggauss(64)
-_ANGLES = 0.25 * np.pi * (_NODES + 1.0)
-_NODES, _WEIGHTS = np.sin(_ANGLES) ** 2, 0.25 * np.pi * _WEIGHTS * np.sin(2.0 * _ANGLES)
-"""Quadrature on 0..1, clustered at both ends."""
-_HALVINGS = 60
+_NODES, _WEIGHTS = clustered_rule(64)
 _SAMPLES = 2001
 """Number of points in half a period at which the sign of phi' is computed."""
 
@@ -124,7 +120,7 @@ class _Motion:
         up = self._climbs(t) > 0.0
         up[-1] = False
         turns = np.flatnonzero(up[1:] != up[:-1])
-        at = _first_not(lambda s: (self._climbs(s) > 0.0) == up[turns], t[turns], t[turns + 1])
+        at = last_true(lambda s: (self._climbs(s) > 0.0) == up[turns], t[turns], t[turns + 1])
         if up[0]:
             at = np.concatenate([t[:1], at])
         return list(zip(at[::2].tolist(), at[1::2].tolist(), strict=True))
@@ -136,13 +132,12 @@ class _Motion:
         these minima."""
         for other, _ in later:
             if self.phi(np.array(low)) < self.phi(np.array(other)) < self.phi(np.array(high)):
-                level = self.phi(np.array([other]))
-                below = partial(self._is_below, level)
-                at = _first_not(below, np.array([low]), np.array([high]))
+                at = self.reached(self.phi(np.array([other])), np.array([low]), np.array([high]))
                 yield float(self.pressure.radius(self.depth(at))[0])
 
-    def _is_below(self, level: np.ndarray, t: np.ndarray) -> np.ndarray:
-        return self.phi(t) < level
+    def reached(self, level: np.ndarray, low: np.ndarray, high: np.ndarray) -> np.ndarray:
+        """Time between low and high at which the rising phi reaches a level."""
+        return last_true(lambda t: self.phi(t) < level, low, high)
 
     def lack(
         self, start: np.ndarray, high: float, later: Sequence[tuple[float, float]]
@@ -160,18 +155,6 @@ class _Motion:
             beyond = self.lack(np.array([other]), top, [o for o in later if o[0] > other])[0]
             lowest = np.where(falls_short, beyond, lowest)
             low, end = np.where(falls_short, high, low), np.where(falls_short, other, end)
-        end = _first_not(lambda t: self.phi(t) >= level, low, end)
+        end = last_true(lambda t: self.phi(t) >= level, low, end)
         t = start[:, None] + (end - start)[:, None] * _NODES
         return lowest + (end - start) * ((self.phi(t) - level[:, None]) @ _WEIGHTS)
-
-
-def _first_not(
-    holds: Callable[[np.ndarray], np.ndarray], low: np.ndarray, high: np.ndarray
-) -> np.ndarray:
-    """Point between low and high where a condition changes from true to false, shape (n,)."""
-    low, high = low.copy(), high.copy()
-    for _ in range(_HALVINGS):
-        middle = 0.5 * (low + high)
-        still = holds(middle)
-        low, high = np.where(still, middle, low), np.where(still, high, middle)
-    return 0.5 * (low + high)

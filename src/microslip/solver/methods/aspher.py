@@ -112,25 +112,19 @@ def _run(problem: Problem, model: str, resolution: Resolution, tolerance: float)
             change = abs(sum(means[-2:]) - sum(means[-4:-2])) / 2.0
             if not change > tolerance:
                 break
+    periods, reason = 0.5 * len(means), ""
+    if solver.failed:
+        reason = f"{solver.failed} of {solver.solves} steps failed"
+    elif not change <= tolerance:
+        reason = f"not periodic within {periods:g} periods: the mean still changed by {change:.1e}"
     return Run(
         {"friction": sum(means[-2:]) / 2.0},
         distance=change,
         residual=sum(residuals[-2:]),
-        periods=0.5 * len(means),
+        periods=periods,
         effort=Effort.of(solver.solves, solver.iterations, solver.unknowns),
-        reason=_reason(solver, 0.5 * len(means), change, tolerance),
+        reason=reason,
     )
-
-
-def _reason(solver: Solver, periods: float, change: float, tolerance: float) -> str:
-    reasons = []
-    if solver.failed:
-        reasons.append(f"{solver.failed} of {solver.solves} steps failed")
-    if not change <= tolerance:
-        reasons.append(
-            f"not periodic within {periods:g} periods: the mean still changed by {change:.1e}"
-        )
-    return "; ".join(reasons)
 
 
 METHOD = Method(
