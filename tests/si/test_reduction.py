@@ -1,6 +1,7 @@
 """Searches for the amplitude, the speed or the load with a prescribed reduction of friction."""
 
 import math
+import re
 
 import pytest
 from scipy.optimize import brentq
@@ -19,55 +20,69 @@ def root(result):
     return result.input_values[result.search]
 
 
-RIGID = {"amplitude": "1 mm", "load": "1 N", "frequency": "2 kHz"}
-"""A stroke of thousands of u_lim: the contact is a rigid slider."""
-
-
 @pytest.mark.parametrize("target", ["amplitude", "speed", "load"])
-@pytest.mark.parametrize("motion", ["transverse", pytest.param("bore", marks=pytest.mark.long)])
-def test_whichever_is_left_out_is_found_again(motion, target):
-    # For a bore two loads have the same reduction; the search returns the larger one.
-    settings = GIVEN | ({"amplitude": 0.01, "load": 200.0} if motion == "bore" else {})
-    there = microslip.predict(motion, **LATERAL, **settings)
+@pytest.mark.parametrize(
+    ("motion", "change", "shape"),
+    [
+        ("transverse", {}, {}),
+        # for a bore two loads have the same reduction; the search returns the larger one
+        pytest.param("bore", {"amplitude": 0.01, "load": 200.0}, {}, marks=pytest.mark.long),
+        pytest.param("transverse", {}, {"radius_across": "8 mm"}, marks=pytest.mark.long),
+        pytest.param(
+            "transverse", {}, {"radius": None, "contact_radius": "60 um"}, marks=pytest.mark.long
+        ),
+    ],
+)
+def test_a_search_is_the_inverse_of_a_prediction(motion, change, shape, target):
+    settings, contact = GIVEN | change, LATERAL | shape
+    there = microslip.predict(motion, **contact, **settings)
     rest = {name: value for name, value in settings.items() if name != target}
-    result = microslip.predict(motion, reduction=there.force_reduction, **LATERAL, **rest)
+    result = microslip.predict(motion, reduction=there.force_reduction, **contact, **rest)
     off = abs(root(result).value - settings[target])
-    assert result.search == target
+    assert result.search == target and target not in result.inputs
     assert off <= root(result).error < 0.05 * settings[target]
     assert result.force_reduction == pytest.approx(there.force_reduction, abs=1e-3)
 
 
-@pytest.mark.slow
-@pytest.mark.parametrize(
-    "shape",
-    [pytest.param({"radius_across": "8 mm"}, marks=pytest.mark.long), {"contact_radius": "60 um"}],
-)
-def test_a_load_is_found_of_other_contacts(shape):
-    """Hertz's ellipse grows with the load; a contact with a prescribed size does not."""
-    settings = LATERAL | GIVEN | shape
-    if "contact_radius" in shape:
-        del settings["radius"]
-    share = microslip.predict("transverse", **settings).force_reduction
-    result = microslip.predict("transverse", **settings | {"load": None, "reduction": share})
-    assert abs(result.load_N - GIVEN["load"]) <= root(result).error
-    assert "load" not in result.inputs
+def test_the_speed_of_a_rigid_slider_is_that_of_equation_6():
+    """Friction is the mean of v / sqrt(v^2 + c^2 cos^2), c = omega y0, at any load.
 
+    The stroke is thousands of u_lim.
+    """
+    rigid = LATERAL | {"amplitude": "1 mm", "load": "1 N", "frequency": "2 kHz"}
+    result = microslip.predict("transverse", **rigid, reduction="50 %")
 
-def test_of_a_rigid_slider_the_speed_is_that_of_equation_6():
-    """Friction is the mean of v / sqrt(v^2 + c^2 cos^2), c = omega y0, at any load."""
-    result = microslip.predict("transverse", **LATERAL | RIGID, reduction="50 %")
-    swing = 2.0 * math.pi * 2000.0 * 1e-3
-
-    def felt(x):
+    def friction(x):
         return 2.0 / math.pi * x / math.hypot(1.0, x) * ellipk(1.0 / (1.0 + x**2))
 
-    ratio = brentq(lambda x: felt(x) - 0.5, 1e-3, 1e3)
-    assert result.speed_m_s == pytest.approx(ratio * swing, abs=root(result).error)
+    ratio = brentq(lambda x: friction(x) - 0.5, 1e-3, 1e3)
+    speed = ratio * 2.0 * math.pi * 2000.0 * 1e-3
+    assert result.speed_m_s == pytest.approx(speed, abs=root(result).error)
     assert root(result).error < 0.01 * result.speed_m_s
 
 
 @pytest.mark.parametrize(
-    ("changed", "message"),
+    ("missing", "titles"),
+    [
+        ("amplitude", {"amplitude": 1.0}),
+        ("load", {"u_lim": 2.0 / 3.0, "contact radius": 1.0 / 3.0}),
+    ],
+)
+def test_values_that_follow_from_a_root_have_its_error(missing, titles):
+    rest = {name: value for name, value in GIVEN.items() if name != missing}
+    result = microslip.predict(
+        "transverse", reduction="40 %", **LATERAL | {"tolerance": 0.02}, **rest
+    )
+    lines = str(result).split("\n\n")[1].splitlines()
+    for title, power in titles.items():
+        line = next(one for one in lines if one.startswith(f"{title} "))
+        number, error = re.search(r"([\d.]+) \+- ([\d.e-]+)", line).groups()
+        share = power * root(result).error / root(result).value
+        assert float(error) / float(number) == pytest.approx(share, rel=0.15)
+
+
+@pytest.mark.parametrize(
+    ("change", "message"),
     [
         (
             {"amplitude": None, "speed": "100 m/s", "reduction": 0.9, "tolerance": 0.05},
@@ -77,24 +92,21 @@ def test_of_a_rigid_slider_the_speed_is_that_of_equation_6():
         ({"speed": None, "amplitude": "3 nm"}, "^reduction = '50 %': no speed reduces"),
         # The vibration has no effect on fast sliding.
         ({"load": None, "speed": "100 m/s"}, "^reduction = '50 %': no load of the search, down to"),
+        # A contact sticks over a stroke of half the radius only if it is as large as the ball.
+        (
+            {"load": None, "amplitude": "2.5 mm", "speed": 0, "reduction": "10 %"},
+            "it takes a load of .*Hertz",
+        ),
     ],
 )
-def test_what_cannot_be_looked_for_is_refused(changed, message):
-    request = LATERAL | GIVEN | {"reduction": "50 %"} | changed
+def test_a_reduction_out_of_range_is_refused(change, message):
+    request = LATERAL | GIVEN | {"reduction": "50 %"} | change
     with pytest.raises(InputError, match=message):
         microslip.predict("transverse", **request)
 
 
-def test_a_load_that_hertz_theory_does_not_know_is_refused():
-    """A contact sticks over a stroke of half the radius only if it is as large as the ball."""
-    ball = {"young": "210 GPa", "nu": 0, "radius": "5 mm", "mu": 0.3, "frequency": "20 kHz"}
-    request = ball | {"amplitude": "2.5 mm", "speed": "0 m/s", "reduction": "10 %"}
-    with pytest.raises(InputError, match="^reduction = '10 %': it takes a load of .*Hertz"):
-        microslip.predict("transverse", **request)
-
-
 @pytest.mark.long
-def test_the_largest_amplitude_is_tried():
+def test_the_largest_amplitude_of_the_search_is_tried():
     settings = LATERAL | {"load": "10 N", "speed": "1 m/s"}
     result = microslip.predict("transverse", **settings, reduction="98.75 %")
     assert result.force_reduction == pytest.approx(0.9875, abs=3e-3)

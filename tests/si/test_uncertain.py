@@ -1,4 +1,4 @@
-"""Standard uncertainties of predictions, against closed forms and a Monte Carlo."""
+"""Uncertain inputs: spreads, intervals and outcomes, against closed forms and Monte Carlo."""
 
 import math
 
@@ -6,50 +6,279 @@ import numpy as np
 import pytest
 
 import microslip
+from microslip.theory import paper
 
-BALL = {"material": "steel", "counterbody": "steel", "radius": "5 mm", "load": "10 N", "mu": 0.3}
-SPIN = BALL | {"speed": "1 mm/s", "rotation": "10 rad/s"}
+STEEL = {"young": "210 GPa", "nu": 0.0}
+JOINT = STEEL | {"radius": "200 mm", "load": "1 kN", "mu": 0.15, "frequency": "50 Hz"}
+JOINT |= {"tolerance": 0.01}
+SHAKEN = JOINT | {"amplitude": "0.25 um", "force": "90 N"}
+BALL = STEEL | {"radius": "5 mm", "load": "10 N", "mu": 0.3, "frequency": "20 kHz"}
+BORE = BALL | {"amplitude": "0.5 deg", "speed": "1 mm/s", "frequency": "50 Hz"}
+SPIN = BALL | {"frequency": None, "speed": "1 mm/s", "rotation": "10 rad/s"}
+PAIR = STEEL | {"counterbody": "210 GPa, 0", "radius": "20 mm", "load": "200 N", "mu": 0.2}
+PAIR |= {"frequency": "60 Hz"}
+U_LIM_OF_PAIR = 0.2 * (0.75 * 200.0 * 0.02 / 105e9) ** (2.0 / 3.0) / 0.02
+"""u_lim = mu a^2 / R, with a^3 = 3 F R / (4 E*)."""
+END = 1.959964
+"""Quantile of a standard normal distribution at 97.5 %."""
+
+
+def static_limit(size):
+    """The static limit of a transverse vibration, interpolated in its closed form."""
+    grid = np.linspace(0.0, 1.0, 401)
+    return np.interp(size, grid, [float(paper.static_limit_transverse(one)) for one in grid])
+
+
+def monte_carlo(mu, load, amplitude, force):
+    """Fractions of draws that stay, move and run away, and their thresholds, in closed form.
+
+    The counterbody is rigid and nu = 0, so a^3 = 3 F R / (4 E) and u_lim = mu d.
+    """
+    radius, draw = 0.2, np.random.default_rng(7).standard_normal((4, 20_000))
+    mu, load, amplitude, force = (
+        value + deviation * one
+        for (value, deviation), one in zip((mu, load, amplitude, force), draw, strict=True)
+    )
+    mu, load = np.maximum(mu, 1e-9), np.maximum(load, 1e-9)
+    u_lim = mu * (0.75 * load * radius / 210e9) ** (2.0 / 3.0) / radius
+    threshold = mu * load * static_limit(np.abs(amplitude) / u_lim)
+    stays, away = force < threshold, force >= mu * load
+    return np.mean(stays), np.mean(~stays & ~away), np.mean(away), threshold
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    ("settings", "drawn"),
+    [
+        ({"mu": "0.15 +- 0.05"}, {"mu": (0.15, 0.05)}),
+        ({"force": "90 N +- 5 %"}, {"force": (90.0, 4.5)}),
+        ({"amplitude": "0.25 um +- 0.05 um"}, {"amplitude": (0.25e-6, 0.05e-6)}),
+        (
+            {"mu": "0.15 +- 0.01", "load": "1 kN +- 5 %", "force": "80 N +- 10 N"},
+            {"mu": (0.15, 0.01), "load": (1e3, 50.0), "force": (80.0, 10.0)},
+        ),
+    ],
+    ids=lambda one: "-".join(one),
+)
+def test_outcomes_and_intervals_are_those_of_a_monte_carlo(settings, drawn):
+    """The probabilities of 20 000 draws have statistical errors below 0.004."""
+    result = microslip.predict("transverse", **SHAKEN | settings)
+    exact = {"mu": (0.15, 0.0), "load": (1e3, 0.0), "amplitude": (0.25e-6, 0.0), "force": (90.0, 0)}
+    *shares, threshold = monte_carlo(**exact | drawn)
+    several = (result.probability_stays, result.probability_moves, result.probability_runs_away)
+    error = 0.012 + max(result.probability_stays_error, result.probability_moves_error)
+    assert several == pytest.approx(shares, abs=error)
+    assert sum(several) == pytest.approx(1.0)
+    low, high = np.quantile(threshold, (0.025, 0.975))
+    assert result.force_threshold_low_N == pytest.approx(low, abs=2.0)
+    assert result.force_threshold_high_N == pytest.approx(high, abs=2.0)
+    assert result.force_threshold_spread_N == pytest.approx(threshold.std(), rel=0.04, abs=0.3)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("deviation", [0.395, 0.42])
+def test_an_amplitude_that_may_be_almost_zero_has_an_exact_interval(deviation):
+    """The threshold decreases with the amplitude, so their quantiles correspond.
+
+    A negative amplitude counts as 0, where the threshold is mu F_z.
+    """
+    settings = PAIR | {"force": "20 N", "amplitude": f"0.8 um +- {deviation} um"}
+    result = microslip.predict("transverse", **settings)
+    least = max(0.0, 0.8e-6 - END * deviation * 1e-6) / U_LIM_OF_PAIR
+    exact = 40.0 * float(paper.static_limit_transverse(least))
+    assert result.force_threshold_high_N == pytest.approx(exact, abs=5e-3)
+    assert result.safety_factor_high == pytest.approx(exact / 20.0, abs=2.5e-4)
+    draws = np.maximum(0.8 + deviation * np.random.default_rng(3).standard_normal(200_000), 0.0)
+    threshold = 40.0 * static_limit(draws * 1e-6 / U_LIM_OF_PAIR)
+    assert result.force_threshold_spread_N == pytest.approx(threshold.std(), rel=0.02)
+    assert result.probability_stays == pytest.approx(np.mean(threshold > 20.0), abs=5e-3)
+
+
+@pytest.mark.slow
+def test_an_unlikely_outcome_has_a_bound_of_its_probability():
+    """The contact stays only at an amplitude 4 standard deviations below its centre."""
+    settings = PAIR | {"force": "38 N", "amplitude": "0.3 um +- 0.05 um"}
+    result = microslip.predict("transverse", **settings)
+    draws = 0.3 + 0.05 * np.random.default_rng(5).standard_normal(1_000_000)
+    share = np.mean(40.0 * static_limit(draws * 1e-6 / U_LIM_OF_PAIR) > 38.0)
+    assert 0.0 < share < 1e-4
+    assert abs(result.probability_stays - share) <= result.probability_stays_error < 1e-3
+
+
+@pytest.mark.parametrize(
+    ("motion", "settings", "name", "values"),
+    [
+        # nu is at most 0.5: the draws above, up to its upper quantile of 0.59, count as 0.5
+        ("bore", BORE | {"nu": "0.3 +- 0.15"}, "nu", (0.3 - END * 0.15, 0.5)),
+        ("bore", BORE | {"load": "10 N +- 10 %"}, "load", (10.0 - END, 10.0 + END)),
+        pytest.param(
+            "transverse-bore",
+            BALL
+            | {"amplitude": "0.1 um +- 5 %", "rotation_amplitude": "0.05 deg"}
+            | {"speed": "10 mm/s", "phase": "90 deg", "tolerance": 0.05},
+            "amplitude",
+            (0.1e-6 * (1 + 0.05 * END), 0.1e-6 * (1 - 0.05 * END)),
+            marks=pytest.mark.long,
+        ),
+    ],
+)
+def test_the_ends_of_an_interval_are_the_values_at_the_quantiles_of_one_input(
+    motion, settings, name, values
+):
+    """The static limit is monotonic in the input."""
+    result = microslip.predict(motion, **settings)
+    ends = [microslip.predict(motion, **settings | {name: one}).mu_static for one in values]
+    assert [result.mu_static_low, result.mu_static_high] == pytest.approx(ends, rel=2e-3)
+    assert result.probability_stays is None
+
+
+def test_without_uncertain_inputs_there_is_no_probability():
+    result = microslip.predict("transverse", **SHAKEN)
+    assert result.probability_stays is None and result.force_threshold_spread_N is None
+    assert math.isfinite(result.safety_factor_error)
+    assert "probability" not in str(result)
+
+
+def test_a_contact_that_may_run_away_has_an_infinite_spread_of_its_speed():
+    """Friction of 3 N +- 0.2 N is below the force of 2.9 N at one standard deviation."""
+    settings = BALL | {"mu": "0.3 +- 0.02", "amplitude": 0.0, "force": "2.9 N"}
+    result = microslip.predict("transverse", **settings)
+    assert math.isinf(result.speed_spread_m_s) and "nan" not in str(result)
+    assert result.probability_stays == pytest.approx(0.6915, abs=1e-3)  # 0.5 deviations above
+
+
+@pytest.mark.filterwarnings("error")
+def test_a_steady_spin_gives_way_to_any_force_that_is_drawn():
+    settings = SPIN | {"speed": None, "force": "1 N +- 0.9 N"}
+    result, again = (microslip.predict("continuous-bore", **settings) for _ in range(2))
+    assert (result.probability_stays, result.safety_factor_high) == (0.0, 0.0)
+    assert result.probability_runs_away == pytest.approx(0.0131, abs=1e-3)  # 2 / 0.9 deviations
+    assert result.to_dict() == again.to_dict()  # equal inputs have equal draws
+
+
+def test_a_force_that_may_vanish_has_an_unbounded_safety_factor():
+    """Of the forces 0.5 N +- 0.49 N, 15 % are negative and count as 0.
+
+    The upper quantile of the force gives the lower end of the safety factor.
+    """
+    result = microslip.predict("transverse", **BALL, amplitude=0.0, force="0.5 N +- 0.49 N")
+    low, high = result.safety_factor_low, result.safety_factor_high
+    assert low == pytest.approx(3.0 / (0.5 + END * 0.49), rel=1e-3)
+    assert high == math.inf and "to inf" in str(result)
+
+
+@pytest.mark.slow
+def test_a_contact_that_stays_at_the_centre_may_move():
+    """The force is 1.5 standard deviations below the threshold; 6.68 % of the draws are above."""
+    settings = JOINT | {"amplitude": "0.25 um"}
+    threshold = microslip.predict("transverse", **settings, speed=0.0).force_threshold_N
+    result = microslip.predict("transverse", **settings, force=f"{threshold - 3.0!r} N +- 2 N")
+    assert result.outcome == "stays" and result.speed_spread_m_s > 0.0
+    assert result.probability_moves == pytest.approx(0.0668, abs=2e-3)
 
 
 def test_a_spread_of_mu_alone_is_a_share_of_the_force():
     """The friction of a steady spin is independent of u_lim and proportional to mu."""
     result = microslip.predict("continuous-bore", **SPIN | {"mu": "0.3 +- 0.03"})
-    assert result.friction_force_spread_N == pytest.approx(0.1 * result.friction_force_N, rel=1e-3)
-    assert result.mu_apparent_spread == pytest.approx(0.1 * result.mu_apparent, rel=1e-3)
-    assert result.mu_macro_spread == pytest.approx(0.0, abs=1e-12)
+    assert result.friction_force_spread_N == pytest.approx(0.1 * result.friction_force_N, rel=1e-9)
+    assert result.mu_apparent_spread == pytest.approx(0.1 * result.mu_apparent, rel=1e-9)
+    assert result.mu_macro_spread == 0.0
     assert result.inputs["mu"] == "0.3 +- 0.03"
 
 
-def test_spreads_of_several_quantities_are_those_of_a_monte_carlo():
-    """10^5 draws of the closed form (Eq 21, v~ <= 1) have a statistical error of 1 %."""
-    request = BALL | {"speed": "0.2 mm/s", "rotation": "10 rad/s", "load": "10 N +- 5 %"}
-    request |= {"mu": "0.3 +- 0.01", "radius": "5 mm ± 0.5 mm"}
+def test_all_outputs_of_a_spin_have_the_spread_of_a_monte_carlo():
+    """10^5 draws of the closed forms (Eqs 21 and 22, v~ <= 1) have a statistical error of 1 %."""
+    request = SPIN | {"mu": "0.3 +- 0.03", "speed": "0.2 mm/s +- 10 %"}
+    request |= {"rotation": "10 rad/s +- 5 %", "load": "10 N +- 5 %", "radius": "5 mm +- 10 %"}
+    request |= {"wear_coefficient": "1e-14 m^2/N +- 20 %"}
     result = microslip.predict("continuous-bore", **request)
-    draw = np.random.default_rng(0).standard_normal((3, 100_000))
-    mu, load, radius = 0.3 + 0.01 * draw[0], 10.0 + 0.5 * draw[1], 5e-3 + 0.5e-3 * draw[2]
-    a = (0.75 * load * radius / (210e9 / (2.0 * 0.91))) ** (1.0 / 3.0)
-    v = 0.2e-3 / (10.0 * a)
+    draw = np.random.default_rng(0).standard_normal((6, 100_000))
+    mu, load, radius = 0.3 + 0.03 * draw[0], 10.0 + 0.5 * draw[1], 5e-3 * (1.0 + 0.1 * draw[2])
+    speed, turn = 0.2e-3 * (1.0 + 0.1 * draw[3]), 10.0 * (1.0 + 0.05 * draw[4])
+    a = (0.75 * load * radius / 210e9) ** (1.0 / 3.0)
+    v = speed / (turn * a)
     assert v.max() < 1.0
-    drawn = mu * load * 3.0 * math.pi / 8.0 * (v - v**3 / 4.0)
-    assert result.friction_force_spread_N == pytest.approx(drawn.std(), rel=0.03)
-    assert result.friction_force_N == pytest.approx(drawn.mean(), rel=5e-3)
+    force = mu * load * 3.0 * math.pi / 8.0 * (v - v**3 / 4.0)
+    torque = 3.0 * math.pi / 16.0 * mu * load * a * (1.0 - v**2 + 0.375 * v**4)
+    energy = (force * speed + torque * turn) * 2.0 * math.pi / turn
+    drawn = {"friction_force": force, "torque": torque, "energy_per_cycle": energy}
+    drawn |= {"drag_power": force * speed, "vibration_power": torque * turn}
+    drawn |= {"wear_volume_per_cycle": 1e-14 * (1.0 + 0.2 * draw[5]) / mu * energy}
+    for name, values in drawn.items():
+        one = result.values[name]
+        assert one.spread == pytest.approx(values.std(), rel=0.03), name
+        ends = np.quantile(values, (0.025, 0.975))
+        assert [one.low, one.high] == pytest.approx(ends, rel=0.02, abs=0.02 * values.std()), name
 
+
+@pytest.mark.parametrize(
+    ("name", "text"), [("nu", "0.49 +- 0.02"), ("mu", "0.1 +- 0.1"), ("mu", "9 +- 5")]
+)
+def test_draws_outside_a_range_count_as_its_end(name, text):
+    """The draws of nu end at 0.5, those of mu at 0 and at 10."""
+    result = microslip.predict("continuous-bore", **SPIN | {name: text})
+    low, high = getattr(result, f"{name}_low"), getattr(result, f"{name}_high")
+    centre, deviation = (float(one) for one in text.split("+-"))
+    ends = [centre - END * deviation, centre + END * deviation]
+    limits = {"nu": (0.0, 0.5), "mu": (0.0, 10.0)}[name]
+    assert [low, high] == pytest.approx(np.clip(ends, *limits), abs=1e-3 * centre)
+    assert math.isfinite(result.friction_force_spread_N)
+
+
+# Two groups
+
+
+@pytest.mark.long
+@pytest.mark.parametrize(
+    ("settings", "drawn", "name"),
+    [
+        (
+            {"speed": "1 mm/s", "mu": 0.3},
+            {"load": (10.0, 1.0), "amplitude": (6e-3, 1.2e-3)},
+            "mu_macro",
+        ),
+        (
+            {"force": "1.2 N", "load": "10 N"},
+            {"mu": (0.3, 0.03), "amplitude": (12e-3, 2.4e-3)},
+            "speed",
+        ),
+    ],
+)
+def test_two_uncertain_inputs_of_a_bore_have_the_spread_of_direct_solves(settings, drawn, name):
+    """The standard deviation of 60 solves has a statistical error of about 9 %."""
+    bore = {"material": "steel", "counterbody": "steel", "radius": "5 mm", "frequency": "20 kHz"}
+    bore |= {"tolerance": 0.01} | settings
+    units = {"load": " N", "amplitude": " rad", "mu": ""}
+    texts = {key: f"{x}{units[key]} +- {s}{units[key]}" for key, (x, s) in drawn.items()}
+    one = microslip.predict("bore", **bore | texts).values[name]
+    values = []
+    for draw in np.random.default_rng(11).standard_normal((60, 2)):
+        sizes = {key: x + s * z for (key, (x, s)), z in zip(drawn.items(), draw, strict=True)}
+        values.append(microslip.predict("bore", **bore | sizes).values[name].value)
+    samples = np.random.default_rng(0).choice(values, (500, 60)).std(axis=1)
+    assert abs(one.spread - np.std(values)) <= 2.5 * samples.std()
+
+
+# Searches
 
 SLIDER = {"material": "steel", "radius": "5 mm", "mu": 0.3, "frequency": "2 kHz"}
 
 
 @pytest.mark.long
-def test_what_is_found_is_known_as_well_as_what_was_given():
+def test_the_result_of_a_search_has_the_relative_spread_of_the_input():
     """The friction of a rigid slider depends on the speed divided by the amplitude only."""
     request = SLIDER | {"load": "1 N", "speed": "1 m/s +- 5 %", "reduction": "50 %"}
     result = microslip.predict("transverse", **request)
-    assert result.amplitude_spread_m == pytest.approx(0.05 * result.amplitude_m, rel=1e-2)
+    size = result.amplitude_m
+    assert result.amplitude_spread_m == pytest.approx(0.05 * size, rel=1e-2)
+    ends = [size * (1.0 - 0.05 * END), size * (1.0 + 0.05 * END)]
+    assert [result.amplitude_low_m, result.amplitude_high_m] == pytest.approx(ends, rel=2e-3)
     assert result.mu_macro_spread == pytest.approx(0.0, abs=1e-3)
 
 
 @pytest.mark.long
-def test_where_an_end_has_no_answer_the_spread_is_endless():
-    """One end of the uncertain speed has no solution, so the uncertainty is infinite.
+def test_where_an_end_has_no_answer_the_spread_is_infinite():
+    """One end of the uncertain speed has no solution.
 
     Under a very small load the contact is a rigid slider.  By Eq 6 its friction falls by 22 % at
     0.8 times the velocity of the vibration, but by 18 % at 0.96 times.

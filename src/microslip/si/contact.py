@@ -20,7 +20,7 @@ from microslip.motions.motion import Motion
 from microslip.pressures.by_name import pressure_named
 from microslip.pressures.ellipse import SMALLEST_RATIO
 from microslip.pressures.pressure import Pressure
-from microslip.si.inputs import AT_REST, MOTIONS, OSCILLATIONS, Inputs
+from microslip.si.inputs import AT_REST, OSCILLATIONS, Inputs
 from microslip.theory import hertz
 
 LARGEST_RATIO = 0.5
@@ -73,21 +73,19 @@ class Contact:
 
     def __init__(self, inputs: Inputs):
         self.inputs, self.kind, self.bodies = inputs, inputs.kind, inputs.bodies
-        self.mu, self.load = inputs.mu, inputs.load
+        self.mu, self.load, self.steady = inputs.mu, inputs.load, inputs.kind.steady
         self.E_star = 1.0 / sum((1.0 - one.poisson**2) / one.young for one in self.bodies)
         compliances = [1.0 / one.shear_modulus for one in self.bodies]
         self.G = 1.0 / sum(compliances)
-        self.poisson = sum(
-            one.poisson * (c / sum(compliances))
-            for one, c in zip(self.bodies, compliances, strict=True)
-        )
+        shares = [one / sum(compliances) for one in compliances]
+        self.poisson = sum(b.poisson * x for b, x in zip(self.bodies, shares, strict=True))
         self.G_star = 4.0 * self.G / (2.0 - self.poisson)
         self.radii: tuple = ()
         self.ratio: Any = 1.0
-        sphere = 0.75 * self.load / self.E_star
+        sphere, indents = 0.75 * self.load / self.E_star, True
         if inputs.contact_radius is not None:
-            a = inputs.contact_radius
-            self.radius, shape = a**3 / sphere, self.shape
+            a, shape = inputs.contact_radius, self.shape
+            self.radius, indents = a**3 / sphere, shape.is_indenter or shape.hertzian
             stiffness, largest, area = shape.G_star, shape.largest, shape.area
         else:
             self.radii = tuple(r for r in (inputs.radius, inputs.counter_radius) if r is not None)
@@ -103,10 +101,8 @@ class Contact:
             stiffness, largest, area = _hertz_ellipse(self.ratio)
         self.contact_radius = a
         self.u_lim = self.mu * self.load * stiffness / (self.G_star * a)
-        indents = bool(self.radii) or self.shape.is_indenter or self.shape.hertzian
-        self.indentation = (
-            self.u_lim * self.G_star / (self.mu * self.E_star) if indents else math.nan
-        )
+        depth = self.u_lim * self.G_star / (self.mu * self.E_star)
+        self.indentation = depth if indents else math.nan
         self.largest_pressure = largest * (self.load / a**2)
         self.area = area * a**2
 
@@ -114,7 +110,7 @@ class Contact:
     def pressure(self) -> str:
         """Name of the pressure for microslip.solve."""
         if not self.radii:
-            return pressure_named(self.inputs.pressure).name
+            return pressure_named(self.inputs.pressure or "hertz").name
         if np.all(self.ratio == 1.0):
             return "hertz"
         across = int(self.inputs.radius_across > self.radius)
@@ -142,11 +138,6 @@ class Contact:
         return 0.5 * (first - second) / both
 
     # Motion and drive
-
-    @property
-    def steady(self) -> bool:
-        """Whether nothing oscillates."""
-        return self.kind.steady
 
     @property
     def omega(self) -> Any:
@@ -198,13 +189,9 @@ class Contact:
         """Forward speed at which the dimensionless velocity is 1, m/s."""
         if self.steady:
             return self.omega * self.contact_radius
-        if self.kind.name == "bore":
+        if not self.kind.several and motion_named(self.kind.name).edge_velocity:
             return self.omega * self.inputs.amplitude * self.contact_radius
-        unit = self.omega * self.u_lim
-        if self.kind.name in MOTIONS or self.kind.stroke is not None:
-            return unit
-        drift = np.vectorize(motion_named(self.kind.name).drift, otypes=[float])
-        return unit * drift(1.0, self.amplitude, self.poisson)
+        return self.omega * self.u_lim
 
     @property
     def velocity(self) -> float:
@@ -241,15 +228,17 @@ class Contact:
         mu F_z / (u_lim omega^2), and the damping by mu F_z / (u_lim omega).  F_z is the load
         without oscillation; mean_load: mean load divided by F_z.
         """
-        stiffness = self.mu * self.load / self.u_lim
-        units = {
-            "force": self.mu * self.load * mean_load,
-            "drive_stiffness": stiffness,
-            "mass": stiffness / self.omega**2,
-            "damping": stiffness / self.omega,
-        }
-        values = {name: getattr(self.inputs, name) for name in DRIVES}
-        return {DRIVES[n]: one / units[n] for n, one in values.items() if one is not None}
+        inputs, compliance = self.inputs, self.u_lim / (self.mu * self.load)
+        groups = {}
+        if inputs.force is not None:
+            groups["force"] = inputs.force / (self.mu * self.load * mean_load)
+        if inputs.drive_stiffness is not None:
+            groups["stiffness"] = inputs.drive_stiffness * compliance
+        if inputs.mass is not None:
+            groups["mass"] = inputs.mass * self.omega * self.omega * compliance
+        if inputs.damping is not None:
+            groups["damping"] = inputs.damping * self.omega * compliance
+        return groups
 
     @property
     def coordinates(self) -> dict[str, Any]:
@@ -273,30 +262,27 @@ class Contact:
 
     def check(self) -> None:
         """Raise InputError for a contact outside Hertz's theory or the range of the solver."""
-        inputs = self.inputs
-        sizes = (self.contact_radius, self.u_lim, self.load / self.contact_radius**2)
+        inputs, a = self.inputs, self.contact_radius
+        finite = all(0.0 < one < math.inf for one in (a, self.u_lim, self.load / a**2))
         if not self.radii:
-            if not (all(0.0 < one < math.inf for one in sizes) and self.largest_pressure > 0.0):
+            if not (finite and self.largest_pressure > 0.0):
                 raise inputs.error("contact_radius", OUT_OF_RANGE)
         else:
-            self._check_radii(all(0.0 < one < math.inf for one in sizes))
+            self._check_radii(finite and 0.0 < self.indentation < math.inf)
         if inputs.search is None and inputs.kind is not AT_REST:
             self._check_groups()
 
     def _check_radii(self, finite: bool) -> None:
-        inputs, a = self.inputs, self.contact_radius
+        inputs, a, smallest = self.inputs, self.contact_radius, self.smallest_radius
         second = "radius_across" if inputs.radius_across is not None else "counter_radius"
-        if not (1.0 / self.radius > 0.0 and 0.0 < self.radius < math.inf):
-            allowed = OUT_OF_RANGE
-            if 1.0 / self.radius <= 0.0:
-                allowed = "allowed is a hollow with a larger radius than the sphere"
-            raise inputs.error(
-                "counter_radius" if inputs.counter_radius is not None else "radius", allowed
-            )
+        own = "counter_radius" if inputs.counter_radius is not None else "radius"
+        if 1.0 / self.radius <= 0.0:
+            raise inputs.error(own, "allowed is a hollow with a larger radius than the sphere")
+        if not 0.0 < self.radius < math.inf:
+            raise inputs.error(own, OUT_OF_RANGE)
         if self.ratio < SMALLEST_RATIO:
             problem = f"the contact would be an ellipse of ratio {self.ratio:.2g}"
             raise inputs.error("radius_across", f"{problem}; allowed is {SMALLEST_RATIO:g} or more")
-        smallest = self.smallest_radius
         if a >= LARGEST_RATIO * smallest:
             raise inputs.error(
                 "radius" if smallest == abs(self.radii[0]) else second,
@@ -304,35 +290,36 @@ class Contact:
                 f"contact radius would be {a:.3g} m, {a / smallest:.2g} of this radius; allowed is "
                 f"less than {LARGEST_RATIO:g}",
             )
-        if not finite or not 0.0 < self.indentation < math.inf:
-            load = inputs.texts.get("load", f"{self.load:.6g} N")
-            raise InputError("load", load, f"with these bodies and radii, {OUT_OF_RANGE}")
+        if not finite:
+            raise _load_error(inputs)
 
     def _check_groups(self) -> None:
-        inputs, most = self.inputs, LARGEST["amplitude"]
-        if inputs.speed is not None and not math.isfinite(self.velocity):
-            allowed = "divided by that of the vibration it is beyond the range of floating-point "
-            raise inputs.error("speed", f"{allowed}numbers; allowed are sizes of real machines")
-        if self.kind.several and self.kind.stroke is None and not any(self.amplitudes.values()):
+        inputs, most, own = self.inputs, LARGEST["amplitude"], self.kind.stroke is None
+        groups = {n: self.drive().get(group, 0.0) for n, group in DRIVES.items()}
+        groups |= {} if inputs.speed is None else {"speed": self.velocity}
+        if self.kind.several and own and not any(self.amplitudes.values()):
             allowed = "allowed is a value above 0 if no other amplitude is above 0"
             raise inputs.error(self.kind.needed[0], allowed)
-        if self.amplitudes.get("load", 0.0) > most and self.kind.stroke is None:
+        if own and self.amplitudes.get("load", 0.0) > most:
             raise inputs.error("load_amplitude", f"allowed is at most {most:g} times the load")
         if not self.steady and not self.amplitude <= most:
-            unit = "the angle at which the stick radius is half the contact radius"
-            if self.kind.unit != "rad":
-                unit = f"the {self.u_lim:.3g} m at which the whole contact slides"
+            unit = f"the {self.u_lim:.3g} m at which the whole contact slides"
+            if self.kind.unit == "rad":
+                unit = "the angle at which the stick radius is half the contact radius"
             allowed = f"{self.amplitude:.3g} times {unit}; allowed is at most {most:g} times"
             raise inputs.error("amplitude", allowed)
-        groups = self.drive()
-        for name, group in DRIVES.items():
-            if group in groups and not math.isfinite(groups[group]):
-                allowed = "divided by that of the contact it is beyond the range of floating-point "
-                raise inputs.error(name, f"{allowed}numbers; allowed are sizes of real machines")
+        for name, group in groups.items():
+            if not math.isfinite(group):
+                raise inputs.error(name, f"divided by that of the contact it is {OUT_OF_RANGE}")
         spring = inputs.drive_stiffness is not None and inputs.speed == 0.0
         if spring and self.kind.name == "longitudinal":
             allowed = "allowed is a speed above 0 for a longitudinal motion with a spring"
             raise inputs.error("speed", allowed)
+
+
+def _load_error(inputs: Inputs) -> InputError:
+    load = inputs.texts.get("load", f"{inputs.load:.6g} N")
+    return InputError("load", load, f"with these bodies and radii, {OUT_OF_RANGE}")
 
 
 def contact_of(inputs: Inputs) -> Contact:
@@ -346,11 +333,11 @@ def contact_of(inputs: Inputs) -> Contact:
     except (ArithmeticError, ValueError) as error:
         if isinstance(error, InputError):
             raise
-        if inputs.contact_radius is not None or math.isinf(1.0 / inputs.radius):
-            name = "radius" if inputs.contact_radius is None else "contact_radius"
-            raise inputs.error(name, OUT_OF_RANGE) from None
-        load = inputs.texts.get("load", f"{inputs.load:.6g} N")
-        raise InputError("load", load, f"with these bodies and radii, {OUT_OF_RANGE}") from None
+        if inputs.contact_radius is not None:
+            raise inputs.error("contact_radius", OUT_OF_RANGE) from None
+        if math.isinf(1.0 / inputs.radius):
+            raise inputs.error("radius", OUT_OF_RANGE) from None
+        raise _load_error(inputs) from None
     return contact
 
 

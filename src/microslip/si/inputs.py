@@ -6,17 +6,14 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
-from functools import cached_property, partial
+from functools import partial
 from typing import TYPE_CHECKING, Any, NamedTuple
-
-import numpy as np
 
 from microslip.foundation.arguments import SMALLEST_TOLERANCE
 from microslip.foundation.errors import InputError
-from microslip.foundation.named_files import speaks_of_file
 from microslip.foundation.spec import near_miss
 from microslip.foundation.units import Quantity, read
-from microslip.si.materials import RIGID, Material, material_named, read_hardness
+from microslip.si.materials import Material, read_body, read_hardness
 
 if TYPE_CHECKING:
     from microslip.si.strokes import Stroke
@@ -133,8 +130,6 @@ class Kind:
         SI unit of the amplitude, if it is the only one; empty for the factor of a file.
     needed, optional : tuple of str
         Required and optional inputs of the motion.
-    along : bool
-        Whether the sphere may oscillate along the drive, or the load oscillates.
     stroke : Stroke or None
         One period of the motion, if it is read from a file.
     """
@@ -144,7 +139,6 @@ class Kind:
     unit: str | None = None
     needed: tuple[str, ...] = ("amplitude", "frequency")
     optional: tuple[str, ...] = ()
-    along: bool = False
     stroke: Stroke | None = field(default=None, repr=False)
 
     @property
@@ -162,53 +156,29 @@ class Kind:
         return "m" if self.unit is None else self.unit
 
 
-MOTIONS = {
-    kind.name: kind
-    for kind in (
-        Kind("transverse", "slides forward and oscillates sideways", "m"),
-        Kind(
-            "longitudinal",
-            "slides forward and oscillates along the same direction",
-            "m",
-            along=True,
-        ),
-        Kind(
-            "zigzag",
-            "slides forward and moves sideways at constant speed, with abrupt turns",
-            "m",
-        ),
-        Kind(
-            "bore",
-            "slides forward and oscillates in spin, which is rotation about the contact normal",
-            "rad",
-        ),
-        Kind(
-            "elliptic",
-            "slides forward and oscillates along the same direction and sideways",
-            needed=("amplitude", "forward_amplitude", "frequency"),
-            optional=("phase",),
-            along=True,
-        ),
-        Kind(
-            "transverse-bore",
-            "slides forward and oscillates sideways and in spin",
-            needed=("amplitude", "rotation_amplitude", "frequency"),
-            optional=("phase",),
-        ),
-        Kind(
-            "normal",
-            "slides forward while its normal load oscillates, alone or with a motion",
-            needed=("load_amplitude", "frequency"),
-            optional=(*OSCILLATIONS, "phase"),
-            along=True,
-        ),
-        Kind(
-            "continuous-bore",
-            "slides forward and spins steadily about the contact normal",
-            needed=("rotation",),
-        ),
-    )
-}
+def _kinds(text: str) -> dict[str, Kind]:
+    """Kinds by name.  text: lines of name, unit, needed and optional inputs, and description."""
+    rows = (map(str.strip, line.split("|")) for line in text.strip().splitlines())
+    return {
+        name: Kind(
+            name, f"slides forward {does}", unit or None, tuple(needs.split()), tuple(more.split())
+        )
+        for name, unit, needs, more, does in rows
+    }
+
+
+MOTIONS = _kinds("""
+transverse  | m | amplitude frequency | | and oscillates sideways
+longitudinal| m | amplitude frequency | | and oscillates along the same direction
+zigzag      | m | amplitude frequency | | and moves sideways at constant speed, with abrupt turns
+bore        |rad| amplitude frequency | | and oscillates in spin, rotation about the contact normal
+elliptic       || amplitude forward_amplitude frequency|phase| and oscillates along it and sideways
+transverse-bore|| amplitude rotation_amplitude frequency|phase| and oscillates sideways and in spin
+normal         || load_amplitude frequency \
+  | amplitude forward_amplitude rotation_amplitude phase \
+  | while its normal load oscillates, alone or with a motion
+continuous-bore|| rotation            | | and spins steadily about the contact normal
+""")
 """Motions with inputs of their own.  All other motions have one amplitude or a rotation."""
 AT_REST = Kind("", "rests", needed=())
 """A contact without a motion."""
@@ -219,39 +189,38 @@ def kind_of(motion: Any) -> Kind:
     period in SI units.  Raises InputError unless its amplitude has a unit."""
     if isinstance(motion, str) and motion in MOTIONS:
         return MOTIONS[motion]
-    if speaks_of_file(motion):
+    if isinstance(motion, str) and motion.startswith("file:"):
         from microslip.si.strokes import read_stroke
 
         stroke = read_stroke(motion)
-        rows, names = len(next(iter(stroke.columns.values()))), list(stroke.columns)
-        text = f"slides forward and follows {rows} samples of its {' and '.join(names)}"
-        along = not {"forward", "load", "indentation"}.isdisjoint(names)
+        rows, names = len(next(iter(stroke.columns.values()))), " and ".join(stroke.columns)
+        text = f"slides forward and follows {rows} samples of its {names}"
         needed = () if stroke.frequency else ("frequency",)
-        optional = ("amplitude", "frequency")
-        return Kind(stroke.name, text, "", needed, optional, along, stroke)
+        return Kind(stroke.name, text, "", needed, ("amplitude", "frequency"), stroke)
+    import numpy as np
+
     from microslip.motions.by_name import motion_named
     from microslip.motions.motion import LOOP
     from microslip.theory import hertz
 
-    record = motion_named(motion)
-    if record.loads:
-        allowed = "allowed is normal with a load_amplitude for an oscillating load"
-        raise InputError("motion", motion, allowed)
-    if not record.periodic:
+    record, allowed = motion_named(motion), ""
+    if not (record.loads or record.periodic):
         return Kind(motion, f"is {record.summary}", needed=("rotation",))
     ahead, aside, angle = record.displacement(LOOP, 0.0, 1.0, 0.0)
     turn = float(np.abs(angle).max()) / float(hertz.bore_angle(1.0))
-    if turn and (np.ptp(ahead) or np.ptp(aside) or abs(turn - 1.0) > SAME_ANGLE):
+    if record.loads:
+        allowed = "allowed is normal with a load_amplitude for an oscillating load"
+    elif turn and (np.ptp(ahead) or np.ptp(aside) or abs(turn - 1.0) > SAME_ANGLE):
         allowed = "allowed is a translation or a rotation; for both use transverse-bore"
+    if allowed:
         raise InputError("motion", motion, allowed)
-    return Kind(
-        motion, f"is {record.summary}", "rad" if turn else "m", along=bool(np.ptp(ahead) > 0.0)
-    )
+    return Kind(motion, f"is {record.summary}", "rad" if turn else "m")
 
 
 @dataclass(frozen=True, eq=False)
 class Inputs:
-    """Checked inputs.  Each quantity is an attribute, in its SI unit; None if it is missing.
+    """Checked inputs.  Each input is an attribute, None if it is missing.  A quantity is in its SI
+    unit.
 
     Attributes
     ----------
@@ -263,40 +232,36 @@ class Inputs:
         The body and the counterbody.
     texts : dict of str
         The inputs as the user wrote them, by name.
-    pressure : str
-        Name of the pressure for microslip.solve, if the contact radius is an input.
     search : str or None
         Name of the input that a reduction replaces.
-    map : xarray.Dataset or None
-        Map that replaces the solver.
     given : mapping
-        The inputs unchanged, for messages.
+        The inputs unchanged.
     """
 
     kind: Kind
     quantities: dict[str, Quantity]
     bodies: tuple[Material, Material]
     texts: dict[str, str]
-    pressure: str = "hertz"
-    search: str | None = None
-    map: Any = None
-    given: Mapping[str, Any] = field(default_factory=dict, repr=False)
+    search: str | None
+    given: Mapping[str, Any] = field(repr=False)
 
     def __getattr__(self, name: str) -> Any:
         if name not in INPUTS:
             raise AttributeError(name)
+        if INPUTS[name].unit is None:
+            return self.given.get(name)
         return self.quantities[name].si if name in self.quantities else None
 
     def at(self, **si: Any) -> Inputs:
         """A copy with other values in SI units, which can be arrays."""
-        nothing = Quantity(0.0, "")
-        changes = {n: replace(self.quantities.get(n, nothing), si=x) for n, x in si.items()}
+        quantities = dict(self.quantities)
+        for name, value in si.items():
+            quantities[name] = replace(quantities.get(name, Quantity(0.0, "")), si=value)
         body, other = self.bodies
-        if not si.keys().isdisjoint(("young", "nu")):
-            body = replace(
-                body, young=si.get("young", body.young), poisson=si.get("nu", body.poisson)
-            )
-        return replace(self, quantities=self.quantities | changes, bodies=(body, other))
+        properties = {"young": "young", "nu": "poisson"}
+        changes = {key: si[name] for name, key in properties.items() if name in si}
+        bodies = (replace(body, **changes) if changes else body), other
+        return replace(self, quantities=quantities, bodies=bodies)
 
     def error(self, name: str, allowed: str) -> InputError:
         """The InputError for an input, with its value as the user wrote it."""
@@ -306,7 +271,7 @@ class Inputs:
         """SI unit of a quantity."""
         return self.kind.amplitude_unit if name == "amplitude" else INPUTS[name].unit or ""
 
-    @cached_property
+    @property
     def uncertain(self) -> dict[str, Quantity]:
         """The quantities with an uncertainty."""
         return {name: one for name, one in self.quantities.items() if one.deviation}
@@ -331,56 +296,27 @@ def read_inputs(motion: Any, **given: Any) -> Inputs:
     """
     kind = AT_REST if motion is None else kind_of(motion)
     given = {name: value for name, value in given.items() if value is not None}
-    for name, value in given.items():
-        if name not in INPUTS:
-            raise InputError(
-                name, value, f"{near_miss(name, INPUTS)}allowed are {', '.join(INPUTS)}"
-            )
-        values = getattr(value, "magnitude", value)  # the array in a pint quantity
-        sequence = hasattr(values, "__len__") and not isinstance(values, str | bytes | Mapping)
-        sequence = sequence and not (hasattr(values, "dims") and values.size == 1)
-        if sequence and getattr(values, "ndim", 1) > 0 and name not in ("counterbody", "map"):
-            allowed = "allowed is one value; predict_table takes a sequence, with many contacts"
-            raise InputError(name, value, allowed)
-    if kind.stroke is not None:
-        given = _with_stroke(kind.stroke, given)
+    for name in given.keys() - INPUTS.keys():
+        hint = f"{near_miss(name, INPUTS)}allowed are {', '.join(INPUTS)}"
+        raise InputError(name, given[name], hint)
+    _refuse_contradictions(motion, kind, given)
+    if (stroke := kind.stroke) is not None:
+        own = {"amplitude": 1.0, "frequency": stroke.frequency, "load": stroke.mean_load}
+        given = {name: value for name, value in own.items() if value is not None} | given
     search = _searched(motion, kind, given)
-    _check_presence(motion, kind, given, search)
+    _refuse_missing(motion, kind, given, search)
     quantities = {
-        n: read_input(n, given[n], kind)
-        for n in INPUTS
-        if INPUTS[n].unit is not None and n in given
+        name: read_input(name, given[name], kind)
+        for name, one in INPUTS.items()
+        if one.unit is not None and name in given
     }
-    texts = {} if motion is None else {"motion": f"{motion}: the sphere {kind.description}"}
-    body, other = _body(given, quantities), _counterbody(given.get("counterbody"))
-    bodies = tuple(
-        _with_properties(*one, side, quantities) for one, side in ((body, ""), (other, "counter_"))
-    )
-    if all(material.rigid for material, _ in bodies):
+    bodies, texts = zip(*(_body(side, given, quantities) for side in ("", "counter_")), strict=True)
+    if all(body.rigid for body in bodies):
         allowed = "allowed is an elastic body if the counterbody is rigid"
         raise InputError("material", given.get("material"), allowed)
-    texts |= {"body": bodies[0][1]}
-    for name in INPUTS:
-        if name in quantities and name not in OF_BODIES:
-            texts[name] = quantities[name].text
-        elif name == "counterbody":
-            texts[name] = bodies[1][1]
-        elif name == "pressure" and "contact_radius" in given:
-            texts[name] = str(given.get("pressure", "hertz"))
-        elif name in given and INPUTS[name].unit is None and name != "material":
-            texts[name] = str(given[name]) if name != "map" else "friction from a map"
-    if "radius" in quantities and "radius_across" not in quantities:
-        hollow = quantities.get("counter_radius")
-        texts["counter_radius"] = "flat (default)" if hollow is None else hollow.text
-        if hollow is not None and hollow.si < 0.0:
-            texts["counter_radius"] += ", hollow"
-    if kind.stroke is not None:
-        texts["amplitude"] += " times the samples"
-    order = ["motion", "body", *INPUTS]
-    texts = dict(sorted(texts.items(), key=lambda one: order.index(one[0])))
-    pressure = given.get("pressure", "hertz")
-    materials = bodies[0][0], bodies[1][0]
-    return Inputs(kind, quantities, materials, texts, pressure, search, given.get("map"), given)
+    return Inputs(
+        kind, quantities, bodies, _texts(motion, kind, given, quantities, texts), search, given
+    )
 
 
 def read_input(name: str, value: Any, kind: Kind = AT_REST) -> Quantity:
@@ -399,7 +335,9 @@ def read_quantity(name: str, value: Any, one: Input) -> Quantity:
         hardness = name.endswith("hardness")
         quantity = read_hardness(value) if hardness else read(value, one.unit or "")
     except ValueError as error:
-        raise InputError(name, value, str(error)) from None
+        several = hasattr(value, "__len__") and not isinstance(value, str)
+        hint = "; predict_table takes a sequence, with many contacts" if several else ""
+        raise InputError(name, value, f"{error}{hint}") from None
     si = quantity.si
     if not (one.low < si <= one.high or one.zero and si == one.low) or math.isinf(si):
         raise InputError(name, value, f"allowed is a finite value {one.range}".strip())
@@ -408,171 +346,130 @@ def read_quantity(name: str, value: Any, one: Input) -> Quantity:
     return quantity
 
 
-def _with_stroke(stroke: Stroke, given: dict[str, Any]) -> dict[str, Any]:
-    """The inputs with the frequency and the mean load from a file.  Raises InputError."""
-    if stroke.frequency is not None and "frequency" in given:
-        allowed = "allowed only without a column time, which contains the frequency"
-        raise InputError("frequency", given["frequency"], allowed)
-    if "map" in given:
-        allowed = "not allowed for a motion from a file: no map has its unit of the amplitude"
-        raise InputError("map", stroke.name, allowed)
-    own = {"amplitude": 1.0, "frequency": stroke.frequency, "load": stroke.mean_load}
-    return {name: value for name, value in own.items() if value is not None} | given
+def _refuse_contradictions(motion: Any, kind: Kind, given: Mapping[str, Any]) -> None:
+    """Raise InputError for inputs that contradict each other or the motion."""
+    moves, names, file = kind is not AT_REST, given.keys(), kind.stroke
+    groups = ("bodies", "load", "drive", "output") if moves else ("bodies", "load")
+    own = {*kind.needed, *kind.optional, "reduction"} if moves else set()
+    others = [n for n, one in INPUTS.items() if one.group not in groups and n not in own]
+    size = "a contact_radius"
+    if "contact_radius" not in names:
+        size = "a pressure, which needs a contact_radius in place of radii"
+
+    def refuse(arguments: str, contradiction: object, allowed: str) -> None:
+        for name in arguments.split():
+            if contradiction and name in names:
+                raise InputError(name, given[name], allowed)
+
+    def only_without(arguments: str, contradiction: object, what: str) -> None:
+        refuse(arguments, contradiction, f"allowed only without {what}")
+
+    def only_with(arguments: str, *needed: str) -> None:
+        missing = not names & set(needed)
+        refuse(arguments, missing, f"allowed only with a {' or a '.join(needed)}")
+
+    refuse(" ".join(others), True, f"{motion or 'a contact without a motion'} has none")
+    only_without("frequency", file and file.frequency, "a column time, which contains it")
+    only_without("map", file, "a motion from a file: no map has its unit of the amplitude")
+    only_without(
+        "radius counter_radius radius_across", names & {"contact_radius", "pressure"}, size
+    )
+    only_without("radius_across", "counter_radius" in names, "a counter_radius")
+    refuse("force", "speed" in names, "allowed is a force or a speed, not both")
+    steady = f"allowed only for a motion that oscillates; {motion} is steady"
+    refuse("drive_stiffness mass damping", kind.steady, steady)
+    only_without("drive_stiffness damping", "force" in names, "a force")
+    only_with("mass", "force", "drive_stiffness")
+    only_with("damping", "drive_stiffness")
+    only_without("material", names & {"young", "nu"}, "young and nu")
+    only_without("force drive_stiffness wear_coefficient", "map" in names, "a map")
+    without = "a force and a drive_stiffness"
+    only_without("reduction", names & {"force", "drive_stiffness"}, without)
 
 
 def _searched(motion: Any, kind: Kind, given: Mapping[str, Any]) -> str | None:
     """Name of the missing input, which a search determines; None without a reduction."""
     if "reduction" not in given:
         return None
-    reduction = given["reduction"]
-    for name in ("force", "drive_stiffness"):
-        if name in given:
-            allowed = "allowed only without a force and a drive_stiffness"
-            raise InputError("reduction", reduction, allowed)
     missing = [name for name in SEARCHED if name not in given]
     if kind.steady or kind.several and "amplitude" not in kind.needed:
         missing = [name for name in missing if name != "amplitude"]
+    allowed = ""
     if not kind.unit and missing != ["speed"]:
         what = "several amplitudes" if kind.several else "no amplitude"
-        raise InputError("reduction", reduction, f"not allowed: {motion} has {what}")
-    if len(missing) != 1:
+        allowed = f"not allowed: {motion} has {what}"
+    elif not missing:
         allowed = "allowed only without the amplitude, the speed or the load, which it determines"
-        if missing:
-            allowed = f"it determines one quantity, but {' and '.join(missing)} are missing"
-        raise InputError("reduction", reduction, allowed)
+    elif len(missing) > 1:
+        allowed = f"it determines one quantity, but {' and '.join(missing)} are missing"
+    if allowed:
+        raise InputError("reduction", given["reduction"], allowed)
     return missing[0]
 
 
-def _check_presence(motion: Any, kind: Kind, given: Mapping[str, Any], search: str | None) -> None:
-    """Raise InputError for inputs that contradict each other or are missing."""
-    own, groups = (*kind.needed, *kind.optional), ("bodies", "load")
-    allowed = {n for n, one in INPUTS.items() if one.group in groups or n in own}
-    if kind is not AT_REST:
-        allowed |= {n for n, one in INPUTS.items() if one.group in ("drive", "output")} | {
-            "reduction"
-        }
-    sized = "contact_radius" in given or "pressure" in given
-    size = (
-        "a contact_radius"
-        if "contact_radius" in given
-        else ("a pressure, which needs a contact_radius in place of radii")
-    )
-    refusals = [
-        (n, f"{motion or 'a contact without a motion'} has none")
-        for n in INPUTS
-        if n not in allowed
-    ]
-    refusals += [
-        (n, f"allowed only without {size}")
-        for n in ("radius", "counter_radius", "radius_across")
-        if sized
-    ]
-    if "counter_radius" in given:
-        curvature = "allowed only without a counter_radius: give the radii of relative curvature"
-        refusals.append(("radius_across", curvature))
-    if "speed" in given:
-        refusals.append(("force", "allowed is a force or a speed, not both"))
-    if kind.steady:
-        text = f"allowed only for a motion that oscillates; {motion} is steady"
-        refusals += [(name, text) for name in ("drive_stiffness", "mass", "damping")]
-    elif "force" in given:
-        refusals += [(n, "allowed only without a force") for n in ("drive_stiffness", "damping")]
-    elif "drive_stiffness" not in given:
-        refusals.append(("mass", "allowed only with a force or a drive_stiffness"))
-        refusals.append(("damping", "allowed only with a drive_stiffness"))
-    if "material" in given:
-        refusals += [("material", "allowed only without young and nu")] * bool(
-            {"young", "nu"} & given.keys()
-        )
-    if "map" in given:
-        refusals += [
-            (n, "allowed only without a map")
-            for n in ("force", "drive_stiffness", "wear_coefficient")
-        ]
-    for name, text in refusals:
-        if name in given:
-            raise InputError(name, given[name], text)
-    missing = dict.fromkeys(("mu", "load"), "needed")
-    missing |= dict.fromkeys(kind.needed, f"{motion} needs it")
+def _refuse_missing(motion: Any, kind: Kind, given: Mapping[str, Any], search: str | None) -> None:
+    """Raise InputError if inputs are missing."""
+    needed = {"mu": "needed", "load": "needed"} | dict.fromkeys(kind.needed, f"{motion} needs it")
     if kind is not AT_REST and "force" not in given:
-        missing["speed"] = "needed, or a force"
-    missing["contact_radius" if sized else "radius"] = (
-        "needed with a pressure: half the longer side of the contact"
-        if sized
-        else "needed, or a contact_radius"
-    )
+        needed["speed"] = "needed, or a force"
+    if given.keys() & {"contact_radius", "pressure"}:
+        needed["contact_radius"] = "needed with a pressure: half the longer side of the contact"
+    else:
+        needed["radius"] = "needed, or a contact_radius"
     if "material" not in given:
-        missing |= {"young": "needed, or a material", "nu": "needed"}
-    missing = {n: text for n, text in missing.items() if n not in given and n != search}
+        needed |= {"young": "needed, or a material", "nu": "needed"}
+    missing = [name for name in needed if name not in given and name != search]
     if missing:
-        first, *others = missing
-        also = f"; also missing: {', '.join(others)}" if others else ""
-        raise InputError(first, None, f"{missing[first]}{also}")
+        also = f"; also missing: {', '.join(missing[1:])}" if missing[1:] else ""
+        raise InputError(missing[0], None, f"{needed[missing[0]]}{also}")
 
 
-def _body(given: Mapping[str, Any], quantities: Mapping[str, Quantity]) -> tuple[Material, str]:
-    """The body and its text."""
-    if "material" not in given:
-        young, nu = quantities["young"], quantities["nu"]
-        return Material(young.si, nu.si), f"E = {young.text}, nu = {nu.text}"
-    material = given["material"]
-    try:
-        return _material(material.strip() if isinstance(material, str) else material)
-    except InputError as error:
-        other = "" if isinstance(material, str) else ", or a Material"
-        raise InputError("material", material, f"{error.allowed}{other}") from None
-
-
-def _material(material: Any) -> tuple[Material, str]:
-    if isinstance(material, Material):
-        return material, str(material)
-    body = material_named(material)
-    return body, material if body.rigid else f"{material} ({body})"
-
-
-def _counterbody(value: Any) -> tuple[Material, str]:
-    """The counterbody, a Material, a name, "E, nu" or a pair (E, nu), and its text."""
-    if value is None:
-        return RIGID, "rigid (default)"
-    example = "E and nu as in '70 GPa, 0.22', with a point before decimals"
-    pair = isinstance(value, tuple | list)
-    if not (pair or isinstance(value, str | Material)):
-        raise InputError(
-            "counterbody", value, f"allowed is a text, {example}, a pair or a Material"
-        )
-    parts = list(value) if pair else [value]
-    if isinstance(value, str):
-        parts = [part.strip() for part in value.split(",")]
-    if len(parts) == 1 and not pair:
-        try:
-            return _material(parts[0])
-        except InputError as error:
-            raise InputError("counterbody", value, f"{error.allowed}, or {example}") from None
-    if len(parts) != 2:
-        count = f"{len(parts)} values" if pair else f"{len(parts) - 1} commas in it"
-        raise InputError("counterbody", value, f"{count}; allowed: {example}")
-    numbers = []
-    for name, title, part in zip(
-        ("young", "nu"), ("Young's modulus", "Poisson's ratio"), parts, strict=True
-    ):
-        try:
-            numbers.append(read_input(name, part))
-        except InputError as error:
-            problem = f"its {title} {part!r}: {error.allowed}, as in '70 GPa, 0.22'"
-            raise InputError("counterbody", value, problem) from None
-    young, nu = numbers
-    return Material(young.si, nu.si), f"E = {young.text}, nu = {nu.text}"
-
-
-def _with_properties(
-    body: Material, text: str, side: str, quantities: Mapping[str, Quantity]
+def _body(
+    side: str, given: Mapping[str, Any], quantities: Mapping[str, Quantity]
 ) -> tuple[Material, str]:
-    """The body with its hardness and density, and its text.  side: "counter_" or empty."""
-    for name in ("hardness", "density"):
-        if one := quantities.get(f"{side}{name}"):
+    """A body and its text.  side: "counter_" for the counterbody, otherwise empty."""
+    name = "counterbody" if side else "material"
+    if side or name in given:
+        body, text = read_body(name, given.get(name, "rigid"))
+        text += " (default)" if name not in given else ""
+    else:
+        young, nu = quantities["young"], quantities["nu"]
+        body, text = Material(young.si, nu.si), f"E = {young.text}, nu = {nu.text}"
+    for key in ("hardness", "density"):
+        if one := quantities.get(f"{side}{key}"):
             if body.rigid:
                 allowed = "allowed for an elastic body, not a rigid one"
-                raise InputError(f"{side}{name}", one.text, allowed)
-            changes: dict[str, Any] = {name: one.si}
-            body, text = replace(body, **changes), f"{text}, {name} {one.text}"
+                raise InputError(f"{side}{key}", one.text, allowed)
+            changes: dict[str, Any] = {key: one.si}
+            body, text = replace(body, **changes), f"{text}, {key} {one.text}"
     return body, text
+
+
+def _texts(
+    motion: Any,
+    kind: Kind,
+    given: Mapping[str, Any],
+    quantities: Mapping[str, Quantity],
+    bodies: tuple[str, ...],
+) -> dict[str, str]:
+    """The inputs as the user wrote them, in the order of the printed answer."""
+    texts = {} if motion is None else {"motion": f"{motion}: the sphere {kind.description}"}
+    texts["body"] = bodies[0]
+    for name in INPUTS:
+        if name == "counterbody":
+            texts[name] = bodies[1]
+        elif name in OF_BODIES:
+            continue
+        elif name in quantities:
+            texts[name] = quantities[name].text
+        elif name in given:
+            texts[name] = "friction from a map" if name == "map" else str(given[name])
+        elif name == "counter_radius" and "radius" in given and "radius_across" not in given:
+            texts[name] = "flat (default)"
+        elif name == "pressure" and "contact_radius" in given:
+            texts[name] = "hertz"
+    if "counter_radius" in quantities and quantities["counter_radius"].si < 0.0:
+        texts["counter_radius"] += ", hollow"
+    if kind.stroke is not None:
+        texts["amplitude"] += " times the samples"
+    return texts

@@ -35,14 +35,12 @@ class FrictionMap:
     def __init__(self, dataset: Any, motion: str, pressure: str = "hertz"):
         attributes = getattr(dataset, "attrs", {})
         own = attributes.get("motion"), attributes.get("pressure", "hertz")
-        if own != (motion, pressure):
-            kind = type(dataset).__name__ if hasattr(dataset, "attrs") else dataset
-            what = kind if own[0] is None else f"{own[0]}, pressure {own[1]}"
-            allowed = f"allowed is the dataset of a sweep of {motion}, pressure {pressure}"
-            raise InputError("map", what, allowed)
-        if "drive" in attributes:
-            allowed = "allowed is a map with a prescribed velocity"
-            raise InputError("map", motion, f"it has a drive; {allowed}")
+        what = f"{own[0]}, pressure {own[1]}"
+        if own[0] is None:
+            what = type(dataset).__name__ if hasattr(dataset, "attrs") else dataset
+        allowed = f"allowed is the dataset of a sweep of {motion}, pressure {pressure}"
+        if own != (motion, pressure) or "drive" in attributes:
+            raise InputError("map", what, f"{allowed}, with a prescribed velocity")
         self.dataset, self.motion, self.pressure = dataset, motion, pressure
 
     def at(
@@ -56,24 +54,20 @@ class FrictionMap:
             raise (error.renamed("nu") if error.argument == "poisson" else error) from None
         return answer.mu_macro.values, answer.mu_macro_error.values
 
-    def solve(
-        self, velocity: float, amplitude: float | None, *, poisson: float, tolerance: float
-    ) -> Result:
-        """The answer of the map as a Result of microslip.solve.
-
-        It is not converged if the error bound is above the tolerance, or if the map does not
-        contain the point.
-        """
+    def solve(self, velocity: float, amplitude: float | None, poisson: float, tol: float) -> Result:
+        """The answer of the map as a Result of microslip.solve.  It is not converged if the error
+        bound is above the tolerance, or if the point is outside the map."""
+        value, error = math.nan, math.inf
         try:
             value, error = (float(one) for one in self.at(velocity, amplitude, poisson))
-            reason = f"the error bound of the map is {error:.1e}; allowed is at most {tolerance:g}"
-            reason = "" if error <= tolerance else reason
+            reason = f"the error bound of the map is {error:.1e}; allowed is at most {tol:g}"
+            reason = "" if error <= tol else reason
         except InputError as problem:
-            value, error, reason = math.nan, math.inf, f"{problem.argument} = {problem.value}: "
-            reason += problem.allowed.partition(";")[0]
+            allowed = problem.allowed.partition(";")[0]
+            reason = f"{problem.argument} = {problem.value}: {allowed}"
         except ValueError as problem:
-            value, error, reason = math.nan, math.inf, str(problem)
+            reason = str(problem)
         point = Problem(motion_named(self.motion), velocity, amplitude, poisson)
         friction = {"friction": Estimate(value, {"model": error})}
-        place = {"pressure": self.pressure, "model": MAP, "tolerance": tolerance}
+        place = {"pressure": self.pressure, "model": MAP, "tolerance": tol}
         return Result.of(point, friction, reason, **place)

@@ -7,19 +7,22 @@ import difflib
 import math
 import re
 from dataclasses import dataclass
+from itertools import pairwise
 from pathlib import Path
 from typing import Any
 
-import numpy as np
-
 from microslip.foundation.errors import InputError
+from microslip.foundation.number_text import prefixed_text
 from microslip.foundation.units import Quantity, read
 
-ROCKWELL = (
-    (20.0, 25.0, 30.0, 35.0, 40.0, 45.0, 50.0, 55.0, 60.0, 65.0, 68.0),
-    (238.0, 266.0, 302.0, 345.0, 392.0, 446.0, 513.0, 595.0, 697.0, 832.0, 940.0),
+ROCKWELL = dict(
+    zip(
+        (20.0, 25.0, 30.0, 35.0, 40.0, 45.0, 50.0, 55.0, 60.0, 65.0, 68.0),
+        (238.0, 266.0, 302.0, 345.0, 392.0, 446.0, 513.0, 595.0, 697.0, 832.0, 940.0),
+        strict=True,
+    )
 )
-"""Rockwell C numbers, and the Vickers numbers of steels (ASTM E140, Table 1)."""
+"""Vickers numbers of steels, keyed by Rockwell C numbers (ASTM E140, Table 1)."""
 VICKERS = 9.80665e6 / 0.9272
 """Mean pressure of a Vickers number of 1, Pa: 1 kgf/mm^2 on the faces of the indent.  Its projected
 area is sin(68 degrees) times that of the faces."""
@@ -28,6 +31,11 @@ BRINELL = 0.95
 SCALES = re.compile(r"(.*?)\s*(HV|HRC|HBW?|HBS|HR[ABD-Z]|HK|HS|Shore.*|Mohs)", re.S)
 GRADES = {"100cr6": "bearing-steel", "52100": "bearing-steel", "ti-6al-4v": "titanium"}
 """Material names keyed by aliases in lower case, for hints."""
+LIMITS = {"young": ("Pa", math.inf), "poisson": ("", 0.5), "density": ("kg/m^3", math.inf)}
+LIMITS |= {"hardness": ("Pa", math.inf)}
+"""SI unit and largest value of each property.  Except for Poisson's ratio, 0 is refused."""
+EXAMPLE = "E and nu as in '70 GPa, 0.22', with a point before decimals"
+TITLES = {"young": "Young's modulus", "poisson": "Poisson's ratio"}
 
 
 @dataclass(frozen=True)
@@ -48,7 +56,7 @@ class Material:
     Raises
     ------
     InputError
-        If a value is out of range or not a quantity.
+        If a value is out of range, uncertain, or not a quantity.
     """
 
     young: float
@@ -58,21 +66,21 @@ class Material:
     source: str = ""
 
     def __post_init__(self) -> None:
-        ranges = {"young": ("Pa", math.inf), "poisson": ("", 0.5), "density": ("kg/m^3", math.inf)}
-        for name, (unit, high) in (ranges | {"hardness": ("Pa", math.inf)}).items():
+        for name, (unit, high) in LIMITS.items():
             value = getattr(self, name)
-            if value is None or isinstance(value, np.ndarray) or value == math.inf:
+            if value is None or hasattr(value, "shape") and value.shape or value == math.inf:
                 continue
             try:
-                number = read(value, unit).si
+                one = read_hardness(value) if name == "hardness" else read(value, unit)
             except ValueError as error:
                 raise InputError(name, value, str(error)) from None
-            if not (0.0 < number <= high or name == "poisson" and number == 0.0):
-                limits = "at least 0 and at most 0.5" if name == "poisson" else "above 0"
-                raise InputError(name, value, f"allowed is a finite value {limits} {unit}".strip())
-            object.__setattr__(self, name, number)  # the record is frozen
-        if not isinstance(self.source, str):
-            raise InputError("source", self.source, "allowed is a text")
+            zero = name == "poisson"
+            if one.deviation or not (0.0 < one.si <= high or zero and one.si == 0.0):
+                limits = "at least 0 and at most 0.5" if zero else f"above 0 {unit}"
+                raise InputError(
+                    name, value, f"allowed is a finite value {limits}, without an uncertainty"
+                )
+            object.__setattr__(self, name, one.si)  # the record is frozen
 
     @property
     def rigid(self) -> bool:
@@ -86,10 +94,68 @@ class Material:
     def __str__(self) -> str:
         if self.rigid:
             return "rigid"
-        parts = [f"E = {self.young / 1e9:.6g} GPa", f"nu = {self.poisson:g}"]
-        parts += [f"hardness {self.hardness / 1e9:.6g} GPa"] if self.hardness is not None else []
-        parts += [f"density {self.density:.6g} kg/m^3"] if self.density is not None else []
+        parts = [f"E = {prefixed_text(self.young, 'Pa', 6)}", f"nu = {self.poisson:g}"]
+        parts += [f"hardness {prefixed_text(self.hardness, 'Pa', 6)}"] if self.hardness else []
+        parts += [f"density {self.density:.6g} kg/m^3"] if self.density else []
         return ", ".join(parts)
+
+
+def read_body(argument: str, value: Any) -> tuple[Material, str]:
+    """A body and its text.  Raises InputError.
+
+    value: a Material, the name of a material, "E, nu", or a pair (E, nu).
+    """
+    if isinstance(value, Material):
+        return value, str(value)
+    parts = value.split(",") if isinstance(value, str) else value
+    if not isinstance(parts, tuple | list):
+        raise InputError(argument, value, f"allowed is a text, {EXAMPLE}, a pair or a Material")
+    if isinstance(value, str) and len(parts) == 1:
+        name = value.strip()
+        if name in MATERIALS:
+            return MATERIALS[name], name if MATERIALS[name].rigid else f"{name} ({MATERIALS[name]})"
+        names = {material.lower(): material for material in MATERIALS} | GRADES
+        near = difflib.get_close_matches(name.lower(), names, n=1)
+        hint = f" (did you mean {names[near[0]]}?)" if near else ""
+        allowed = f"allowed is one of {', '.join(MATERIALS)}{hint}, or {EXAMPLE}"
+        raise InputError(argument, value, allowed)
+    if len(parts) != 2:
+        count = (
+            f"{len(parts) - 1} commas in it" if isinstance(value, str) else f"{len(parts)} values"
+        )
+        raise InputError(argument, value, f"{count}; allowed: {EXAMPLE}")
+    pair: list[Any] = [part.strip() if isinstance(part, str) else part for part in parts]
+    try:
+        body = Material(*pair)
+    except InputError as error:
+        problem = f"its {TITLES[error.argument]} {error.value!r}: {error.allowed}"
+        raise InputError(argument, value, f"{problem}, as in '70 GPa, 0.22'") from None
+    return body, str(body)
+
+
+def read_hardness(value: object) -> Quantity:
+    """Read a hardness as the mean pressure under the indenter, Pa: a pressure, or a text such as
+    "200 HV" or "60 HRC".  Raises ValueError."""
+    match = SCALES.fullmatch(value.strip()) if isinstance(value, str) else None
+    if match is None:
+        return read(value, "Pa")
+    text, scale = match.groups()
+    allowed = "allowed are Vickers (200 HV), Rockwell C (60 HRC) and 7 GPa"
+    if scale not in ("HV", "HRC") and not scale.startswith("HB"):
+        raise ValueError(f"the scale {scale} is not supported; {allowed}")
+    number = read(text, "").si
+    if scale.startswith("HB"):
+        hint = f"this Brinell hardness is about {number / BRINELL:.0f} HV for steels"
+        raise ValueError(f"{hint}; {allowed}")
+    if scale == "HRC":
+        pairs = (one for one in pairwise(ROCKWELL.items()) if one[0][0] <= number <= one[1][0])
+        ends = next(pairs, None)
+        if ends is None:
+            raise ValueError("allowed is 20 to 68 HRC, or a Vickers hardness")
+        (low, first), (high, last) = ends
+        number = first + (last - first) * (number - low) / (high - low)
+    pressure = number * VICKERS
+    return Quantity(pressure, f"{' '.join(match[0].split())} = {pressure / 1e9:.3g} GPa")
 
 
 def _materials() -> dict[str, Material]:
@@ -101,40 +167,5 @@ def _materials() -> dict[str, Material]:
     return {name: Material(*values) for name, values in table.items()}
 
 
-RIGID = Material(math.inf, 0.0)
-MATERIALS = _materials() | {"rigid": RIGID}
+MATERIALS = _materials() | {"rigid": Material(math.inf, 0.0)}
 """Materials by name, from materials.csv in SI units."""
-
-
-def material_named(name: object) -> Material:
-    """The Material called `name`.  Raises InputError, with a hint, if the name is unknown."""
-    if isinstance(name, str) and name in MATERIALS:
-        return MATERIALS[name]
-    names = {material.lower(): material for material in MATERIALS} | GRADES
-    near = difflib.get_close_matches(str(name).lower(), names, n=1)
-    hint = f" (did you mean {names[near[0]]}?)" if near else ""
-    raise InputError("material", name, f"allowed is one of {', '.join(MATERIALS)}{hint}")
-
-
-def read_hardness(value: object) -> Quantity:
-    """Read a hardness as the mean pressure under the indenter, Pa: a pressure, or a text such as
-    "200 HV" or "60 HRC".  Raises ValueError."""
-    match = SCALES.fullmatch(value.strip()) if isinstance(value, str) else None
-    if match is None:
-        return read(value, "Pa")
-    (text, scale), allowed = (
-        match.groups(),
-        "allowed are Vickers (200 HV), Rockwell C (60 HRC) and 7 GPa",
-    )
-    if scale not in ("HV", "HRC") and not scale.startswith("HB"):
-        raise ValueError(f"the scale {scale} is not supported; {allowed}")
-    number = read(text, "").si
-    if scale.startswith("HB"):
-        hint = f"this Brinell hardness is about {number / BRINELL:.0f} HV for steels"
-        raise ValueError(f"{hint}; {allowed}")
-    if scale == "HRC":
-        if not ROCKWELL[0][0] <= number <= ROCKWELL[0][-1]:
-            raise ValueError("allowed is 20 to 68 HRC, or a Vickers hardness")
-        number = float(np.interp(number, *ROCKWELL))
-    pressure = number * VICKERS
-    return Quantity(pressure, f"{' '.join(match[0].split())} = {pressure / 1e9:.3g} GPa")

@@ -4,10 +4,9 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from dataclasses import dataclass, field
-from functools import cache
-from operator import attrgetter
+from functools import cache, cached_property
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from microslip.foundation.number_text import ROUNDING, interval_text, number_text, prefixed
@@ -26,22 +25,22 @@ class Output(NamedTuple):
         SI unit, empty for a pure number.
     sentence : str
         Sentence that is printed after the number.
-    closed_form : callable or None
-        closed_form(contact): value of the output for an si.contact.Contact, which can have arrays.
-        None for an output that predict.outputs computes from the answer of the solver.
+    factors : str
+        Names in predict.factors_of, or attributes of a Contact, whose product is the output.  By
+        default, it is the factor with the name of the output.
     """
 
     unit: str
     sentence: str = ""
-    closed_form: Callable[[Any], Any] | None = None
+    factors: str = ""
 
 
 OUTPUTS = {
-    "contact_radius": Output("m", "", attrgetter("contact_radius")),
-    "indentation": Output("m", "", attrgetter("indentation")),
-    "u_lim": Output("m", "displacement at which the whole contact slides", attrgetter("u_lim")),
-    "largest_pressure": Output("Pa", "", attrgetter("largest_pressure")),
-    "poisson": Output("", "Poisson's ratio of the equivalent half-space", attrgetter("poisson")),
+    "contact_radius": Output("m"),
+    "indentation": Output("m"),
+    "u_lim": Output("m", "displacement at which the whole contact slides"),
+    "largest_pressure": Output("Pa"),
+    "poisson": Output("", "Poisson's ratio of the equivalent half-space"),
     "amplitude": Output("", "dimensionless amplitude, the largest of several"),
     "velocity": Output("", "dimensionless velocity"),
     "force": Output("", "dimensionless force"),
@@ -49,31 +48,45 @@ OUTPUTS = {
     "mass": Output("", "dimensionless mass"),
     "damping": Output("", "dimensionless damping"),
     "natural_frequency": Output("Hz", "of the mass on its spring and the sticking contact"),
-    "mu_macro": Output("", "ratio of friction with vibration to friction without"),
-    "mu_apparent": Output("", "coefficient of friction with vibration"),
-    "friction_force": Output("N", "with vibration"),
+    "mu_macro": Output("", "ratio of friction with vibration to friction without", "friction"),
+    "mu_apparent": Output("", "coefficient of friction with vibration", "friction mu"),
+    "friction_force": Output("N", "with vibration", "friction sliding_friction"),
     "sliding_friction": Output("N", "friction force without vibration"),
     "force_reduction": Output("", "1 - mu_macro"),
-    "mu_static": Output("", "mu_macro at vanishing speed"),
-    "mu_static_apparent": Output("", "coefficient of friction at vanishing speed"),
-    "force_threshold": Output("N", "smallest constant force that moves the contact"),
+    "mu_static": Output("", "mu_macro at vanishing speed", "static"),
+    "mu_static_apparent": Output("", "coefficient of friction at vanishing speed", "static mu"),
+    "force_threshold": Output(
+        "N", "smallest constant force that moves the contact", "threshold sliding_friction"
+    ),
     "safety_factor": Output("", "force threshold divided by the force"),
     "probability_stays": Output("", "probability that the contact stays"),
     "probability_moves": Output("", "probability that it moves, cycle by cycle"),
     "probability_runs_away": Output("", "probability that it runs away"),
     "speed": Output("m/s", "mean forward speed"),
     "displacement_per_cycle": Output("m", "forward displacement in a period"),
-    "time_to_1_mm": Output("s", "time to travel 1 mm"),
-    "time_to_contact_radius": Output("s", "time to travel one contact radius"),
-    "displacement": Output("m", "forward displacement until the contact rests"),
-    "cycles_to_rest": Output("", "periods until nine tenths of the vibration's part of it"),
-    "torque": Output("N m", "torque of the spin"),
+    "time_to_1_mm": Output("s", "time to travel 1 mm", "pace millimetre"),
+    "time_to_contact_radius": Output(
+        "s", "time to travel one contact radius", "pace contact_radius"
+    ),
+    "displacement": Output(
+        "m", "forward displacement until the contact rests", "displacement u_lim"
+    ),
+    "cycles_to_rest": Output(
+        "", "periods until nine tenths of the vibration's part of it", "cycles"
+    ),
+    "torque": Output("N m", "torque of the spin", "torque sliding_friction contact_radius"),
     "vibration_power": Output("W", "power of the oscillation or the spin"),
     "drag_power": Output("W", "power of the forward force"),
     "dissipated_power": Output("W", "power dissipated by friction"),
-    "energy_per_cycle": Output("J", "energy dissipated by friction in a period or a turn"),
-    "wear_volume_per_cycle": Output("m^3", "wear volume of a body in a period or a turn"),
-    "wear_depth_per_cycle": Output("m", "mean wear depth over the contact"),
+    "energy_per_cycle": Output(
+        "J", "energy dissipated by friction in a period or a turn", "dissipated_power period"
+    ),
+    "wear_volume_per_cycle": Output(
+        "m^3", "wear volume of a body in a period or a turn", "dissipated_power period wear"
+    ),
+    "wear_depth_per_cycle": Output(
+        "m", "mean wear depth over the contact", "dissipated_power period wear per_area"
+    ),
 }
 """Every output of `predict`, in the order in which they are printed."""
 PREFIXED = ("m", "N", "Pa", "W", "J", "Hz", "N m", "m/s", "N/m")
@@ -94,6 +107,8 @@ OUTCOMES = {
 }
 """Sentences about the outcomes, except for a contact that runs away."""
 REASONS = ("mu_static_reason", "displacement_reason")
+LISTS = ("remarks", "warnings", "not_checked")
+"""Lists of texts of a prediction."""
 
 
 @dataclass(frozen=True)
@@ -118,6 +133,31 @@ class Value:
     spread: float | None = None
     low: float | None = None
     high: float | None = None
+    __array_ufunc__ = None  # an array times a Value is a Value
+
+    def __mul__(self, other: Any) -> Value:
+        if not isinstance(other, Value):
+            return Value(self.value * other, self.error * abs(other))
+        error = self.error * abs(other.value) + abs(self.value) * other.error
+        return Value(self.value * other.value, error)
+
+    __rmul__ = __mul__
+
+    def __add__(self, other: Value) -> Value:
+        return Value(self.value + other.value, self.error + other.error)
+
+    def __sub__(self, other: Value) -> Value:
+        return self + -1.0 * other
+
+    @property
+    def pair(self) -> tuple[Any, Any]:
+        """The value and its error."""
+        return self.value, self.error
+
+    def plain(self) -> Value:
+        """The Value with floats in place of NumPy numbers; arrays are unchanged."""
+        numbers = (x if getattr(x, "ndim", 0) else float(x) for x in self.pair)
+        return Value(*numbers)
 
 
 @cache
@@ -192,35 +232,34 @@ class Prediction:
         return self.inputs["counterbody"]
 
     def numbers(self) -> Iterator[tuple[str, str, str, Any]]:
-        """Name of the column, SI unit, description and number of each input and each output."""
-        for name, one in self.input_values.items():
-            unit = self.input_units[name]
-            for kind in KINDS:
-                number = getattr(one, kind)
-                if kind == "value" or number is not None and (kind != "error" or number):
-                    text = name.replace("_", " ")
-                    yield input_column(name, unit, kind), unit, f"{text}, {kind}", number
+        """Name of the column, SI unit, description and number of each input and each output.  The
+        number is None if it is missing."""
+        for name, entry in INPUTS.items():
+            if entry.unit is not None:
+                unit = self.input_units.get(name, entry.unit)
+                key = "amplitude_factor" if name == "amplitude" and not unit else name
+                yield from _columns(name, key, unit, self.input_values.get(name, NOTHING))
         for name, output in OUTPUTS.items():
-            one = self.values.get(name, Value(None, None))
-            for kind in KINDS:
-                number = getattr(one, kind)
-                if kind in ("value", "error") or number is not None:
-                    text = f"{name.replace('_', ' ')}, {kind}"
-                    yield column(name, output.unit, kind), output.unit, text, number
+            yield from _columns(name, name, output.unit, self.values.get(name, NOTHING))
+
+    @cached_property
+    def _numbers(self) -> dict[str, Any]:
+        """Numbers by column.  The speed is an input or an output."""
+        numbers: dict[str, Any] = {}
+        for name, _, _, number in self.numbers():
+            if numbers.get(name) is None:
+                numbers[name] = number
+        return numbers
 
     def to_dict(self) -> dict[str, Any]:
         """All columns as a plain dict.  The value and the error of every output are present, None
         if they do not apply; spread, low and high are present if an input is uncertain."""
         plain: dict[str, Any] = {name: getattr(self, name) for name in (*TEXTS, *REASONS)}
         plain |= {"converged": self.converged, "inputs": dict(self.inputs)}
-        plain |= {
-            name: list(getattr(self, name)) for name in ("remarks", "warnings", "not_checked")
-        }
-        numbers: dict[str, Any] = {}
-        for name, _, _, number in self.numbers():
-            if number is not None or name not in numbers:
-                numbers[name] = number
-        return plain | numbers
+        plain |= {name: list(getattr(self, name)) for name in LISTS}
+        always = {column(n, one.unit, kind) for n, one in OUTPUTS.items() for kind in KINDS[:2]}
+        numbers = self._numbers.items()
+        return plain | {n: x for n, x in numbers if x is not None or n in always}
 
     def to_xarray(self) -> xr.Dataset:
         """The numbers as variables with units, and the texts as attributes."""
@@ -238,38 +277,28 @@ class Prediction:
         return xr.Dataset(variables, attrs={"record": "Prediction"} | about)
 
     def __getattr__(self, name: str) -> Any:
-        if name.startswith("_") or name not in ATTRIBUTES:
-            raise AttributeError(f"{type(self).__name__} has no column {name!r}")
-        return next((number for key, _, _, number in self.numbers() if key == name), None)
+        if not name.startswith("_") and name in self._numbers:
+            return self._numbers[name]
+        raise AttributeError(f"{type(self).__name__} has no column {name!r}")
 
     def __str__(self) -> str:
         """The lines that `microslip predict` prints."""
-        lines = []
-        for name, text in self.inputs.items():
-            lines.append(line(name.replace("_", " "), text))
+        lines = [line(name.replace("_", " "), text) for name, text in self.inputs.items()]
         if self.search:
-            one = self.input_values[self.search]
             least = "smallest" if self.search == "amplitude" else "largest"
             sentence = f"the {least} with a reduction of {self.inputs['reduction']}"
             unit = self.input_units[self.search]
-            lines.append(line(str(self.search), f"{_text(one.value, one.error, unit)}: {sentence}"))
-            lines += _uncertainty(one, unit)
+            lines += _lines(self.search, self.input_values[self.search], unit, sentence)
         lines.append("")
         for name, one in self.values.items():
-            output = OUTPUTS[name]
-            text = _text(one.value, one.error, output.unit)
-            title = name.replace("_", " ") if name not in PLAIN else name
-            lines.append(line(title, f"{text}: {output.sentence}" if output.sentence else text))
-            lines += _uncertainty(one, output.unit)
-        lines += (
-            [line("outcome", OUTCOMES.get(self.outcome, f"it {self.reason}"))]
-            if self.outcome
-            else []
-        )
+            title = name if name in PLAIN else name.replace("_", " ")
+            lines += _lines(title, one, OUTPUTS[name].unit, OUTPUTS[name].sentence)
+        if self.outcome:
+            lines.append(line("outcome", OUTCOMES.get(self.outcome, f"it {self.reason}")))
         if self.displacement_reason:
             lines.append(line("displacement", f"unknown: {self.displacement_reason}"))
-        lines += self.remarks
-        return "\n".join([*lines, *self.problems, *(f"not checked: {x}" for x in self.not_checked)])
+        lines += [*self.remarks, *self.problems]
+        return "\n".join([*lines, *(f"not checked: {x}" for x in self.not_checked)])
 
     @property
     def problems(self) -> list[str]:
@@ -287,20 +316,16 @@ PLAIN = {"u_lim", "mu_macro", "mu_apparent", "mu_static", "mu_static_apparent"}
 """Outputs that are symbols, whose underscore is printed."""
 
 
-class _Columns:
-    """Container of all possible names of numbers, as the tables are at the time of the question."""
-
-    def __contains__(self, name: str) -> bool:
-        units = {one: (output.unit,) for one, output in OUTPUTS.items()}
-        outputs = (column(n, u, kind) for n, us in units.items() for u in us for kind in KINDS)
-        texts = {n: one.unit for n, one in INPUTS.items() if one.unit is not None}
-        inputs = (input_column(n, u, kind) for n, u in texts.items() for kind in KINDS)
-        angle = (column("amplitude", "rad", kind) for kind in KINDS)
-        factor = (input_column("amplitude", "", kind) for kind in KINDS)
-        return any(name in names for names in (outputs, inputs, angle, factor))
+NOTHING = Value(None, None)
+"""An output or an input that is missing."""
 
 
-ATTRIBUTES = _Columns()
+def _columns(
+    name: str, key: str, unit: str, one: Value
+) -> Iterator[tuple[str, str, str, float | None]]:
+    """Name of the column, SI unit, description and number for each part of a Value."""
+    for kind in KINDS:
+        yield column(key, unit, kind), unit, f"{name.replace('_', ' ')}, {kind}", getattr(one, kind)
 
 
 def line(title: str, text: str) -> str:
@@ -308,33 +333,35 @@ def line(title: str, text: str) -> str:
     return f"{title:<{WIDTH - 1}} {text}"
 
 
-def _text(value: float, error: float, unit: str) -> str:
-    """A value with its error and a readable unit."""
-    if math.isinf(value):
-        return "infinite"
-    size = max(abs(value), error if math.isfinite(error) and abs(value) <= error else 0.0)
+def _scale(size: float, unit: str) -> tuple[str, float]:
+    """A readable unit for numbers of a size, and the unit in SI units."""
     if unit == "s":
-        name, scale = next((one for one in TIMES if size >= 2.0 * one[1]), ("s", 1.0))
+        return next((one for one in TIMES if size >= 2.0 * one[1]), ("s", 1.0))
+    return prefixed(size, unit) if unit in PREFIXED else (unit, 1.0)
+
+
+def _lines(title: str, one: Value, unit: str, sentence: str) -> list[str]:
+    """The line of a Value with its error, and the line of its uncertainty due to the inputs."""
+    value, error = one.value, one.error
+    if math.isinf(value):
+        text = "infinite"
     else:
-        name, scale = prefixed(size, unit) if unit in PREFIXED else (unit, 1.0)
-    if not unit and abs(value) <= error <= ROUNDING:
-        value, error = 0.0, 0.0
-    return number_text(value / scale, error / scale, name)
-
-
-def _uncertainty(one: Value, unit: str) -> list[str]:
-    """The line about the uncertainty due to the inputs; empty without one."""
+        if not unit and abs(value) <= error <= ROUNDING:
+            value, error = 0.0, 0.0
+        name, scale = _scale(
+            max(abs(value), error if abs(value) <= error < math.inf else 0.0), unit
+        )
+        text = number_text(value / scale, error / scale, name)
+    lines = [line(title, f"{text}: {sentence}" if sentence else text)]
     if not one.spread or one.low is None or one.high is None:
-        return []
+        return lines
     size = max(abs(x) for x in (one.low, one.high, 0.0) if math.isfinite(x))
     name, scale = prefixed(size, unit) if unit in PREFIXED else (unit, 1.0)
     ends = interval_text(one.low / scale, one.high / scale, name)
-    deviation = (
-        "infinite"
-        if math.isinf(one.spread)
-        else number_text(one.spread / scale, 0.0, name, digits=2)
-    )
-    return [line("", f"standard uncertainty {deviation}, 95 % interval {ends}, from the inputs")]
+    deviation = number_text(one.spread / scale, 0.0, name, digits=2)
+    deviation = "infinite" if math.isinf(one.spread) else deviation
+    text = f"standard uncertainty {deviation}, 95 % interval {ends}, from the inputs"
+    return [*lines, line("", text)]
 
 
 def reference_page() -> str:

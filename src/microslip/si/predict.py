@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
+from functools import reduce
+from operator import mul
 from typing import Any
 
 import numpy as np
 
-from microslip.answer.answer import Estimate
-from microslip.si.contact import Contact, contact_of
+from microslip.si.contact import DRIVES, Contact, contact_of
 from microslip.si.inputs import INPUTS, Inputs, read_inputs
 from microslip.si.output import OUTPUTS, Prediction, Value
 from microslip.si.search import REFERENCE_LOAD, find_reduction
@@ -17,7 +18,6 @@ from microslip.si.solve import Answer, answer_of
 from microslip.si.uncertain import Draws, probabilities, with_interval
 from microslip.si.warnings import unchecked, warnings_of
 
-MILLIMETRE = 1e-3
 STICKING = 1.5
 """Dimensionless stiffness of a sticking Hertz contact, 2 G* a u_lim / (mu F_z)."""
 REFERENCE_LOADS = (
@@ -89,16 +89,16 @@ def checked_inputs(motion: Any, **given: Any) -> Inputs:
 def predict_inputs(inputs: Inputs) -> Prediction:
     """The Prediction for checked inputs.  Raises InputError."""
     contact, answer, root = solved(inputs)
-    values = outputs(contact, answer)
-    given = {n: Value(one.si) for n, one in inputs.quantities.items() if n in INPUTS}
-    if root is not None:
-        given[str(inputs.search)] = Value(root.value, root.error)
+    values, search = outputs(contact, answer), inputs.search
+    given = {name: Value(one.si, None) for name, one in inputs.quantities.items()}
+    if search and root is not None:
+        given[search] = root
         if math.isfinite(root.error):
-            shifted = Contact(contact.inputs.at(**{str(inputs.search): root.value + root.error}))
+            shifted = Contact(contact.inputs.at(**{search: root.value + root.error}))
+            others = outputs(shifted, answer)
             values = {
-                name: replace(one, error=one.error + abs(other.value - one.value))
+                name: replace(one, error=one.error + abs(others[name].value - one.value))
                 for name, one in values.items()
-                if (other := outputs(shifted, answer).get(name)) is not None
             }
     if inputs.uncertain:
         with np.errstate(all="ignore"):  # draws at the ends of ranges can be infinite
@@ -106,25 +106,21 @@ def predict_inputs(inputs: Inputs) -> Prediction:
             drawn = outputs(draws.contact, draws.answer)
             values = {n: with_interval(one, drawn[n].value) for n, one in values.items()}
             values |= probabilities(draws.contact, draws.answer)
-        for name in (*inputs.uncertain, *([inputs.search] if inputs.search else ())):
+        for name in (*inputs.uncertain, *([search] if search else ())):
             given[name] = with_interval(given[name], getattr(draws.contact.inputs, name))
-    kind, speed = inputs.kind, values["speed"].value if "speed" in values else inputs.speed
-    if inputs.search == "speed":
-        speed = contact.inputs.speed
+    speed = values["speed"].value if "speed" in values else contact.inputs.speed
     return Prediction(
         values={name: values[name] for name in OUTPUTS if name in values},
         input_values=given,
         input_units={name: inputs.unit(name) for name in given},
         inputs=inputs.texts,
-        motion=str(inputs.texts["motion"].split(": the sphere ")[0])
-        if kind.stroke is None
-        else kind.name,
+        motion=str(inputs.kind.name),
         pressure=contact.pressure,
         model=answer.model,
         converged=answer.converged,
         reason=answer.reason,
         outcome=answer.outcome or None,
-        search=inputs.search,
+        search=search,
         mu_static_reason=answer.reasons.get("static", ""),
         displacement_reason=answer.reasons.get("displacement", ""),
         remarks=tuple(_remarks(contact, answer)),
@@ -133,119 +129,91 @@ def predict_inputs(inputs: Inputs) -> Prediction:
     )
 
 
-def solved(inputs: Inputs) -> tuple[Contact, Answer, Estimate | None]:
+def unsolved(inputs: Inputs, reason: str) -> Prediction:
+    """The Prediction for a search without a solution.  It has no outputs."""
+    values = {name: Value(one.si) for name, one in inputs.quantities.items()}
+    values[str(inputs.search)] = Value(math.nan, math.nan)
+    return Prediction(
+        motion=str(inputs.kind.name),
+        inputs=inputs.texts,
+        input_values=values,
+        input_units={name: inputs.unit(name) for name in values},
+        search=inputs.search,
+        reason=reason,
+    )
+
+
+def solved(inputs: Inputs) -> tuple[Contact, Answer, Value | None]:
     """The contact, its answer, and the result of a search.  Raises InputError."""
-    if inputs.search is None:
-        contact = contact_of(inputs)
-        return contact, answer_of(contact), None
-    contact, root = find_reduction(inputs)
+    contact, root = find_reduction(inputs) if inputs.search else (contact_of(inputs), None)
     return contact, answer_of(contact), root
 
 
 def outputs(contact: Contact, answer: Answer) -> dict[str, Value]:
-    """The outputs in SI units, from the dimensionless answer.  All formulas accept arrays."""
-    inputs, known = contact.inputs, answer.values
-    mu, u_lim, omega, unit = contact.mu, contact.u_lim, contact.omega, contact.speed_unit
-    still = mu * contact.load * known["mean_load"].value
-    friction, velocity = known["friction"], known["velocity"]
-    values = {
-        name: Value(number)
-        for name, one in OUTPUTS.items()
-        if one.closed_form is not None and not np.all(np.isnan(number := one.closed_form(contact)))
-    }
-
-    def add(name: str, estimate: Estimate | None, factor: Any = 1.0) -> None:
-        if estimate is not None:
-            error = np.sum([abs(factor) * x for x in estimate.by_source.values()], axis=0)
-            values[name] = Value(factor * estimate.value, error if np.ndim(error) else float(error))
-
-    if not contact.steady:
-        values["amplitude"] = Value(contact.amplitude)
-    if not (contact.kind.unit == "rad" and np.all(inputs.amplitude == 0.0)):
-        add("velocity", velocity)
-    drive = contact.drive(known["mean_load"].value)
-    values |= {name: Value(one) for name, one in drive.items()}
-    if inputs.mass is not None and np.all(inputs.mass > 0.0) and not contact.steady:
-        stiffness = drive.get("stiffness", 0.0) + STICKING
-        values["natural_frequency"] = Value(inputs.frequency * np.sqrt(stiffness / drive["mass"]))
-    add("mu_macro", friction)
-    add("mu_apparent", friction, mu)
-    add("friction_force", friction, still)
-    values["sliding_friction"] = Value(still)
-    values["force_reduction"] = Value(1.0 - friction.value, values["mu_macro"].error)
-    add("mu_static", known.get("static"))
-    add("mu_static_apparent", known.get("static"), mu)
-    add("force_threshold", known.get("threshold"), still)
-    rate = omega / (2.0 * math.pi)
-    if inputs.force is None:
-        speed = Value(inputs.speed)
-    else:
-        with np.errstate(divide="ignore"):
-            if (threshold := known.get("threshold")) is not None:
-                ratios = (
-                    still * x / np.float64(inputs.force) for x in (threshold.value, threshold.error)
-                )
-                values["safety_factor"] = Value(*ratios)
-        add("speed", velocity, unit)
-        speed = values["speed"]
-    if not contact.steady:
-        values["displacement_per_cycle"] = Value(speed.value / rate, speed.error / rate)
-    if answer.outcome == "moves":
-        with np.errstate(divide="ignore", invalid="ignore"):
-            share = np.asarray(speed.error / (speed.value - speed.error))  # largest relative error
-            ways = {"1_mm": MILLIMETRE, "contact_radius": contact.contact_radius}
-            for name, way in ways.items():
-                time = way / np.asarray(speed.value)
-                values[f"time_to_{name}"] = Value(_plain(time), _plain(time * share))
-    add("displacement", known.get("displacement"), u_lim)
-    add("cycles_to_rest", known.get("cycles"))
-    if answer.converged:
-        values |= _energies(contact, answer, still, speed)
-    return {name: Value(_plain(one.value), _plain(one.error)) for name, one in values.items()}
-
-
-def _plain(number: Any) -> Any:
-    """A float for a number; arrays are unchanged."""
-    return float(number) if np.ndim(number) == 0 else number
-
-
-def _energies(contact: Contact, answer: Answer, still: Any, speed: Value) -> dict[str, Value]:
-    """Torque, powers, energy per cycle and wear of a converged answer.
-
-    The drag in the balance of the oscillation is computed at the velocity of the answer.  This
-    velocity is smaller than the requested one if that is outside the range of the solver.
-    """
-    inputs, known, rate = contact.inputs, answer.values, contact.omega / (2.0 * math.pi)
-    friction, velocity, unit = known["friction"], known["velocity"], contact.speed_unit
-    drag = still * friction.value * speed.value
-    drag_error = still * (friction.error * speed.value + friction.value * speed.error)
-    values = {"drag_power": Value(drag, drag_error)}
-    if "torque" in known:
-        lever = still * contact.contact_radius
-        torque, torque_error = (lever * x for x in (known["torque"].value, known["torque"].error))
-        values["torque"] = Value(torque, torque_error)
-        power, power_error = contact.omega * torque, contact.omega * torque_error
-        total_error = drag_error + power_error
-    elif "dissipation" in known:
-        dissipation = known["dissipation"]
-        scale = still * contact.u_lim * rate / known["mean_load"].value
-        power = scale * dissipation.value - still * friction.value * velocity.value * unit
-        total_error = np.maximum(scale * dissipation.error, drag_error)
-        slip = friction.error * velocity.value + friction.value * velocity.error
-        power_error = scale * dissipation.error + still * slip * unit
-    else:
-        return values
-    total = drag + power
-    if not inputs.damping:  # a dashpot dissipates an unknown part of the power
-        values["vibration_power"] = Value(power, power_error)
-    energy, energy_error = total / rate, total_error / rate
-    values |= {"dissipated_power": Value(total, total_error)}
-    values |= {"energy_per_cycle": Value(energy, energy_error)}
-    if inputs.wear_coefficient is not None:
-        volume = inputs.wear_coefficient / contact.mu
-        for name, factor in (("volume", volume), ("depth", volume / contact.area)):
-            values[f"wear_{name}_per_cycle"] = Value(factor * energy, factor * energy_error)
+    """The outputs in SI units, without those that the contact does not have."""
+    factors, values = factors_of(contact, answer), {}
+    for name, output in OUTPUTS.items():
+        names = (output.factors or name).split()
+        numbers: list[Any] = [
+            factors[n] if n in factors else getattr(contact, n, None) for n in names
+        ]
+        if all(number is not None for number in numbers):
+            product: Any = reduce(mul, numbers)
+            if isinstance(product, Value):
+                values[name] = product.plain()
+            elif not np.all(np.isnan(product)):
+                values[name] = Value(product).plain()
     return values
+
+
+def factors_of(contact: Contact, answer: Answer) -> dict[str, Any]:
+    """Factors of the outputs by name, in SI units, in addition to the attributes of the contact.
+    All formulas accept arrays."""
+    inputs, known, mean_load = contact.inputs, answer.values, answer.values["mean_load"].value
+    friction, velocity, unit = known["friction"], known["velocity"], contact.speed_unit
+    still, period = contact.mu * contact.load * mean_load, 2.0 * math.pi / contact.omega
+    speed = Value(inputs.speed) if inputs.force is None else velocity * unit
+    factors: dict[str, Any] = dict.fromkeys(DRIVES.values())
+    factors |= contact.drive(mean_load) | known
+    factors |= {"sliding_friction": still, "force_reduction": Value(1.0) - friction}
+    factors["millimetre"] = 1e-3
+    if contact.kind.unit == "rad" and np.all(inputs.amplitude == 0.0):
+        factors["velocity"] = None
+    if inputs.mass is not None and np.any(inputs.mass > 0.0) and not contact.steady:
+        stiffness = factors["stiffness"] if inputs.drive_stiffness is not None else 0.0
+        ratio = (stiffness + STICKING) / factors["mass"]
+        factors["natural_frequency"] = inputs.frequency * ratio**0.5
+    with np.errstate(divide="ignore", invalid="ignore"):
+        if inputs.force is not None:
+            factors["speed"] = speed
+            if "threshold" in known:
+                ends = (still * x / np.float64(inputs.force) for x in known["threshold"].pair)
+                factors["safety_factor"] = Value(*ends)
+        if answer.outcome == "moves":
+            value, error = speed.pair
+            factors |= {"pace": Value(1.0 / value, error / value / np.asarray(value - error))}
+    if not contact.steady:
+        factors["displacement_per_cycle"] = speed * period
+    if not answer.converged:
+        return factors
+    factors["drag_power"] = drag = friction * speed * still
+    if "torque" in known:
+        power = known["torque"] * (still * contact.contact_radius * contact.omega)
+        total = drag + power
+    elif "dissipation" in known:
+        whole = known["dissipation"] * (still * contact.u_lim / (period * mean_load))
+        # The balance contains the drag at the velocity of the answer, which is smaller than the
+        # requested one if that is outside the range of the solver.
+        power = whole - friction * velocity * (still * unit)
+        total = replace(drag + power, error=np.maximum(whole.error, drag.error))
+    else:
+        return factors
+    if not np.any(0.0 if inputs.damping is None else inputs.damping):
+        factors["vibration_power"] = power  # a dashpot dissipates an unknown part of it
+    factors |= {"dissipated_power": total, "period": period, "per_area": 1.0 / contact.area}
+    if inputs.wear_coefficient is not None:
+        factors["wear"] = inputs.wear_coefficient / contact.mu  # m^3/J
+    return factors
 
 
 def _remarks(contact: Contact, answer: Answer) -> list[str]:
@@ -255,8 +223,8 @@ def _remarks(contact: Contact, answer: Answer) -> list[str]:
         remarks.append(REFERENCE_LOADS)
     if inputs.force is None and "static" in known:
         threshold = known.get("threshold")
-        if threshold is None and contact.kind.along:
+        if threshold is None:
             remarks.append(UNKNOWN_THRESHOLD)
-        elif threshold is not None and threshold.value != known["static"].value:
+        elif threshold.value != known["static"].value:
             remarks.append(ALONG_THE_DRIVE)
     return remarks

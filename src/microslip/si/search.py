@@ -3,15 +3,14 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
 from dataclasses import replace
 from typing import Any, NamedTuple
 
-from microslip.answer.answer import Estimate
 from microslip.foundation.errors import InputError
 from microslip.foundation.number_text import number_text
 from microslip.si.contact import Contact, contact_of
 from microslip.si.inputs import Inputs
+from microslip.si.output import Value
 from microslip.si.solve import TOLERANCE, solve_at
 
 AMPLITUDES = 1e-6, 1e4
@@ -38,31 +37,32 @@ class _SolverFailureError(Exception):
 class _Line(NamedTuple):
     """The unknown as a function of a place, along which friction decreases.
 
+    The unknown is unit * exp(power * place), in its SI unit.
+
     Attributes
     ----------
-    size : callable
-        size(place): the unknown in its SI unit.
+    unit, power : float
+        See above.
     low, start, high : float
         First place, initial guess of the bracket's upper end, and last place.
     every, none : str
         Subjects of the messages if the reduction is too large at `low`, or too small everywhere.
-    end : float or None
-        Place with the least friction, if known.
-    rate : float
-        Derivative of log(size) with respect to the place.
     """
 
-    size: Callable[[float], float]
+    unit: float
+    power: float
     low: float
     start: float
     high: float
     every: str
     none: str
-    end: float | None = None
-    rate: float = 1.0
+
+    def size(self, place: float) -> float:
+        """The unknown in its SI unit."""
+        return self.unit * math.exp(self.power * place)
 
 
-def find_reduction(inputs: Inputs) -> tuple[Contact, Estimate]:
+def find_reduction(inputs: Inputs) -> tuple[Contact, Value]:
     """The contact with the smallest amplitude, the largest speed or the largest load that gives the
     reduction, and this quantity in its SI unit.
 
@@ -75,7 +75,7 @@ def find_reduction(inputs: Inputs) -> tuple[Contact, Estimate]:
     _check_share(inputs, share, tolerance)
     line = _line(inputs, name, share)
     last: Any = None
-    error, reductions, text = 0.0, [], inputs.given["reduction"]
+    error, reductions = 0.0, []
 
     def excess(place: float) -> float:
         """mu_macro minus the requested mu_macro."""
@@ -90,25 +90,25 @@ def find_reduction(inputs: Inputs) -> tuple[Contact, Estimate]:
         reductions.append((100.0 * (1.0 - friction), 100.0 * error))
         return friction - (1.0 - share)
 
+    def refuse(problem: str) -> NoSolutionError:
+        return NoSolutionError("reduction", inputs.given["reduction"], problem)
+
     try:
         if excess(line.low) < 0.0:
-            problem = f"{line.every} reduces friction by more: {number_text(*min(reductions))} %"
-            raise NoSolutionError("reduction", text, problem)
+            raise refuse(f"{line.every} reduces friction by more: {number_text(*reductions[0])} %")
         high = line.start
-        if line.end is not None and excess(line.end) > 0.0:
-            high = math.inf
-        while high > line.high or excess(high) > 0.0:
+        if name == "speed" and excess(math.inf) > 0.0:
+            high = line.high
+        while excess(high) > 0.0:
             if high >= line.high:
                 most = number_text(*max(reductions))
-                problem = f"{line.none} reduces friction by more than {most} %"
-                raise NoSolutionError("reduction", text, problem)
+                raise refuse(f"{line.none} reduces friction by more than {most} %")
             high = min(high + math.log(2.0), line.high)
         place = brentq(excess, line.low, high, xtol=0.1 * tolerance)
-        here = excess(place)
-        error_here = error
+        here, error_here = excess(place), error
         slopes = [excess(place - STEP) - here, here - excess(place + STEP)]
     except _SolverFailureError:
-        return last, Estimate(getattr(last.inputs, name), {"model": math.nan})
+        return last, Value(getattr(last.inputs, name), math.nan)
     steep = [slope / STEP for slope in slopes if slope > 0.0]
     place_error = (abs(here) + error_here) / min(steep) if steep else math.inf
     size = line.size(place)
@@ -117,15 +117,15 @@ def find_reduction(inputs: Inputs) -> tuple[Contact, Estimate]:
     except InputError as problem:
         allowed = f"it takes a {name} of {size:.3g} {inputs.unit(name)}; {problem}"
         raise inputs.error("reduction", allowed) from None
-    return contact, Estimate(size, {"model": abs(line.rate) * size * place_error})
+    return contact, Value(size, abs(line.power) * size * place_error)
 
 
 def _check_share(inputs: Inputs, share: float, tolerance: float) -> None:
     """Raise InputError for a reduction that no search can determine."""
-    allowed, spins = "", inputs.kind.unit == "rad"
+    allowed = ""
     if share < tolerance:
         allowed = f"allowed is at least the tolerance, {tolerance:g}"
-    elif spins and share == 1.0:
+    elif inputs.kind.unit == "rad" and share == 1.0:
         allowed = "allowed is less than 100 %: the centre of a contact that spins always sticks"
     elif inputs.search != "speed" and inputs.speed and share > 1.0 - tolerance:
         allowed = f"allowed is at most {100.0 * (1.0 - tolerance):g} %, 100 % minus the tolerance"
@@ -139,48 +139,32 @@ def _check_share(inputs: Inputs, share: float, tolerance: float) -> None:
 def _line(inputs: Inputs, name: str, share: float) -> _Line:
     """The line of a search."""
     low, high = (math.log(one) for one in AMPLITUDES)
-    if name == "amplitude":
-        # A place is the logarithm of the dimensionless amplitude.
-        contact, spins = Contact(inputs.at(amplitude=0.0)), inputs.kind.unit == "rad"
+    spins = inputs.kind.unit == "rad"
+    if name == "amplitude":  # a place is the logarithm of the dimensionless amplitude
+        contact = Contact(inputs.at(amplitude=0.0))
         unit = contact.u_lim / (contact.contact_radius if spins else 1.0)
         text = "u_lim divided by the contact radius" if spins else "u_lim"
         every = f"the smallest amplitude of the search, {AMPLITUDES[0]:g} times {text},"
-        none = f"no amplitude up to {AMPLITUDES[1]:g} times {text}"
-        return _Line(lambda place: unit * math.exp(place), low, 0.0, high, every, none)
-    if name == "speed":
-        # A place is minus the logarithm of the speed.
+        return _Line(
+            unit, 1.0, low, 0.0, high, every, f"no amplitude up to {AMPLITUDES[1]:g} times {text}"
+        )
+    if name == "speed":  # a place is minus the logarithm of the speed
         contact = Contact(inputs.at(speed=0.0))
         unit = contact.speed_unit
-        if not (contact.steady or contact.kind.unit == "rad"):
+        if not (contact.steady or spins):
             unit *= max(1.0, float(contact.amplitude))  # the speed of the vibration
-        slow, fast = SPEEDS
-        every = f"the largest speed of the search, {fast * unit:.2g} m/s,"
-        return _Line(
-            lambda place: unit * math.exp(-place),
-            -math.log(fast),
-            0.0,
-            -math.log(slow),
-            every,
-            "no speed",
-            math.inf,
-            -1.0,
-        )
+        slow, fast = (-math.log(one) for one in SPEEDS)
+        every = f"the largest speed of the search, {SPEEDS[1] * unit:.2g} m/s,"
+        return _Line(unit, -1.0, fast, 0.0, slow, every, "no speed")
     # A place is the logarithm of the dimensionless amplitude, which is a power of the load with a
     # negative exponent.  Under a large load nothing slips, and under a small load the dimensionless
     # velocity of a bore is large.  The reduction is largest in between.  Small steps from large
     # loads downwards find the first load with the requested reduction.
-    sizes = [float(Contact(inputs.at(load=f * REFERENCE_LOAD)).amplitude) for f in (1.0, 8.0)]
-    power = math.log(sizes[0] / sizes[1]) / math.log(8.0)
-
-    def load_at(place: float) -> float:
-        return REFERENCE_LOAD * (sizes[0] / math.exp(place)) ** (1.0 / power)
-
-    return _Line(
-        load_at,
-        low,
-        math.log(0.01 * share),
-        high,
-        f"the largest load of the search, {load_at(low):.2g} N,",
-        f"no load of the search, down to {load_at(high):.2g} N,",
-        rate=1.0 / power,
+    first, second = (Contact(inputs.at(load=f * REFERENCE_LOAD)).amplitude for f in (1.0, 8.0))
+    power = math.log(8.0) / math.log(float(second / first))
+    line = _Line(REFERENCE_LOAD * float(first) ** -power, power, low, 0.0, high, "", "")
+    return line._replace(
+        start=math.log(0.01 * share),
+        every=f"the largest load of the search, {line.size(low):.2g} N,",
+        none=f"no load of the search, down to {line.size(high):.2g} N,",
     )

@@ -29,6 +29,7 @@ from microslip.foundation.errors import InputError, shown
 from microslip.motions.problem import Problem
 from microslip.si.contact import DRIVES, Contact
 from microslip.si.map import MAP, FrictionMap
+from microslip.si.output import Value
 
 TOLERANCE, TOLERANCE_OF_SPEED = 1e-3, 1e-2
 """Default tolerance of mu_macro, and default relative tolerance of the speed under a force."""
@@ -54,7 +55,7 @@ class Answer:
 
     Attributes
     ----------
-    values : dict of Estimate
+    values : dict of Value
         friction: mean forward force divided by mu times the mean load; velocity; static: friction
         in the limit of vanishing velocity; threshold: smallest constant force that moves the
         contact, divided as the friction; largest_force: smallest force at which it runs away;
@@ -75,7 +76,7 @@ class Answer:
         Why the error of `static` is above its tolerance, and why `displacement` is unknown.
     """
 
-    values: dict[str, Estimate]
+    values: dict[str, Value]
     model: str = "none"
     converged: bool = False
     reason: str = ""
@@ -94,25 +95,21 @@ def answer_of(contact: Contact) -> Answer:
         where = f"velocity {result.velocity:.3g}"
         where += "" if result.amplitude is None else f", amplitude {result.amplitude:.3g}"
         raise InputError("map", result.motion, f"at {where}: {result.reason}")
-    values = {
-        "mean_load": Estimate(contact.mean_load),
-        "friction": result.friction,
-        "velocity": result.mean_velocity,
-        "static": None if limit is None else limit.friction,
-        "threshold": threshold,
-        "largest_force": Estimate(largest_force(contact)) if forced else None,
-    }
+    estimates: dict[str, Estimate | None] = {"friction": result.friction, "threshold": threshold}
+    estimates |= {"velocity": result.mean_velocity, "static": limit.friction if limit else None}
     if result.converged:
-        torque = result.torque
-        values |= {"torque": None if torque is None else contact.shape.torque * torque}
-        values |= {"dissipation": result.dissipation}
-    outcome = _outcome(contact, result) if forced else ""
-    reasons = {} if limit is None or not limit.reason else {"static": limit.reason}
-    if outcome == "stays":
-        rest, reason = _rest(contact)
-        values, reasons = values | rest, reasons | ({"displacement": reason} if reason else {})
-    known = {name: one for name, one in values.items() if one is not None}
-    return Answer(known, result.model, result.converged, result.reason, outcome, reasons)
+        torque = contact.shape.torque * result.torque if result.torque else None
+        estimates |= {"torque": torque, "dissipation": result.dissipation}
+    values = {"mean_load": Value(contact.mean_load)}
+    values |= {n: Value(one.value, one.error) for n, one in estimates.items() if one is not None}
+    reasons, outcome = {"static": limit.reason} if limit and limit.reason else {}, ""
+    if forced:
+        values["largest_force"] = Value(largest_force(contact))
+        outcome = _outcome(contact, result)
+    if outcome == "stays" and not contact.steady:
+        rest, reasons["displacement"] = _rest(contact)
+        values |= rest
+    return Answer(values, result.model, result.converged, result.reason, outcome, reasons)
 
 
 def solve_at(contact: Contact, velocity: float | None, tolerance: float, **changes: Any) -> Result:
@@ -132,7 +129,7 @@ def solve_at(contact: Contact, velocity: float | None, tolerance: float, **chang
     if inputs.map is not None:
         assert velocity is not None  # a map is not allowed with a force
         friction = FrictionMap(inputs.map, str(contact.motion), pressure)
-        return friction.solve(velocity, amplitude, poisson=poisson, tolerance=tolerance)
+        return friction.solve(velocity, amplitude, poisson, tolerance)
     try:
         return solve(
             contact.motion,
@@ -270,7 +267,7 @@ def _outcome(contact: Contact, result: Result) -> str:
     return "moves" if value > error else "undecided"
 
 
-def _rest(contact: Contact) -> tuple[dict[str, Estimate | None], str]:
+def _rest(contact: Contact) -> tuple[dict[str, Value], str]:
     """The displacement until the contact rests and the number of cycles, or why they are unknown.
 
     They are computed for round contacts only, because other contacts would take minutes.
@@ -291,8 +288,6 @@ def _rest(contact: Contact) -> tuple[dict[str, Estimate | None], str]:
         return {}, error.allowed
     if not rest.converged:
         return {}, rest.reason
+    values = {"displacement": Value(rest.displacement, rest.displacement_error)}
     cycles = rest.most_after
-    return {
-        "displacement": Estimate(rest.displacement, {"model": rest.displacement_error}),
-        "cycles": None if cycles is None else Estimate(float(cycles)),
-    }, ""
+    return values | ({} if cycles is None else {"cycles": Value(float(cycles))}), ""

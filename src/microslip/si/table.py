@@ -18,7 +18,7 @@ from microslip.foundation.errors import InputError
 from microslip.foundation.number_text import SEPARATOR, number_text
 from microslip.si.inputs import INPUTS, Inputs, kind_of, read_quantity
 from microslip.si.output import REASONS, TEXTS, Prediction, Value, input_column
-from microslip.si.predict import checked_inputs, predict_inputs
+from microslip.si.predict import checked_inputs, predict_inputs, unsolved
 from microslip.si.search import NoSolutionError
 from microslip.si.solve import RUNS_AWAY
 
@@ -290,16 +290,7 @@ def _prediction(inputs: Inputs | InputError | str) -> Prediction | InputError | 
     try:
         return predict_inputs(inputs)
     except NoSolutionError as error:
-        values = {n: Value(one.si) for n, one in inputs.quantities.items()}
-        name = str(inputs.search)
-        return Prediction(
-            motion=inputs.texts["motion"].split(":")[0],
-            inputs=inputs.texts,
-            input_values=values | {name: Value(math.nan, math.nan)},
-            input_units={one: inputs.unit(one) for one in [*values, name]},
-            search=name,
-            reason=error.allowed,
-        )
+        return unsolved(inputs, error.allowed)
     except InputError as error:
         return error
 

@@ -6,21 +6,21 @@ by the closest value of the range.  All closed forms are evaluated for each draw
 solver depends on the draw through a few dimensionless groups.  If the groups of all draws lie on a
 line, the solver computes the answer at a few of its points, and the answer is interpolated.  In
 general, the changes along several lines are added: the principal axes of the groups, or the axes of
-the inputs if there are fewer of them.
+the inputs if there are at most as many.
 """
 
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
-from functools import partial
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import replace
 from itertools import pairwise
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
-from microslip.answer.answer import Estimate
 from microslip.foundation.errors import InputError
+from microslip.foundation.number_text import ROUNDING
 from microslip.si.contact import Contact
 from microslip.si.inputs import INPUTS, Inputs
 from microslip.si.output import INTERVAL, Value
@@ -49,13 +49,57 @@ which the axis is ignored.  Also the fraction of draws without a finite value fr
 standard uncertainty is infinite."""
 SMALLEST = 5e-324
 """Smallest positive number.  It replaces 0 for an input that must be above 0."""
-SOLVED = ("mean_load", "largest_force", "torque", "dissipation", "displacement", "cycles")
-"""Values of an answer that are interpolated between solved answers."""
 DRIVEN = ("velocity", "force", "stiffness", "mass", "damping")
 """Groups that have no effect on the static limit."""
 
-Solve = Callable[[Inputs], tuple[Contact, Answer, Estimate | None]]
+Solve = Callable[[Inputs], tuple[Contact, Answer, Value | None]]
 """Function solve(inputs) -> contact, answer, result of a search or None.  Raises InputError."""
+
+
+class _Line(NamedTuple):
+    """A line through the draws, along which a value is interpolated.
+
+    Attributes
+    ----------
+    places, levels : np.ndarray, shape (DRAWS,)
+        Coordinate of each draw along the line, and its distance from the centre in standard
+        deviations.
+    inputs_at, place_at : callable
+        inputs_at(level) -> Inputs, and place_at(level) -> coordinate.
+    """
+
+    places: np.ndarray
+    levels: np.ndarray
+    inputs_at: Callable[[float], Inputs]
+    place_at: Callable[[float], float]
+
+    def add(self, nodes: dict, level: float, value: Callable[[Inputs], float]) -> None:
+        """Add the value at a level to the nodes, or the value nearer to the centre if there is
+        none.  nodes: level, place and value, keyed by the requested level."""
+        for factor in NEARER:
+            try:
+                number = value(self.inputs_at(factor * level))
+            except (InputError, ArithmeticError):  # outside the range of the theory or the solver
+                continue
+            nodes[level] = factor * level, self.place_at(factor * level), number
+            return
+
+    def values(self, nodes: dict) -> np.ndarray:
+        """Values of all draws: interpolated between the nodes, constant outside, and NaN where the
+        nearest node has no value."""
+        from scipy.interpolate import PchipInterpolator
+
+        _, places, values = np.array(sorted(nodes.values(), key=lambda node: node[1])).T
+        places, first = np.unique(places, return_index=True)
+        values = values[first]
+        good = np.isfinite(values)
+        x, y = places[good], values[good]
+        if len(x) < 2:
+            result = np.full(self.places.shape, y[0] if len(y) else math.nan)
+        else:
+            result = PchipInterpolator(x, y)(np.clip(self.places, x[0], x[-1]))
+        nearest = np.searchsorted(0.5 * (places[1:] + places[:-1]), self.places)
+        return np.where(good[nearest], result, math.nan)
 
 
 class Draws:
@@ -77,238 +121,149 @@ class Draws:
     """
 
     def __init__(self, inputs: Inputs, contact: Contact, answer: Answer, solve: Solve):
-        self._inputs, self._centre, self._central, self._solve = inputs, contact, answer, solve
-        self._names, self._normal = list(inputs.uncertain), normal_numbers(len(inputs.uncertain))
-        self._solutions: dict[tuple, tuple[Answer, float] | None] = {}
-        drawn = self._drawn(self._normal)
+        self._inputs, self._centre, self._solve = inputs, contact, solve
+        self._normal = normal_numbers(len(inputs.uncertain))
+        self._solutions: dict[tuple, dict[str, float]] = {}
+        drawn, central = self._drawn(self._normal), answer.values
         self.contact = Contact(contact.inputs.at(**drawn))
-        lines, names = self._lines(False), [*SOLVED, "velocity", "friction"]
-        known = {n: self._interpolated(n, lines) for n in names if n in answer.values}
-        limit, threshold = answer.values.get("static"), answer.values.get("threshold")
-        if limit is not None:
-            searched = inputs.search is not None
-            known["static"] = (
-                self._interpolated("static", lines) if searched else self._static(self._lines(True))
-            )
-        if threshold is not None:
-            same = threshold == limit
-            known["threshold"] = _estimate(
-                known["static"].value if same else self._interpolated("threshold", lines).value,
-                threshold.by_source,
-            )
+        lines = self._lines(False)
+        known = {name: self._interpolated(name, lines) for name in central if name != "static"}
+        if "static" in central:
+            limits = self._interpolated("static", lines) if inputs.search else self._static(central)
+            known["static"] = limits
+            if central.get("threshold") == central["static"]:
+                known["threshold"] = limits
         if inputs.search is not None:
-            drawn[inputs.search] = np.exp(self._interpolated("root", lines).value)
+            drawn[inputs.search] = np.exp(self._interpolated("root", lines))
             self.contact = Contact(inputs.at(**drawn))
-        if inputs.force is not None:
-            self._set_outcomes(known)
-        self.answer = Answer(known, answer.model, answer.converged, "", answer.outcome)
+        if inputs.force is not None:  # draws that stay or run away
+            force = self.contact.drive(known["mean_load"])["force"]
+            velocity = np.maximum(known["velocity"], 0.0)
+            velocity = np.where(force < known.get("threshold", -math.inf), 0.0, velocity)
+            known["velocity"] = np.where(force >= known["largest_force"], math.inf, velocity)
+            known["friction"] = np.minimum(force, 1.0)
+        values = {name: Value(numbers) for name, numbers in known.items()}
+        if "threshold" in known:
+            values["threshold"] = Value(known["threshold"], central["threshold"].error)
+        self.answer = replace(answer, values=values)
 
     def _drawn(self, normal: np.ndarray) -> dict[str, Any]:
         """Values of the uncertain inputs within their ranges, from standard normal numbers of shape
         (..., inputs)."""
-        return {
-            name: _clipped(self._inputs, name, normal[..., k]) for k, name in enumerate(self._names)
-        }
+        names = enumerate(self._inputs.uncertain)
+        return {name: _clipped(self._inputs, name, normal[..., k]) for k, name in names}
 
-    # Answers of the solver
-
-    def _value(self, name: str, inputs: Inputs) -> float:
-        """A value of the answer for other inputs, NaN without one.  "root" is the logarithm of the
-        result of a search.  Raises InputError."""
+    def _solution(self, inputs: Inputs) -> dict[str, float]:
+        """The answer for other inputs; empty without one.  "root" is the logarithm of the result of
+        a search.  Raises InputError."""
         key = tuple(float(one.si) for one in inputs.quantities.values())
         if key not in self._solutions:
+            self._solutions[key] = {}
             try:
                 _, answer, root = self._solve(inputs)
-                size = math.nan if root is None else math.log(root.value)
-                self._solutions[key] = answer, size
+                self._solutions[key] = {name: one.value for name, one in answer.values.items()}
+                self._solutions[key] |= {"root": math.log(root.value)} if root else {}
             except NoSolutionError:
-                self._solutions[key] = None
-        solution = self._solutions[key]
-        if solution is None:
-            return math.nan
-        one = solution[0].values.get(name)
-        return solution[1] if name == "root" else math.nan if one is None else one.value
+                pass
+        return self._solutions[key]
 
-    def _limit(self, inputs: Inputs) -> float:
-        """The static limit for other inputs, NaN without one."""
-        contact = Contact(inputs)
-        if contact.amplitude <= 0.0:
-            return 1.0
-        return static_limit(contact).mu_macro if math.isfinite(contact.amplitude) else 0.0
-
-    def _interpolated(self, name: str, lines: list[_Line]) -> Estimate:
+    def _interpolated(self, name: str, lines: list[_Line]) -> np.ndarray:
         """A value of the answer for all draws."""
-        value = partial(self._value, name)
-        central = self._central.values[name].value if name != "root" else value(self._inputs)
+
+        def value(inputs: Inputs) -> float:
+            return self._solution(inputs).get(name, math.nan)
+
+        return self._total(value(self._inputs), lines, LEVELS, value)
+
+    def _total(
+        self,
+        central: float,
+        lines: list[_Line],
+        levels: Sequence[float],
+        value: Callable[[Inputs], float],
+        refine: Callable[[_Line, dict], None] = lambda line, nodes: None,
+    ) -> np.ndarray:
+        """The central value and its changes along all lines.  refine: adds more nodes."""
         total = np.full(DRAWS, central)
         for line in lines:
-            line.start(central)
-            for level in LEVELS:
-                line.add(level, value)
-            total += line.values() - central
-        return _estimate(total)
+            nodes = {0.0: (0.0, line.place_at(0.0), central)}
+            for level in levels:
+                line.add(nodes, level, value)
+            refine(line, nodes)
+            total += line.values(nodes) - central
+        return total
 
-    def _static(self, lines: list[_Line]) -> Estimate:
+    def _static(self, central: Mapping[str, Value]) -> np.ndarray:
         """The static limit for all draws.  Points are added where it vanishes and where it is close
         to the force."""
-        central = self._central.values["static"].value
-        drive = self.contact.drive()
-        total = np.full(DRAWS, central)
-        for line in lines:
-            line.start(central)
-            for level in STATIC_LEVELS:
-                line.add(level, self._limit)
+        force, lines = self.contact.drive().get("force"), self._lines(True)
+
+        def limit(inputs: Inputs) -> float:
+            contact = Contact(inputs)
+            if contact.amplitude <= 0.0:
+                return 1.0
+            return static_limit(contact).mu_macro if math.isfinite(contact.amplitude) else 0.0
+
+        def refine(line: _Line, nodes: dict) -> None:
             for _ in range(REFINEMENTS):
-                pairs = pairwise(sorted(line.levels.values()))
-                ends = [(a, b) for (a, x), (b, y) in pairs if (x > VANISHING) != (y > VANISHING)]
+                pairs = pairwise(sorted(nodes.values()))
+                ends = [
+                    (a, b) for (a, _, x), (b, _, y) in pairs if (x > VANISHING) != (y > VANISHING)
+                ]
                 if ends:
-                    line.add(0.5 * sum(ends[0]), self._limit)
-            for _ in range(REFINEMENTS if "force" in drive and len(lines) == 1 else 0):
-                distance = np.abs(line.values() - drive["force"])
+                    line.add(nodes, 0.5 * sum(ends[0]), limit)
+            for _ in range(REFINEMENTS if force is not None and len(lines) == 1 else 0):
+                distance = np.abs(line.values(nodes) - force)
                 closest = np.argpartition(distance, DRAWS // CLOSEST)[: DRAWS // CLOSEST]
-                line.add(float(np.median(line.level_of(closest))), self._limit)
-            total += line.values() - central
-        return _estimate(np.clip(total, 0.0, 1.0))
+                line.add(nodes, float(np.median(line.levels[closest])), limit)
 
-    def _set_outcomes(self, known: dict[str, Estimate]) -> None:
-        """Set the friction and the velocity of draws that stay or run away."""
-        force = self.contact.drive(known["mean_load"].value)["force"]
-        velocity = np.maximum(known["velocity"].value, 0.0)
-        if "threshold" in known:
-            velocity = np.where(force < known["threshold"].value, 0.0, velocity)
-        away = force >= known["largest_force"].value
-        known["velocity"] = _estimate(np.where(away, math.inf, velocity))
-        known["friction"] = _estimate(np.minimum(force, 1.0))
-
-    # Lines
+        total = self._total(central["static"].value, lines, STATIC_LEVELS, limit, refine)
+        return np.clip(total, 0.0, 1.0)
 
     def _groups(self, contact: Contact, static: bool) -> np.ndarray:
         """Groups of a contact relative to the centre, shape (draws, groups)."""
         central, columns = self._centre.coordinates, []
         for name, value in contact.coordinates.items():
-            reference = central[name]
             if static and name in DRIVEN:
                 continue
-            if name in ("poisson", "phase") or not reference:
-                columns.append(value - reference)
-            else:  # smooth at 0 and at infinity
-                columns.append(1.0 / (1.0 + reference / np.asarray(value)) - 0.5)
-        shape = np.shape(np.broadcast_arrays(*columns)[0]) or (1,)
-        return np.nan_to_num(np.stack([np.broadcast_to(x, shape) for x in columns], axis=-1))
+            change, reference = value - central[name], central[name]
+            if name not in ("poisson", "phase") and reference:  # smooth at 0 and at infinity
+                change = 1.0 / (1.0 + reference / np.asarray(value)) - 0.5
+            columns.append(np.atleast_1d(change))
+        return np.nan_to_num(np.stack(np.broadcast_arrays(*columns), axis=-1))
 
     def _lines(self, static: bool) -> list[_Line]:
-        """The lines along which the answer, or the static limit, varies."""
-        normal, count = self._normal, len(self._names)
+        """The lines along which the answer, or the static limit, varies: the principal axes of the
+        groups, or the axes of the inputs if there are at most as many."""
+        normal, count = self._normal, len(self._inputs.uncertain)
         base = self._centre.inputs if static else self._inputs
         groups = self._groups(self.contact, static)
         if len(groups) == 1:
             return []
         middle = groups.mean(axis=0)
         _, sizes, axes = np.linalg.svd(groups[::8] - middle, full_matrices=False)
-        rank = int(np.sum(sizes > NEGLIGIBLE * sizes[0])) if sizes[0] > 0.0 else 0
+        axes = axes[: int(np.sum(sizes > NEGLIGIBLE * sizes[0])) if sizes[0] > 0.0 else 0]
+        by_inputs = len(axes) >= max(count, 2)
+        scores = normal if by_inputs else (groups - middle) @ axes.T
+        deviations = scores.std(axis=0)
+        slopes = np.linalg.lstsq(scores, normal, rcond=None)[0] * deviations[:, None]
+        directions = np.ones((1, 1)) if count == 1 and not by_inputs else slopes
+        levels = normal if count == 1 else scores / deviations
 
-        def inputs_at(numbers: np.ndarray) -> Inputs:
-            return base.at(**{n: np.float64(x) for n, x in self._drawn(numbers).items()})
+        def line(axis: int) -> _Line:
+            def inputs_at(level: float) -> Inputs:
+                drawn = self._drawn(level * directions[axis])
+                return base.at(**{name: np.float64(one) for name, one in drawn.items()})
 
-        if rank >= count and rank > 1:
-            units = np.eye(count)
-            return [
-                _Line(normal[:, k], normal[:, k], partial(_on_axis, units[k], inputs_at), None)
-                for k in range(count)
-            ]
-        scores = (groups - middle) @ axes[:rank].T
-        slopes = np.linalg.lstsq(scores, normal, rcond=None)[0]
+            def place_at(level: float) -> float:
+                drawn = self._drawn(level * directions[axis][None, :])
+                contact = Contact(self._centre.inputs.at(**drawn))
+                return float((self._groups(contact, static)[0] - middle) @ axes[axis])
 
-        def place_of(axis: int, numbers: np.ndarray) -> float:
-            contact = Contact(self._centre.inputs.at(**self._drawn(numbers[None, :])))
-            return float((self._groups(contact, static)[0] - middle) @ axes[axis])
+            place = float if by_inputs else place_at
+            return _Line(scores[:, axis], levels[:, axis], inputs_at, place)
 
-        lines = []
-        for axis in range(rank):
-            size = np.std(scores[:, axis])
-            direction = np.array([1.0]) if count == 1 else slopes[axis] * size
-            levels = normal[:, 0] if count == 1 else scores[:, axis] / size
-            at = partial(_on_axis, direction, inputs_at)
-            place = partial(_place_on_axis, direction, partial(place_of, axis))
-            lines.append(_Line(scores[:, axis], levels, at, place))
-        return lines
-
-
-class _Line:
-    """A line through the draws, along which a value is interpolated.
-
-    Parameters
-    ----------
-    places : np.ndarray, shape (DRAWS,)
-        Coordinate of each draw.
-    draw_levels : np.ndarray, shape (DRAWS,)
-        Level of each draw: its distance from the centre along the line, in standard deviations.
-    inputs_at : callable
-        inputs_at(level) -> Inputs.
-    place_at : callable or None
-        place_at(level) -> coordinate; None if it is the level.
-    """
-
-    def __init__(
-        self,
-        places: np.ndarray,
-        draw_levels: np.ndarray,
-        inputs_at: Callable[[float], Inputs],
-        place_at: Callable[[float], float] | None,
-    ):
-        self._places, self._draw_levels = places, draw_levels
-        self._inputs_at, self._place_at = inputs_at, place_at or float
-        self._nodes: dict[float, float] = {}
-        self.levels: dict[float, tuple[float, float]] = {}
-
-    def start(self, central: float) -> None:
-        """Begin with the value at the centre."""
-        self._nodes = {self._place_at(0.0): central}
-        self.levels = {0.0: (0.0, central)}
-
-    def add(self, level: float, value: Callable[[Inputs], float]) -> None:
-        """Add the value at a level, or nearer to the centre if there is none."""
-        for factor in NEARER:
-            try:
-                number = value(self._inputs_at(factor * level))
-            except (InputError, ArithmeticError):  # outside the range of the theory or the solver
-                continue
-            self._nodes[self._place_at(factor * level)] = number
-            self.levels[level] = factor * level, number
-            return
-
-    def level_of(self, draws: np.ndarray) -> np.ndarray:
-        """Levels of draws."""
-        return self._draw_levels[draws]
-
-    def values(self) -> np.ndarray:
-        """Values of all draws: interpolated between the nodes, constant outside, and NaN where the
-        nearest node has no value."""
-        from scipy.interpolate import PchipInterpolator
-
-        places = np.array(sorted(self._nodes))
-        values = np.array([self._nodes[one] for one in places])
-        good = np.isfinite(values)
-        x, y = places[good], values[good]
-        if len(x) < 2:
-            result = np.full(self._places.shape, y[0] if len(y) else math.nan)
-        else:
-            result = PchipInterpolator(x, y)(np.clip(self._places, x[0], x[-1]))
-        nearest = np.searchsorted(0.5 * (places[1:] + places[:-1]), self._places)
-        return np.where(good[nearest], result, math.nan)
-
-
-def _on_axis(direction: np.ndarray, inputs_at: Callable, level: float) -> Inputs:
-    return inputs_at(level * direction)
-
-
-def _place_on_axis(direction: np.ndarray, place_of: Callable, level: float) -> float:
-    return place_of(level * direction)
-
-
-def _estimate(draws: Any, errors: Any = None) -> Estimate:
-    """An Estimate of arrays."""
-    return Estimate(draws, errors or {})
+        return [line(axis) for axis in range(scores.shape[1])]
 
 
 def _clipped(inputs: Inputs, name: str, normal: Any) -> Any:
@@ -321,7 +276,8 @@ def _clipped(inputs: Inputs, name: str, normal: Any) -> Any:
 
 
 def normal_numbers(count: int) -> np.ndarray:
-    """Draws of independent standard normal numbers, shape (DRAWS, count).
+    """Draws of independent standard normal numbers, shape (DRAWS, count), with mean 0 and variance
+    1.
 
     They form a Kronecker sequence.  Its irrational numbers are powers of the root of
     x^(count + 1) = x + 1.
@@ -332,7 +288,8 @@ def normal_numbers(count: int) -> np.ndarray:
     for _ in range(60):  # each step reduces the error by at least a factor of 2
         root = (1.0 + root) ** (1.0 / (count + 1.0))
     steps = root ** -np.arange(1.0, count + 1.0)
-    return ndtri(np.mod(0.5 + np.arange(1.0, DRAWS + 1.0)[:, None] * steps, 1.0))
+    draws = ndtri(np.mod(0.5 + np.arange(1.0, DRAWS + 1.0)[:, None] * steps, 1.0))
+    return (draws - draws.mean(axis=0)) / draws.std(axis=0)
 
 
 def with_interval(one: Value, draws: Any) -> Value:
@@ -342,9 +299,11 @@ def with_interval(one: Value, draws: Any) -> Value:
     drawn = np.where(np.isnan(drawn), math.inf, drawn)
     low, high = np.quantile(drawn, INTERVAL, method="nearest")
     finite = drawn[np.isfinite(drawn)]
-    spread = float(np.std(finite)) if len(finite) and np.ptp(finite) else 0.0
+    spread = float(np.std(finite)) if len(finite) else 0.0
     if len(finite) < (1.0 - NEGLIGIBLE) * DRAWS:
         spread = math.inf
+    elif len(finite) and np.ptp(finite) <= ROUNDING * np.abs(finite).max():
+        spread, low, high = 0.0, one.value, one.value
     return Value(one.value, one.error, spread, float(low), float(high))
 
 
@@ -360,17 +319,16 @@ def probabilities(contact: Contact, answer: Answer) -> dict[str, Value]:
         return {}
     known = answer.values
     force = np.broadcast_to(contact.drive(known["mean_load"].value)["force"], (DRAWS,))
-    away = force >= known["largest_force"].value
+    away, threshold = force >= known["largest_force"].value, known.get("threshold")
     outcomes, shift = {"runs_away": away}, 0.0
-    if "threshold" in known:
-        value, error = known["threshold"].value, known["threshold"].error
-        stays = ~away & (force < value)
-        ends = [np.mean(~away & (force < value + sign * error)) for sign in (-1.0, 1.0)]
-        shift = float(max(abs(end - np.mean(stays)) for end in ends))
+    if threshold is not None:
+        value, error = threshold.pair
+        stays, at_least, at_most = (~away & (force < value + k * error) for k in (0.0, -1.0, 1.0))
+        shift = max(abs(np.mean(end) - np.mean(stays)) for end in (at_least, at_most))
         outcomes |= {"stays": stays, "moves": ~away & ~stays}
     values = {}
     for name, draws in outcomes.items():
-        halves = abs(float(np.mean(draws[::2]) - np.mean(draws[1::2])))
+        halves = abs(np.mean(draws[::2]) - np.mean(draws[1::2]))
         error = max(0.0 if name == "runs_away" else shift, halves, math.log(DRAWS) / DRAWS)
-        values[f"probability_{name}"] = Value(float(np.mean(draws)), error)
+        values[f"probability_{name}"] = Value(float(np.mean(draws)), float(error))
     return values

@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import math
 import re
-import sys
 from collections.abc import Mapping
 from typing import NamedTuple
 
@@ -52,6 +51,13 @@ RADII = np.geomspace(1e-3, 1e3, 3001)
 differ by 0.5 %, which changes the largest force by less than a digit that is printed."""
 
 
+ADHERES = (
+    "clean smooth surfaces adhere with about {pull_off:.2g} N, {pull_off_share:.2g} of the load"
+)
+TABOR = "Tabor's number {tabor:.2g}, Maugis's {maugis:.2g}"
+ATOMS = "less than the distance between atoms, where the theory of continua fails"
+
+
 class Rule(NamedTuple):
     """A condition under which an assumption is violated, and the warning.
 
@@ -71,108 +77,74 @@ class Rule(NamedTuple):
 
 MEASURE = re.compile(r"\{(\w+):\.(\d+)g\}(?: (Pa|N|m)\b)?")
 """Pattern of a measure in a sentence: the name, the number of digits, and the SI unit."""
-ADHERES = (
-    "clean smooth surfaces adhere with about {pull_off:.2g} N, {pull_off_share:.2g} of the load"
-)
-THEORY = f"{ADHERES} (Tabor's number {{tabor:.2g}}, Maugis's {{maugis:.2g}}: %s): adhesion matters"
-PULLS, PAIRS = ("pull_off", SMALL, "load"), ("tabor", 1.0, 0.0)
-TOO_HARD = (
-    "the largest pressure, {largest_pressure:.2g} Pa, is {%s_pressure:.2g} of Young's modulus: "
-    "every metal, ceramic or glass yields under it"
-)
-HALF_SPACES = "the contact radius is {%s:.2g} of the %s: half-spaces are a poor approximation"
-ATOMS = "%s is {%s:.2g} m, less than the distance between atoms, where the theory of continua fails"
-INERTIA = "inertia is not negligible"
-CHECKS = tuple(
-    tuple(Rule(tuple(where), text) for *where, text in group)
-    for group in (
-        (
-            (
-                ("largest_pressure", 1.0, sys.float_info.max),
-                "the pressure is infinite at the tip of the indenter, so the contact yields there "
-                "under any load; the mean pressure is {mean_pressure:.2g} Pa",
-            ),
-            (
-                ("largest_pressure", YIELDS_AT, "hardness"),
-                f"the largest pressure, {{largest_pressure:.2g}} Pa, is above {YIELDS_AT:g} of the "
-                "hardness, {hardness:.2g} Pa: the contact yields, and is larger than in Hertz's "
-                "theory",
-            ),
-        ),
-        tuple(
-            (("largest_pressure", YIELDS_AT * HARDEST, f"{side}_young"), TOO_HARD % side)
-            for side in ("first", "second")
-        ),
-        tuple(
-            (("contact_radius", STEEP, name), HALF_SPACES % (f"over_{name}", text))
-            for name, text in (
-                ("smallest_radius", "smaller radius of the bodies"),
-                ("radius", "radius of relative curvature"),
-            )
-        ),
-        (
-            (
-                ("stroke", 1.0, SMALL),
-                "the amplitude is {stroke:.2g} times the contact radius: the material carries the "
-                "tractions along in a stroke, which the theory neglects",
-            ),
-        ),
-        (
-            (
-                ("crossing", 1.0, SMALL),
-                "a shear wave travels the contact radius in {crossing:.2g} radians of the "
-                f"oscillation: {INERTIA}",
-            ),
-            (
-                ("slip_speed", 1.0, SMALL),
-                f"the slip speed is {{slip_speed:.2g}} times that of shear waves: {INERTIA}",
-            ),
-        ),
-        (
-            (
-                ("mismatch", 1.0, SMALL),
-                "the bodies are elastically dissimilar (Dundurs' beta {mismatch:.2g}): pressure "
-                "moves their surfaces sideways, which the theory neglects",
-            ),
-        ),
-        (
-            (PAIRS, PULLS, ("tabor", 1.0, SHORT), THEORY % "JKR"),
-            (PAIRS, PULLS, (LONG, 1.0, "tabor"), THEORY % "DMT"),
-            (PAIRS, PULLS, THEORY % "between JKR and DMT"),
-            (PULLS, f"{ADHERES}: adhesion matters"),
-        ),
-        (
-            (
-                ("separated", 1.0, 0.0),
-                "the load falls to 0: the bodies separate in every cycle, for {separated:.2g} of "
-                "it, and the mean load is {mean_load:.4g} N",
-            ),
-        ),
-        tuple(
-            ((name, 1.0, 0.0), (RANGE, 1.0, name), ATOMS % (text, name))
-            for name, text in (("u_lim", "u_lim"),)
-        ),
-        tuple(
-            ((name, 1.0, 0.0), (RANGE, 1.0, name), ATOMS % (text, name))
-            for name, text in (("amplitude", "the amplitude"),)
-        ),
-        (
-            (
-                ("mu", 1.0, LARGE_MU),
-                f"mu is {{mu:.3g}}: above {LARGE_MU:g} it is rare except for rubber and clean "
-                "metals that weld, for which Coulomb's law is a poor approximation",
-            ),
-        ),
-        (
-            (
-                ("rubbers", 1.0, 0.0),
-                f"a Poisson's ratio of {RUBBERY:g} or more is that of rubber and soft polymers, "
-                "whose modulus increases with the frequency: give Young's modulus at this "
-                "frequency; internal losses, which add to friction, are neglected",
-            ),
-        ),
-    )
-)
+
+
+def _checks(text: str) -> tuple[tuple[Rule, ...], ...]:
+    """Groups of rules.
+
+    text: a line "condition; condition: sentence" for each rule, and an empty line between groups.
+    A condition is "left > right" or "left > number right", of measures or numbers.
+    """
+
+    def side(word: str) -> float | str:
+        return word if word.isidentifier() else float(word)
+
+    def condition(words: str) -> tuple:
+        left, _, *factor, right = words.split()
+        return side(left), float(factor[0]) if factor else 1.0, side(right)
+
+    groups = []
+    for group in text.strip().split("\n\n"):
+        rows = (line.partition(": ") for line in group.splitlines())
+        groups.append(tuple(Rule(tuple(map(condition, a.split(";"))), b) for a, _, b in rows))
+    return tuple(groups)
+
+
+CHECKS = _checks(f"""
+largest_pressure > 1.79e308: the pressure is infinite at the tip of the indenter, so the contact \
+yields there under any load; the mean pressure is {{mean_pressure:.2g}} Pa
+largest_pressure > {YIELDS_AT} hardness: the largest pressure, {{largest_pressure:.2g}} Pa, is \
+above {YIELDS_AT} of the hardness, {{hardness:.2g}} Pa: the contact yields, and is larger than in \
+Hertz's theory
+
+soft_pressure > {YIELDS_AT * HARDEST}: the largest pressure, {{largest_pressure:.2g}} Pa, is \
+{{soft_pressure:.2g}} of Young's modulus: every metal, ceramic or glass yields under it
+
+over_smallest_radius > {STEEP}: the contact radius is {{over_smallest_radius:.2g}} of the smaller \
+radius of the bodies: half-spaces are a poor approximation
+over_radius > {STEEP}: the contact radius is {{over_radius:.2g}} of the radius of relative \
+curvature: half-spaces are a poor approximation
+
+stroke > {SMALL}: the amplitude is {{stroke:.2g}} times the contact radius: the material carries \
+the tractions along in a stroke, which the theory neglects
+
+crossing > {SMALL}: a shear wave travels the contact radius in {{crossing:.2g}} radians of the \
+oscillation: inertia is not negligible
+slip_speed > {SMALL}: the slip speed is {{slip_speed:.2g}} times that of shear waves: inertia is \
+not negligible
+
+mismatch > {SMALL}: the bodies are elastically dissimilar (Dundurs' beta {{mismatch:.2g}}): \
+pressure moves their surfaces sideways, which the theory neglects
+
+pull_off > {SMALL} load; tabor > {SHORT}: {ADHERES} ({TABOR}: JKR): adhesion matters
+pull_off > {SMALL} load; {LONG} > tabor: {ADHERES} ({TABOR}: DMT): adhesion matters
+pull_off > {SMALL} load; tabor > 0: {ADHERES} ({TABOR}: between JKR and DMT): adhesion matters
+pull_off > {SMALL} load: {ADHERES}: adhesion matters
+
+separated > 0: the load falls to 0: the bodies separate in every cycle, for {{separated:.2g}} of \
+it, and the mean load is {{mean_load:.4g}} N
+
+{RANGE} > u_lim: u_lim is {{u_lim:.2g}} m, {ATOMS}
+
+amplitude > 0; {RANGE} > amplitude: the amplitude is {{amplitude:.2g}} m, {ATOMS}
+
+mu > {LARGE_MU}: mu is {{mu:.3g}}: above 1 it is rare except for rubber and clean metals that \
+weld, for which Coulomb's law is a poor approximation
+
+rubbers > 0: a Poisson's ratio of {RUBBERY} or more is that of rubber and soft polymers, whose \
+modulus increases with the frequency: give Young's modulus at this frequency; internal losses, \
+which add to friction, are neglected
+""")
 """Groups of rules.  The warnings have the order of the groups.  In each group, the first rule that
 applies gives the warning."""
 PROPERTIES = {"hardness": "whether the bodies stay elastic", "density": "inertia"}
@@ -228,53 +200,41 @@ def measures(contact: Contact, speed: float) -> dict[str, float | None]:
     inputs, kind, most = contact.inputs, contact.kind, contact
     if inputs.load_amplitude:
         most = Contact(inputs.at(load=inputs.load + inputs.load_amplitude))
-    a, pressure = most.contact_radius, most.largest_pressure
+    elastic = [b for b in contact.bodies if not b.rigid]
+    a, pressure, edge = most.contact_radius, most.largest_pressure, contact.contact_radius
+    hardness = [b.hardness for b in elastic if b.hardness is not None]
+    # an infinite pressure has its own warning
+    soft = [b.young for b in elastic if b.hardness is None and b.poisson < RUBBERY]
+    waves = [math.sqrt(b.shear_modulus / b.density) for b in elastic if b.density is not None]
     along, turn = _reach(contact)
-    radius, smallest = most.radius, most.smallest_radius
     tabor, pull = _pull_off(contact)
     values: dict[str, float | None] = {
         "largest_pressure": pressure,
         "mean_pressure": most.load / (math.pi * a**2),
-        "hardness": min(
-            (b.hardness for b in contact.bodies if b.hardness is not None), default=None
-        ),
-        "contact_radius": a,
-        "radius": radius,
-        "smallest_radius": smallest,
-        "over_radius": a / radius,
-        "over_smallest_radius": a / smallest,
+        "hardness": min(hardness, default=None),
+        "soft_pressure": pressure / min(soft) if soft and math.isfinite(pressure) else None,
+        "over_radius": a / most.radius,
+        "over_smallest_radius": a / most.smallest_radius,
         "mismatch": abs(contact.mismatch),
         "load": contact.load,
         "u_lim": contact.u_lim,
         "mu": contact.mu,
-        "rubbers": sum(b.poisson >= RUBBERY and not b.rigid for b in contact.bodies),
+        "rubbers": sum(b.poisson >= RUBBERY for b in elastic),
         "tabor": tabor,
         "maugis": None if tabor is None else 1.157 * tabor,
         "pull_off": pull,
         "pull_off_share": None if pull is None else pull / contact.load,
         "amplitude": along,
-        "stroke": None if kind.steady else along / contact.contact_radius,
+        "stroke": None if kind.steady else along / edge,
         "mean_load": contact.load * contact.mean_load,
         "separated": contact.separated,
     }
-    for side, body in zip(("first", "second"), contact.bodies, strict=True):
-        other = body.hardness is not None or body.rigid or body.poisson >= RUBBERY
-        other = other or math.isinf(pressure)  # an infinite pressure has its own warning
-        values[f"{side}_young"] = None if other else body.young
-        values[f"{side}_pressure"] = None if other else pressure / body.young
-    waves = [
-        math.sqrt(b.shear_modulus / b.density)
-        for b in contact.bodies
-        if b.density is not None and not b.rigid
-    ]
     if waves:
-        edge, pace = contact.contact_radius, kind.stroke.pace if kind.stroke else (along, turn)
+        pace = kind.stroke.pace if kind.stroke else (along, turn)
         factor = inputs.amplitude if kind.stroke else 1.0
         slip = speed + contact.omega * factor * (pace[0] + edge * pace[1])
-        if kind.steady:
-            slip = math.hypot(speed, contact.omega * edge)
-        values["crossing"] = contact.omega * edge / min(waves)
-        values["slip_speed"] = slip / min(waves)
+        slip = math.hypot(speed, contact.omega * edge) if kind.steady else slip
+        values |= {"crossing": contact.omega * edge / min(waves), "slip_speed": slip / min(waves)}
     return values
 
 

@@ -74,16 +74,12 @@ function measuresOf(contact) {
   const pull = (tabor > short ? 1.5 : 2) * Math.PI * adhesion * radius;
   const along = motion === "bore" ? 0 : swing, hard = bodies.map((body) => body.hardness).filter((one) => one !== null);
   const values = {
-    largest_pressure: pressure, hardness: Math.min(...hard), contact_radius: a, radius, smallest_radius: radius,
-    over_radius: a / radius, over_smallest_radius: a / radius, mismatch: contact.mismatch, load, u_lim, mu, tabor,
+    largest_pressure: pressure, hardness: Math.min(...hard), over_radius: a / radius, over_smallest_radius: a / radius, mismatch: contact.mismatch, load, u_lim, mu, tabor,
     rubbers: bodies.filter((body) => body.poisson >= rubbery && body.young !== Infinity).length,
     maugis: 1.157 * tabor, pull_off: pull, pull_off_share: pull / load, amplitude: along, stroke: along / a,
   };
-  bodies.forEach(({ hardness, young, poisson }, k) => {
-    if (hardness !== null || young === Infinity || poisson >= rubbery) return;
-    values[`${["first", "second"][k]}_young`] = young;
-    values[`${["first", "second"][k]}_pressure`] = pressure / young;
-  });
+  const soft = bodies.filter((body) => body.hardness === null && body.young !== Infinity && body.poisson < rubbery);
+  if (soft.length) values.soft_pressure = pressure / Math.min(...soft.map((body) => body.young));
   const waves = bodies.flatMap(({ density, young }, k) =>
     density === null || young === Infinity ? [] : [Math.sqrt(shear[k] / density)]);
   if (!waves.length) return values;
