@@ -14,12 +14,11 @@ from stubs.sweep_stub import configured
 
 from microslip.config import load as config
 from microslip.config.load import ConfigError, load
-from microslip.config.settings import KINDS, Sweep
+from microslip.config.settings import Sweep
 from microslip.contact.registry import MODELS
 from microslip.motions.by_name import motion_named
 from microslip.motions.problem import Problem
 from microslip.pressures.by_name import pressure_named
-from microslip.report.figures import drawing
 from microslip.sweeps import request
 
 ROOT = Path(__file__).parents[2]
@@ -112,19 +111,6 @@ def test_the_default_configuration_is_that_of_the_paper_on_a_page():
     assert [name[:4] for name in result.figures] == [f"fig{i}" for i in range(1, 7)]
 
 
-def test_every_kind_of_figure_is_drawn():
-    on_demand = {"fit", "curve"}
-    assert drawing.DRAWN.keys() - on_demand == KINDS.keys() - {"explorer"}
-
-
-STUDIED = {"map": {"velocity": [1, 2], "amplitude_transverse": [1, 2], "amplitude_bore": [1, 2]}}
-
-
-@pytest.mark.parametrize("title", [r"$\frac{", "{} % # _ ^ &", "\N{GREEK SMALL LETTER NU} > 0"])
-def test_titles_may_hold_what_is_markup_elsewhere(title):
-    assert configured({"bore": {"velocity": 1, "title": title}}).sweeps["bore"].title == title
-
-
 @pytest.mark.parametrize("title", ["", "  ", "x" * 101, "two\nlines", "\x00", "\ud800", "\u2028"])
 def test_titles_that_cannot_be_drawn_or_written_are_refused(title):
     with pytest.raises(ConfigError, match=r"^configuration: sweeps.bore.title: .*allowed: text on"):
@@ -154,14 +140,6 @@ def test_models_are_refused_here_exactly_where_the_solver_refuses_them():
                 refused = True
             problem = Problem(motion_named(motion), 1.0, amplitude.get("amplitude"), poisson)
             assert refused == bool(MODELS[model].refuses(problem))
-
-
-@pytest.mark.parametrize("model", ["auto", "polar", "cartesian", "rigid"])
-@pytest.mark.parametrize("poisson", [0, 0.3])
-def test_the_static_limit_goes_with_all_that_the_solver_takes_it_with(model, poisson):
-    axes = {"velocity": [0, 1], "amplitude": [0.5], "poisson": poisson, "model": model}
-    names = ("transverse", "bore", "longitudinal")
-    config.refuse_unsolvable(configured(dict.fromkeys(names, axes)))
 
 
 @pytest.mark.parametrize(

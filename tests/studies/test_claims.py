@@ -164,10 +164,6 @@ def of_kind(kind, change):
     return results
 
 
-def eq6(velocity, amplitude):
-    return float(paper.large_amplitude_transverse(velocity, amplitude))
-
-
 def eq33(velocity, amplitude):
     return float(paper.static_bore(amplitude))
 
@@ -186,47 +182,25 @@ def one_that_sticks(request, changed):
     return {n: [0.9 * changed[n][0], *changed[n][1:]] for n in names}
 
 
-def turned_back(request, changed):
-    return {n: [-t for t in changed[n]] for n in ("traction_lateral", "traction_forward")} | {
-        "bound": [2 * g for g in changed["bound"]]
-    }
-
-
-def sticking(share):
-    """Both sides stick over a share of the contact all the time."""
-    sides = {"stick_left": [share] * 9, "stick_right": [share] * 9}
-    return of_kind("patches", lambda request, changed: sides)
-
-
-def beyond_eq38(velocity, amplitude):
-    power = constant_stiffness.single_power(amplitude, velocity)
-    return power + np.copysign(0.1, power - eq37(amplitude, velocity))
+def both_sides_stick(request, changed):
+    return {"stick_left": [0.2] * 9, "stick_right": [0.2] * 9}
 
 
 STIFF, eq37 = "normal:indentation=1", constant_stiffness.sum_of_powers
 
 FLIPPED = {
-    "Eq 6 a little low everywhere": (
-        1,
-        of_points("transverse", lambda v, a: eq6(v, a) + 0.01),
-        HOLDS,
-    ),
-    "Eq 6 high and far": (1, of_points("transverse", lambda v, a: eq6(v, a) - 0.1), NOT),
+    "Eq 6 far": (1, of_points("transverse", lambda v, a: 0.5), PARTLY),
     "limit above Eq 7": (2, of_points("transverse", lambda v, a: 0.99, static=True), NOT),
     "limit next to Eq 7": (2, of_points("transverse", lambda v, a: 0.86, static=True), PARTLY),
     "a start that ends elsewhere": (3, of_kind("history", unlike_one_start), PARTLY),
     "a traction below its bound": (4, of_kind("field", one_that_sticks), PARTLY),
-    "tractions along the slip": (4, of_kind("field", turned_back), NOT),
     "far from Eq 29": (5, of_points("bore", lambda v, a: 0.5, static=False), NOT),
     "Eq 33 exact": (6, of_points("bore", eq33, static=True), NOT_DECIDED),
     "Eq 33 as the paper has it": (6, of_points("bore", below_eq33_below_two, static=True), HOLDS),
-    "Eq 33 too low": (6, of_points("bore", lambda v, a: 0.8, static=True), NOT),
-    "full sliding": (7, sticking(0.0), NOT),
-    "stick on both sides": (7, sticking(0.2), PARTLY),
+    "stick on both sides": (7, of_kind("patches", both_sides_stick), PARTLY),
     "no friction left": (8, of_points("bore", lambda v, a: 0.0, static=True), NOT),
     "bore falls with velocity": (9, of_points("bore", lambda v, a: 1 / (1 + v)), PARTLY),
     "Eq 37 exact": (10, of_points(STIFF, lambda v, a: eq37(a, v)), HOLDS),
-    "beyond Eq 38": (10, of_points(STIFF, beyond_eq38), NOT),
 }
 
 
@@ -241,16 +215,6 @@ def test_verdicts_follow_the_runs(case, claims):
     untouched = set(verdict) - {claim} - elsewhere.get(claim, set())
     base = words(claims)
     assert {k: verdict[k] for k in untouched} == {k: base[k] for k in untouched}
-
-
-def test_all_motions_that_fall_with_velocity_turn_the_last_statement_round():
-    def results(request):
-        changed = result(request)
-        if request["kind"] == "point":
-            changed["mu_macro"] = 1 / (1 + float(request["velocity"]))
-        return changed
-
-    assert words(judged(results))[9] == NOT
 
 
 @pytest.mark.parametrize("broken", [{"mu_macro_error": 5.0}, {"converged": False}])
@@ -281,32 +245,22 @@ def test_a_solver_that_gives_up_leaves_gaps_and_no_more():
 
 
 @pytest.mark.slow
-def test_checks_name_their_runs_and_parts_the_one_that_shows_them(claims):
+def test_checks_contain_their_runs_and_numbers(claims):
     runs = set(claims["run"].values)
     assert set(claims["check_run"].values) <= runs
     assert set(claims["check_other_run"].values) - {""} <= runs
     for k, shown in enumerate(claims["part_shown_by"].values):
         decided = claims["part_holds"].values[k] + claims["part_fails"].values[k]
         assert (shown in runs) == (decided > 0)
-    for name in ("holds", "fails", "open"):
-        own = claims["check_outcome"].values == verdicts.OUTCOMES.index(name)
-        assert own.sum() == claims[f"part_{name}"].values.sum()
-
-
-@pytest.mark.slow
-def test_margins_are_of_the_numbers_beside_them(claims):
     own = claims["check_part"].values == "rigid_below"
-    value, against, margin = (
-        claims[f"check_{n}"].values[own] for n in ("value", "against", "margin")
+    names = ("velocity", "amplitude", "value", "against", "margin", "error")
+    v, a, value, against, margin, error = (claims[f"check_{n}"].values[own] for n in names)
+    assert against == pytest.approx(paper.large_amplitude_transverse(v, a))
+    places = (
+        {"motion": "transverse", "velocity": x, "amplitude": y} for x, y in zip(v, a, strict=True)
     )
-    place = [claims[f"check_{n}"].values[own] for n in ("velocity", "amplitude")]
-    assert against == pytest.approx(paper.large_amplitude_transverse(*place))
-    requests = [
-        {"motion": "transverse", "velocity": v, "amplitude": a} for v, a in zip(*place, strict=True)
-    ]
-    assert value == pytest.approx([friction(request) for request in requests])
-    assert margin == pytest.approx(value - against)
-    assert (claims["check_error"].values[own] == 1e-4).all()
+    assert value == pytest.approx([friction(place) for place in places])
+    assert margin == pytest.approx(value - against) and set(error) == {1e-4}
 
 
 def single_spring(amplitude, velocity):
@@ -352,8 +306,3 @@ def test_what_the_papers_run_is_off_by_is_split(claims):
         assert of["paper_shift"] == pytest.approx(of["slow"] + 0.002 - of["limit"])
     assert claims["transverse_amplitude"].values.tolist() == [0.5]
     assert claims["bore_amplitude"].values.tolist() == [1, 3, 5]
-
-
-def test_the_report_has_a_line_for_every_statement(claims):
-    lines = list(registry.report(claims, "claims"))
-    assert lines == [f"claim {number}: {text}" for number, text in words(claims).items()]

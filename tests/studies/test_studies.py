@@ -5,7 +5,6 @@ import math
 import platform
 from dataclasses import fields
 from pathlib import Path
-from types import SimpleNamespace
 from unittest.mock import Mock
 
 import numpy as np
@@ -67,14 +66,6 @@ def test_resolutions_increase_in_all_directions_at_once(model):
     assert ((np.diff(levels, axis=0) > 0) | (levels[1:] == 1)).all()
     assert (levels[:, 2] % 2 == 0).all()
     assert (np.diff([tolerance for *_, tolerance in rungs]) < 0).all()
-
-
-def test_other_methods_have_fewer_levels_of_the_model_that_auto_selects():
-    for motion, model, count in (("transverse", "radial", 5), ("bore", "polar", 4)):
-        assert requests.models_for("projected-gradient:step=3", motion, 0.0) == [model]
-        assert len(requests.ladder(model, "full-newton", 6)) == count
-    ((_, level, _),) = requests.ladder("cartesian", "paper", 6)
-    assert requests.models_for("paper", "bore", 0.0) == ["cartesian"] and level.cells == 32
 
 
 def test_a_reference_is_the_request_of_a_sweep():
@@ -222,15 +213,6 @@ def test_a_method_that_fails_is_data(monkeypatch, error):
         result = evaluate.computed(one)
         assert result["converged"] is False
         assert result["reason"] == f"{type(error).__name__}: {error}"
-
-
-def test_probes_pass_on_the_method_and_the_resolution(monkeypatch):
-    Trials(monkeypatch)
-    solve = Mock(return_value=SimpleNamespace(to_dict=lambda: {"mu_macro": math.nan}))
-    monkeypatch.setattr("microslip.solve", solve)
-    assert evaluate.computed(probe("euler")) == {"applies": True, "mu_macro": None}
-    settings = {"method": "euler", "tolerance": 1e-3, "cells": None, "steps": 64}
-    assert solve.call_args.kwargs.items() >= (settings | {"most_work": requests.MOST_WORK}).items()
 
 
 # Fronts, cheapest trials and performance profiles

@@ -12,7 +12,7 @@ import microslip
 from microslip.contact.contact import StepFailure
 from microslip.foundation.errors import CacheError, InputError, SolverError
 from microslip.solver.budget import Spent
-from microslip.sweeps import batch, evaluate, request
+from microslip.sweeps import batch
 
 
 def points(**transverse):
@@ -179,16 +179,6 @@ def test_a_batch_in_which_every_point_fails_is_no_data(monkeypatch, solver, tmp_
         batch.solve(points(amplitude=[2]), tmp_path / "batch.jsonl")
 
 
-@pytest.mark.parametrize("kind", sorted(evaluate._KINDS))
-def test_a_failure_of_the_solver_is_a_gap_for_every_kind_of_request(monkeypatch, kind):
-    fail = Mock(side_effect=SolverError("a root finder\nfound none"))
-    monkeypatch.setitem(evaluate._KINDS, kind, fail)
-    result = evaluate.computed({"kind": kind})
-    assert result["converged"] is False
-    assert result["reason"] == "SolverError: a root finder found none"
-    assert not evaluate.is_final(result)
-
-
 @pytest.mark.parametrize(("budget", "computed"), [("time", 6), ("work", 0)])
 def test_what_ran_out_of_time_is_computed_again(monkeypatch, solver, tmp_path, budget, computed):
     monkeypatch.setitem(EFFORT, "exhausted", budget)
@@ -201,7 +191,3 @@ def test_a_folder_that_cannot_be_written_to_is_one_line_before_any_computation(s
     with pytest.raises(CacheError, match="cannot write to .*file/inside"):
         batch.solve(points(), tmp_path / "file" / "inside" / "batch.jsonl")
     assert not solver.calls
-
-
-def test_requests_of_one_row_share_its_name(solver):
-    assert len({request.row_of(one) for one in points()}) == 3

@@ -5,7 +5,6 @@ import json
 import pytest
 from stubs.sweep_stub import RUNS, configured
 
-from microslip.config import load
 from microslip.foundation import source_digest
 from microslip.sweeps import request as sweep
 
@@ -70,14 +69,6 @@ def test_batches_are_equal_within_an_eighth_or_a_row(size):
     assert sum(sizes) == 2000
 
 
-def test_the_batches_of_the_default_sweeps_keep_two_cores_busy():
-    configuration = load.load("config/config.yaml")
-    points = sweep.points_of(configuration.sweeps["bore"])
-    sizes = sizes_of(points, configuration.points_per_job)
-    assert len(sizes) % 2 == 0
-    assert max(sizes) - min(sizes) <= len(points.values)
-
-
 def test_long_rows_are_cut_along_the_velocity():
     axis = [float(value) for value in range(1, 200)]
     sizes = sizes_of(points_of(velocity=axis), 50)
@@ -118,13 +109,6 @@ def test_everything_in_a_request_counts_for_the_name_of_its_result(name, value, 
     assert sweep.key_of({**REQUEST, name: value}) != key
     assert sweep.key_of(dict(reversed(REQUEST.items()))) == key
     monkeypatch.setattr(source_digest, "of_request", lambda request: "of other sources")
-    assert sweep.key_of(REQUEST) != key
-
-
-def test_swapped_values_and_the_format_of_records_count(monkeypatch):
-    key = sweep.key_of(REQUEST)
-    assert sweep.key_of({**REQUEST, "velocity": "1", "amplitude": "0.1"}) != key
-    monkeypatch.setattr(sweep, "FORMAT", 99)
     assert sweep.key_of(REQUEST) != key
 
 

@@ -32,13 +32,10 @@ MOST_WORK = 5_000_000
 """Work budget of a probe (number of step solves times number of unknowns).  It is several times the
 work of the shipped method."""
 
-_TRANSLATED = ("auto", "rigid", "slider", "dahl", "mdr", "radial", "polar", "cartesian")
-_ROTATED = ("auto", "rigid", "polar", "cartesian")
-MODELS_OF_MOTION = {
-    **dict.fromkeys(("transverse", "longitudinal", "zigzag"), _TRANSLATED),
-    **dict.fromkeys(("bore", "continuous-bore"), _ROTATED),
-}
-"""Models that apply to each motion.  The table is copied from contact.registry, because that module
+ROTATIONS = ("bore", "continuous-bore")
+"""Motions with a rotation, to which few models apply."""
+OF_ROTATIONS = ("rigid", "polar", "cartesian")
+"""Models that apply to rotations.  The names are copied from contact.registry, because that module
 is slow to import."""
 
 
@@ -99,8 +96,8 @@ to 1e-6 for rings at nu = 0)."""
 
 def models_of(motion: str, poisson: float) -> list[str]:
     """Return the names of the models for a motion and a Poisson's ratio, coarsest first."""
-    allowed = MODELS_OF_MOTION[motion]
-    return [m for m in LADDERS if m in allowed and (m != "radial" or poisson == 0)]
+    names = OF_ROTATIONS if motion in ROTATIONS else tuple(LADDERS)
+    return [name for name in names if name != "radial" or poisson == 0]
 
 
 def exact_model(motion: str, poisson: float) -> str:
@@ -118,8 +115,7 @@ def models_for(method: str, motion: str, poisson: float) -> list[str]:
     name, _ = split(method)
     if name == SHIPPED:
         return models_of(motion, poisson)
-    rotates = "radial" not in MODELS_OF_MOTION[motion]
-    if missing(method) or (rotates and declared(name, "turns") is False):
+    if missing(method) or (motion in ROTATIONS and declared(name, "turns") is False):
         return []
     return [declared(name, "model") or exact_model(motion, poisson)]
 
