@@ -34,9 +34,14 @@ noise."""
 REFINEMENTS = 3
 """Number of corrections of the frequency.  After each correction, only the error of the phases
 remains."""
-PERIODIC, QUARTERS = 0.5, 4
-"""Smallest amplitude in a quarter of the record, divided by the largest one of a quarter, and the
-number of quarters.  A motion with a smaller ratio is not periodic throughout."""
+PARTS, STEADY = FEWEST_PERIODS, 0.5
+"""Number of parts of a record, of about one period or more, and smallest amplitude of a part,
+divided by the mean amplitude.  In a part below one half, rest describes the motion better than the
+mean period does, because the amplitude is nearer to 0 than to the mean."""
+FEWEST_LEVELS = 4
+"""Smallest number of different values in a record with a value that marks missing samples.  Of n
+values in equal steps, the first is one step from the others, which extend over n - 3 steps without
+both ends.  So fewer than 4 values in equal steps would count as marks."""
 MOST_DECIMALS = 12
 """Largest number of decimals of times that count as rounded.  More decimals need no allowance."""
 LARGEST_LOSS = 0.01
@@ -133,9 +138,11 @@ def fold(
     from scipy.interpolate import CubicSpline  # only here: it takes a while to load
 
     rows = count("rows", rows, 2 * FEWEST_SAMPLES, most=MOST_ROWS, even=True)
+    typed = frequency is not None
+    hz = real("frequency", frequency, 0.0) if typed else 0.0
     step, names, values = _checked(time, columns)
-    longest, typed = (len(values) - 1) * step, frequency is not None
-    hz = real("frequency", frequency, 0.0) if typed else _strongest(values) / (len(values) * step)
+    longest = (len(values) - 1) * step
+    hz = hz if typed else _strongest(values) / (len(values) * step)
     spline = CubicSpline(step * np.arange(len(values)), values - values.mean(axis=0))
     integral = spline.antiderivative()
 
@@ -143,33 +150,36 @@ def fold(
         """The mean from half a period before a time to half a period after it."""
         return (integral(time + 0.5 / hz) - integral(time - 0.5 / hz)) * hz
 
-    def harmonics() -> np.ndarray:
-        """Fourier coefficients of each whole period, shape (periods, rows / 2 + 1, columns)."""
+    for refinement in range(REFINEMENTS + 1):
         _check_periods(hz, longest, step, typed)
         points = max(rows, math.ceil(1.0 / (hz * step)))
-        periods = np.arange(int(hz * longest * (1.0 + 1e-12)) - 1)
-        times = (0.5 + periods[:, None] + np.arange(points) / points) / hz
+        starts = 0.5 + np.arange(int(hz * longest * (1.0 + 1e-12)) - 1)
+        times = (starts[:, None] + np.arange(points) / points) / hz
+        # Fourier coefficients of each whole period, shape (periods, rows / 2 + 1, columns)
         parts = np.fft.rfft(spline(times) - drift(times), axis=1)[:, : rows // 2 + 1] / points
         parts[:, -1] = 0.0
-        return parts
-
-    for _ in range(REFINEMENTS):
-        change, error, variance, order = _phases(parts := harmonics())
-        hz += change * hz
-    parts = harmonics()
+        if refinement < REFINEMENTS:
+            change, error, variance, order = _phases(parts)
+            hz += change * hz
     periods = np.fft.irfft(parts, rows, axis=1) * rows
     mean, scatter = periods.mean(axis=0), periods.std(axis=0, ddof=1) / math.sqrt(len(periods))
-    _check_throughout(parts, longest, order)
-    sizes = np.array([_peak_to_peak(one) for one in mean.T])
-    ratios = sizes / np.maximum(2.0 * scatter.max(axis=0), 1e-300)
+    power = np.abs(parts) ** 2
+    share = power[:, order] / np.maximum(power.mean(axis=(0, 1)), 1e-300)
+    sizes = [float(np.median(one)) for one in np.array_split(np.sqrt(share.sum(axis=-1)), PARTS)]
+    steady = min(sizes) / np.mean(sizes)
+    if steady < STEADY:
+        problem = f"in part {np.argmin(sizes) + 1} of {PARTS} of the record of {longest:.6g} s, "
+        problem += f"the oscillation is only {100.0 * steady:.2g} % of its mean"
+        allowed = "allowed is a steady oscillation; cut off the rest"
+        raise _of_record(longest, f"not periodic throughout: {problem}; {allowed}")
+    peaks = np.array([_peak_to_peak(one) for one in mean.T])
+    ratios = peaks / np.maximum(2.0 * scatter.max(axis=0), 1e-300)
     best = int(np.argmax(ratios))
     if ratios[best] <= SIGNIFICANT:  # before the drift, since the phases of noise look like one
-        problem = (
-            f"peak to peak at {hz:.6g} Hz, only {ratios[best]:.2g} times its standard error; "
-            f"allowed is at least {SIGNIFICANT:g} times; use a longer record, or give the correct "
-            "approximate frequency of the motion"
-        )
-        raise InputError(names[best], float(f"{sizes[best]:.3g}"), problem)
+        problem = f"peak to peak at {hz:.6g} Hz, only {ratios[best]:.2g} times its standard error"
+        allowed = f"allowed is at least {SIGNIFICANT:g} times; use a longer record, or give the "
+        allowed += "correct approximate frequency of the motion"
+        raise InputError(names[best], float(f"{peaks[best]:.3g}"), f"{problem}; {allowed}")
     loss = 0.5 * (2.0 * np.pi * np.arange(parts.shape[1])) ** 2 * variance
     if loss[order] > LARGEST_LOSS:
         change = math.sqrt(variance) / (PHASE_OF_A_DRIFT * longest)
@@ -213,22 +223,6 @@ def _check_periods(frequency: float, longest: float, step: float, typed: bool) -
     raise _of_record(longest, f"{where}, {problem}; {hint}")
 
 
-def _check_throughout(parts: np.ndarray, longest: float, order: int) -> None:
-    """Raise InputError if the oscillation begins, ends, or changes its size a lot."""
-    power = np.abs(parts) ** 2
-    size = np.sqrt((power[:, order] / np.maximum(power.mean(axis=(0, 1)), 1e-300)).sum(axis=-1))
-    sizes = [float(np.median(one)) for one in np.array_split(size, QUARTERS)]
-    if min(sizes) >= PERIODIC * max(sizes):
-        return
-    share = 100.0 * min(sizes) / max(sizes)
-    problem = (
-        f"not periodic throughout: in quarter {int(np.argmin(sizes)) + 1} of the record of "
-        f"{longest:.6g} s, the oscillation is only {share:.2g} % as large as in quarter "
-        f"{int(np.argmax(sizes)) + 1}; allowed is a steady oscillation; cut off the rest"
-    )
-    raise _of_record(longest, problem)
-
-
 def _phases(parts: np.ndarray) -> tuple[float, float, float, int]:
     """The relative correction of the frequency, its standard error, the variance of the slow phase
     drift in periods squared, and the order of the strongest harmonic, from whose phases they
@@ -252,43 +246,44 @@ def _checked(time: Any, columns: Mapping[str, Any]) -> tuple[float, list[str], n
     if not hasattr(columns, "keys"):
         raise InputError("columns", columns, f"allowed is a mapping with {', '.join(COLUMNS)}")
     names = list(columns)
-    unknown = next((name for name in names if name not in COLUMNS), None)
-    if unknown is not None or not names:
+    if not names or not set(names) <= set(COLUMNS):
+        unknown = next((name for name in names if name not in COLUMNS), None)
         kind = "unknown" if names else "allowed is one column or more"
         raise InputError("columns", unknown, f"{kind}; allowed are {', '.join(COLUMNS)}")
     if set(NORMAL) <= set(names):
         raise InputError("indentation", "with a load", "allowed is one of the two")
-    arrays: list[np.ndarray] = []
-    for name in ("time", *names):
-        value = time if name == "time" else columns[name]
+    arrays: dict[str, np.ndarray] = {}
+    fewest = FEWEST_PER_PERIOD * FEWEST_PERIODS
+    for name, value in {"time": time, **columns}.items():
         try:
-            array = np.array(value, float)
+            array = arrays[name] = np.array(value, float)
         except (TypeError, ValueError):
             raise InputError(name, value, "allowed is an array of numbers") from None
+        length = len(arrays["time"]) if arrays["time"].ndim else 0
         if array.ndim != 1:
             raise InputError(name, value, "allowed is an array of one dimension")
-        if arrays and len(array) != len(arrays[0]):
-            allowed = f"allowed are as many numbers as times: {len(arrays[0])}"
+        if len(array) != length:
+            allowed = f"allowed are as many numbers as times: {length}"
             raise InputError(name, array.shape, allowed)
+        if length < fewest:
+            allowed = f"the record is too short; allowed are at least {fewest} samples"
+            raise InputError("time", array.shape, allowed)
         if not np.isfinite(array).all():
             raise InputError(name, math.nan, "allowed are finite numbers")
-        if arrays:
-            _check_marks(name, array)
         if name in NORMAL and array.mean() <= 0.0:
             mean = float(f"{array.mean():.6g}")
             raise InputError(name, mean, "the mean; allowed is a mean above 0")
-        arrays.append(array)
-    fewest = FEWEST_PER_PERIOD * FEWEST_PERIODS
-    if len(arrays[0]) < fewest:
-        allowed = f"the record is too short; allowed are at least {fewest} samples"
-        raise InputError("time", arrays[0].shape, allowed)
-    return _step(arrays[0]), names, np.stack(arrays[1:], axis=1)
+    time = arrays.pop("time")
+    for name, array in arrays.items():
+        _check_marks(name, array)
+    return _step(time), names, np.stack(list(arrays.values()), axis=1)
 
 
 def _check_marks(name: str, values: np.ndarray) -> None:
-    """Raise InputError for a value that is repeated exactly and lies far outside of all others."""
+    """Raise InputError for a value that is repeated exactly, and whose distance from all other
+    values exceeds their range."""
     levels, counts = np.unique(values, return_counts=True)
-    if len(levels) <= QUARTERS:  # a motion with few levels
+    if len(levels) < FEWEST_LEVELS:
         return
     for end, other in ((0, 1), (-1, -2)):
         if counts[end] > 1 and abs(levels[end] - levels[other]) > levels[-2] - levels[1]:
