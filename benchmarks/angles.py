@@ -17,13 +17,13 @@ import one_thread  # noqa: F401
 import numpy as np
 import tables
 
-from microslip.motions.by_name import motion_named
-from microslip.motions.problem import Problem
+from microslip.periodic.discretise import Resolution
+from microslip.periodic.run import Settings
+from microslip.periodic.simulate import simulate
+from microslip.periodic.stick_edge import edge_focus
 from microslip.pressures.by_name import pressure_named
-from microslip.solver.discretise import Resolution
-from microslip.solver.run import Settings
-from microslip.solver.simulate import simulate
-from microslip.solver.stick_edge import edge_focus
+from microslip.scene.by_name import motion_named
+from microslip.scene.problem import Problem
 
 LOADED = "normal:lateral=0.9,phase=90"
 MOTIONS = ("transverse", "longitudinal", "elliptic", "zigzag", LOADED, "bore")

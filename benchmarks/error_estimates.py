@@ -50,9 +50,9 @@ from scipy.stats import beta
 import microslip
 from microslip.answer import ladder
 from microslip.answer import refine as refinement
-from microslip.motions.by_name import motion_named
-from microslip.motions.problem import Problem
 from microslip.pressures.by_name import pressure_named
+from microslip.scene.by_name import motion_named
+from microslip.scene.problem import Problem
 
 TIGHTER, TIGHTER_AT_1E_4 = 0.1, 0.25
 """Ratio of the first reference's tolerance to the point's. 1e-5 is too expensive for rotations."""

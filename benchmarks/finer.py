@@ -19,12 +19,12 @@ from functools import lru_cache
 import numpy as np
 
 from microslip.answer.limits import choose_model
+from microslip.periodic.discretise import Resolution
+from microslip.periodic.run import Settings
+from microslip.periodic.simulate import simulate
+from microslip.periodic.static_limit import at_turning_points
+from microslip.periodic.stick_edge import edge_focus
 from microslip.pressures.hertz import HERTZ
-from microslip.solver.discretise import Resolution
-from microslip.solver.run import Settings
-from microslip.solver.simulate import simulate
-from microslip.solver.static_limit import at_turning_points
-from microslip.solver.stick_edge import edge_focus
 
 SWEPT = {"radial": ((96, 1), (192, 1)), "polar": ((64, 12), (96, 24))}
 SWEPT_STEPS = 4

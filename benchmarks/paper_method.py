@@ -22,9 +22,7 @@ import tables
 import microslip
 from microslip.contact.contact import forward_slip
 from microslip.contact.squares import CartesianContact
-from microslip.motions.by_name import motion_named
-from microslip.motions.problem import Problem
-from microslip.solver.methods.paper import (
+from microslip.periodic.methods.paper import (
     CELLS,
     STEPS,
     STEPS_PER_PERIOD,
@@ -32,6 +30,8 @@ from microslip.solver.methods.paper import (
     last_means,
     path_of,
 )
+from microslip.scene.by_name import motion_named
+from microslip.scene.problem import Problem
 
 POINTS = [("transverse", 0.5), ("bore", 1.0)]
 """Motion and amplitude."""

@@ -11,10 +11,10 @@ import numpy as np
 from microslip.contact import ring_contact, splitting, squares
 from microslip.contact.modes import PolarContact
 from microslip.contact.ring_contact import RadialContact
-from microslip.motions.by_name import motion_named
-from microslip.motions.problem import Problem
-from microslip.solver.discretise import Resolution
-from microslip.solver.simulate import simulate
+from microslip.periodic.discretise import Resolution
+from microslip.periodic.simulate import simulate
+from microslip.scene.by_name import motion_named
+from microslip.scene.problem import Problem
 
 POINTS = ((0.1, 1.0), (0.01, 0.3), (1.0, 3.0))
 """Velocities and amplitudes."""

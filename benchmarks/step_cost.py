@@ -11,9 +11,9 @@ from statistics import median
 
 from microslip.contact.contact import forward_slip
 from microslip.contact.path import EULER, half_period_phases, make_path
-from microslip.motions.named import Bore, Transverse
-from microslip.motions.problem import Problem
-from microslip.solver.discretise import Resolution, contact_of
+from microslip.periodic.discretise import Resolution, contact_of
+from microslip.scene.named import Bore, Transverse
+from microslip.scene.problem import Problem
 
 SIZES = {
     "radial": [(n, 1) for n in (16, 32, 64, 128)],

@@ -8,14 +8,14 @@ import microslip
 
 PACKAGE = Path(microslip.__file__).parent
 RULE = (
-    "foundation < theory < pressures < motions < contact < solver "
+    "foundation < theory < pressures < scene < contact < periodic "
     "< answer < si < config < sweeps < datasets < studies < report < app"
 )
 ROOMS = RULE.split(" < ")
 PHYSICS = ROOMS[1 : ROOMS.index("si")]
 FROM_FILES = {"grid_file"}
 """Modules of the pressure from a file, the only physics with paths."""
-LISTS_FILES = Path("solver", "method_names.py")
+LISTS_FILES = Path("periodic", "method_names.py")
 """Module that lists the files of methods without importing them."""
 MODULES = sorted(path.relative_to(PACKAGE) for path in PACKAGE.rglob("*.py"))
 
@@ -79,7 +79,7 @@ def test_physics_knows_no_files_workflow_or_plots():
 def test_nothing_else_in_the_physics_knows_where_files_are():
     named = ("foundation", "named_files")
     users = {path for path in MODULES if any(name[:2] == named for name in imported(path)[0])}
-    readers = {"motions/by_name.py", "motions/from_file.py"}
+    readers = {"scene/by_name.py", "scene/from_file.py"}
     readers |= {"pressures/by_name.py", "pressures/grid_file.py"}
     assert {path.as_posix() for path in users if path.parts[0] in PHYSICS} == readers
 

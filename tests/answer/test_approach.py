@@ -15,10 +15,10 @@ import numpy as np
 import pytest
 
 import microslip
-from microslip.motions.by_name import motion_named
-from microslip.motions.problem import Problem
-from microslip.solver.discretise import Resolution
-from microslip.solver.simulate import simulate
+from microslip.periodic.discretise import Resolution
+from microslip.periodic.simulate import simulate
+from microslip.scene.by_name import motion_named
+from microslip.scene.problem import Problem
 from microslip.theory import paper
 
 SLOW = tuple(10.0 ** -np.array([3.0, 3.5, 4.0, 4.5, 5.0]))

@@ -14,11 +14,11 @@ from microslip.answer import request
 from microslip.contact import ring_contact
 from microslip.contact.contact import forward_slip
 from microslip.contact.registry import MODELS
-from microslip.motions.by_name import motion_named
-from microslip.motions.problem import Problem
-from microslip.solver.budget import Budget, Spent
-from microslip.solver.discretise import Resolution, contact_of, path_of
-from microslip.solver.simulate import Settings, simulate
+from microslip.periodic.budget import Budget, Spent
+from microslip.periodic.discretise import Resolution, contact_of, path_of
+from microslip.periodic.simulate import Settings, simulate
+from microslip.scene.by_name import motion_named
+from microslip.scene.problem import Problem
 
 SLOW = ("transverse", 1e-9, 0.5)
 

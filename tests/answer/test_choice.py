@@ -10,11 +10,11 @@ import microslip
 from microslip.answer.closed_forms import closed_form
 from microslip.answer.limits import choose_model
 from microslip.contact.registry import MODELS
-from microslip.motions.by_name import MOTIONS, motion_named
-from microslip.motions.named import Bore, ContinuousBore, Transverse
-from microslip.motions.problem import Problem
-from microslip.solver.discretise import Resolution
-from microslip.solver.simulate import simulate
+from microslip.periodic.discretise import Resolution
+from microslip.periodic.simulate import simulate
+from microslip.scene.by_name import MOTIONS, motion_named
+from microslip.scene.named import Bore, ContinuousBore, Transverse
+from microslip.scene.problem import Problem
 from microslip.theory import paper
 
 TURNING = {"rigid", "polar", "cartesian"}

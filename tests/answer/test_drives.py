@@ -14,14 +14,14 @@ from microslip.answer.answer import Answer, Estimate
 from microslip.contact.path import EULER
 from microslip.foundation.arguments import SMALLEST_STIFFNESS
 from microslip.foundation.errors import InputError
-from microslip.motions.by_name import motion_named
-from microslip.motions.drive import Force, Spring
-from microslip.motions.problem import Problem
+from microslip.periodic.discretise import Resolution
+from microslip.periodic.method import Method
+from microslip.periodic.run import Settings
+from microslip.periodic.simulate import simulate
 from microslip.pressures.by_name import pressure_named
-from microslip.solver.discretise import Resolution
-from microslip.solver.method import Method
-from microslip.solver.run import Settings
-from microslip.solver.simulate import simulate
+from microslip.scene.by_name import motion_named
+from microslip.scene.drive import Force, Spring
+from microslip.scene.problem import Problem
 from microslip.theory import indenters, paper
 
 PLACES = {

@@ -15,7 +15,7 @@ from microslip.answer.limits import choose_model, problem_of
 from microslip.contact.contact import FORWARD, forces, rigid_displacement
 from microslip.contact.coulomb import project
 from microslip.contact.path import make_path
-from microslip.solver import simulate, static_limit
+from microslip.periodic import simulate, static_limit
 
 BENCHMARKS = Path(__file__).parents[2] / "benchmarks"
 SEED, COUNT = 46, 200

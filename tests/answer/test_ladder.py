@@ -10,11 +10,11 @@ from hypothesis import strategies as st
 from microslip.answer.ladder import LEVELS, Ladder, ladder_for
 from microslip.answer.limits import choose_model
 from microslip.contact.registry import MODELS
-from microslip.motions.by_name import MOTIONS, motion_named
-from microslip.motions.named import Transverse
-from microslip.motions.problem import Problem
-from microslip.solver.discretise import Resolution
-from microslip.solver.static_limit import at_turning_points
+from microslip.periodic.discretise import Resolution
+from microslip.periodic.static_limit import at_turning_points
+from microslip.scene.by_name import MOTIONS, motion_named
+from microslip.scene.named import Transverse
+from microslip.scene.problem import Problem
 
 decades = st.floats(-6.0, 3.0).map(lambda x: 10**x)
 points = st.tuples(

@@ -5,8 +5,8 @@ import pytest
 from stubs.agreement import assert_agree
 
 import microslip
-from microslip.motions.by_name import motion_named
-from microslip.motions.problem import Problem
+from microslip.scene.by_name import motion_named
+from microslip.scene.problem import Problem
 
 PLACES = [(115.0, 50000.0), (23.0, 10000.0), (0.5, 1000.0), (300.0, 3000.0)]
 

@@ -10,10 +10,10 @@ from stubs.agreement import assert_agree
 from stubs.point_contract import CONTRACT
 
 import microslip
-from microslip.motions.by_name import motion_named
-from microslip.motions.problem import Problem
-from microslip.solver.discretise import Resolution
-from microslip.solver.simulate import simulate
+from microslip.periodic.discretise import Resolution
+from microslip.periodic.simulate import simulate
+from microslip.scene.by_name import motion_named
+from microslip.scene.problem import Problem
 from microslip.theory import paper
 
 # Error estimate

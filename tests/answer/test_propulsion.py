@@ -12,10 +12,10 @@ from microslip.contact.contact import FORWARD, forward_slip
 from microslip.contact.path import make_path, phases_between
 from microslip.foundation.errors import InputError
 from microslip.foundation.number_text import number_text
-from microslip.motions.by_name import motion_named
-from microslip.motions.problem import Problem
+from microslip.periodic.discretise import Resolution, contact_of
 from microslip.pressures.hertz import HERTZ
-from microslip.solver.discretise import Resolution, contact_of
+from microslip.scene.by_name import motion_named
+from microslip.scene.problem import Problem
 
 EIGHT = "elliptic:forward_cycles=2,phase=0"
 

@@ -15,9 +15,9 @@ from microslip.answer.refine import (
     SMALLEST_SHARE,
 )
 from microslip.answer.request import RUN_SHARE
-from microslip.solver.budget import Spent
-from microslip.solver.effort import Effort
-from microslip.solver.run import Run
+from microslip.periodic.budget import Spent
+from microslip.periodic.effort import Effort
+from microslip.periodic.run import Run
 
 EXACT, EXACT_TORQUE = 0.4, 0.7
 LADDER = Ladder(start=8, angles=0.5, steps=2)

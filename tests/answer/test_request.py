@@ -6,8 +6,8 @@ import pytest
 
 from microslip.answer.answer import Estimate
 from microslip.answer.request import within_friction
-from microslip.motions.by_name import motion_named
-from microslip.motions.problem import Problem
+from microslip.scene.by_name import motion_named
+from microslip.scene.problem import Problem
 
 SIDEWAYS = Problem(motion_named("transverse"), 0.1, 1.0)
 PROPELLED = Problem(motion_named("elliptic:forward_cycles=2,phase=0"), 0.1, 1.0)

@@ -10,8 +10,8 @@ from stubs.agreement import assert_agree
 
 import microslip
 from microslip.answer import request
-from microslip.solver import simulate
-from microslip.solver.effort import Effort
+from microslip.periodic import simulate
+from microslip.periodic.effort import Effort
 
 
 @dataclass(frozen=True)

@@ -7,11 +7,11 @@ import pytest
 
 import microslip
 from microslip.foundation.errors import InputError
-from microslip.motions.by_name import motion_named
-from microslip.motions.drive import Force
-from microslip.motions.problem import Problem
-from microslip.solver.discretise import Resolution
-from microslip.solver.simulate import simulate
+from microslip.periodic.discretise import Resolution
+from microslip.periodic.simulate import simulate
+from microslip.scene.by_name import motion_named
+from microslip.scene.drive import Force
+from microslip.scene.problem import Problem
 
 
 def mindlin(force):

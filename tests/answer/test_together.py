@@ -7,10 +7,10 @@ import pytest
 
 import microslip
 from microslip.contact.contact import forward_slip, full_slip
-from microslip.motions.by_name import motion_named
-from microslip.motions.problem import Problem
-from microslip.solver.discretise import Resolution, contact_of
-from microslip.solver.simulate import simulate
+from microslip.periodic.discretise import Resolution, contact_of
+from microslip.periodic.simulate import simulate
+from microslip.scene.by_name import motion_named
+from microslip.scene.problem import Problem
 
 BORE = Problem(motion_named("bore"), 0.3, 1.0, 0.0)
 

@@ -24,7 +24,7 @@ import microslip
 from microslip.answer.answer import OWN_EQUATIONS
 from microslip.app import progress
 from microslip.app.commands import COMMANDS
-from microslip.motions.by_name import MOTIONS
+from microslip.scene.by_name import MOTIONS
 
 POINT = "point transverse --velocity 0.1 --amplitude 1"
 CONTACT = "--mu 0.3 --load '10 N' --radius '5 mm' --material steel"

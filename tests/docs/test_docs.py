@@ -36,7 +36,7 @@ import microslip
 from microslip.config import load
 from microslip.contact.registry import MODELS
 from microslip.datasets import netcdf, sweep_dataset
-from microslip.solver import method_names
+from microslip.periodic import method_names
 from microslip.sweeps import batch, request
 
 ROOT = Path(__file__).parents[2]

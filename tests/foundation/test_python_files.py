@@ -13,15 +13,15 @@ from microslip.config import load
 from microslip.foundation import named_files
 from microslip.foundation.errors import InputError
 from microslip.foundation.named_files import base_name
-from microslip.motions.by_name import motion_named
 from microslip.pressures.by_name import pressure_named
+from microslip.scene.by_name import motion_named
 from microslip.sweeps import request
 
 HELPER = "FACTOR = 1.0\n"
 MOTION = """
 from dataclasses import dataclass
 from helper import FACTOR
-from microslip.motions.motion import Motion, Wave
+from microslip.scene.motion import Motion, Wave
 
 class _Base(Motion):
     pass

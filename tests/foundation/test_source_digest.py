@@ -53,7 +53,7 @@ EDITS = [
 
 
 @pytest.mark.parametrize(("old", "new", "is_code"), EDITS)
-@pytest.mark.parametrize("room", ["solver", "report"])
+@pytest.mark.parametrize("room", ["periodic", "report"])
 def test_code_changes_the_digest_but_layout_comments_and_docstrings_do_not(
     old, new, is_code, room, tmp_path
 ):
@@ -74,19 +74,19 @@ FILES = {
     "sweeps/period_codec.py": "",
     "sweeps/batch.py": "",
     "config/axes.py": "",
-    "solver/run.py": "from toy.foundation.compiled import kernel\nimport toy.motions.turns",
-    "solver/shapes.js": "",
-    "solver/methods/_shared.py": "from toy.solver.methods import _deeper",
-    "solver/methods/_deeper.py": "",
-    "solver/methods/one.py": "from toy.solver.methods._shared import D",
-    "motions/turns.py": "",
-    "motions/named.py": "",
-    "report/figures/maps.py": "from toy.solver import run\nfrom toy.datasets import query",
+    "periodic/run.py": "from toy.foundation.compiled import kernel\nimport toy.scene.turns",
+    "periodic/shapes.js": "",
+    "periodic/methods/_shared.py": "from toy.periodic.methods import _deeper",
+    "periodic/methods/_deeper.py": "",
+    "periodic/methods/one.py": "from toy.periodic.methods._shared import D",
+    "scene/turns.py": "",
+    "scene/named.py": "",
+    "report/figures/maps.py": "from toy.periodic import run\nfrom toy.datasets import query",
     "report/page.html": "",
     "datasets/query.py": "from toy.foundation import errors",
 }
 SOLVER = {"foundation/compiled.py", "sweeps/evaluate.py", "sweeps/period_codec.py"}
-SOLVER |= {"solver/run.py", "solver/shapes.js", "motions/turns.py", "motions/named.py"}
+SOLVER |= {"periodic/run.py", "periodic/shapes.js", "scene/turns.py", "scene/named.py"}
 
 
 @pytest.fixture
@@ -103,7 +103,7 @@ def test_results_depend_on_the_rooms_that_make_numbers(package):
 
 
 def test_compiled_code_depends_on_kernels_and_their_imports(package):
-    kernels = {"solver/run.py", "motions/turns.py", "foundation/compiled.py"}
+    kernels = {"periodic/run.py", "scene/turns.py", "foundation/compiled.py"}
     assert Sources(package).kernels == kernels
 
 
@@ -113,7 +113,7 @@ def test_a_result_of_a_method_depends_on_its_file_and_the_imports_of_this_file(
     monkeypatch.setattr(source_digest, "LOADED", Sources(package))
     digest = source_digest._of_solver.__wrapped__  # without the cache
     sources, methods = Sources(package), ("one", "_shared", "_deeper")
-    files = SOLVER | {f"solver/methods/{name}.py" for name in methods}
+    files = SOLVER | {f"periodic/methods/{name}.py" for name in methods}
     assert digest("one") == sources.digest(files)
     assert digest("") == digest("unknown") == sources.digest(SOLVER)
 
@@ -129,7 +129,7 @@ def test_scratch_and_hidden_files_do_not_count(package):
     (package / ".#run.py").symlink_to("nobody@nowhere.1:2")  # lock file of an editor
     (package / ".ipynb_checkpoints").mkdir()
     (package / ".ipynb_checkpoints" / "run-checkpoint.py").write_text("not Python at all (")
-    (package / "solver" / "run copy.py").write_text("neither (")
+    (package / "periodic" / "run copy.py").write_text("neither (")
     assert Sources(package).names == names == sorted(FILES)
 
 
@@ -143,17 +143,17 @@ def test_a_digest_is_of_the_files_as_they_were_first_read(package, monkeypatch):
     before = source_digest.LOADED.digest(SOLVER)
     now = [Sources(package)]
     monkeypatch.setattr(source_digest, "Sources", lambda: now[0])
-    (package / "solver/run.py").write_text(FILES["solver/run.py"] + "  # a comment")
+    (package / "periodic/run.py").write_text(FILES["periodic/run.py"] + "  # a comment")
     assert not source_digest.is_edited()
     now[0] = Sources(package)
-    (package / "solver/run.py").write_text("edited = True")
+    (package / "periodic/run.py").write_text("edited = True")
     assert source_digest.is_edited()
     assert source_digest.LOADED.digest(SOLVER) == before
 
 
 def test_a_second_process_parses_only_edited_files(package, monkeypatch):
     before = Sources(package).digest(SOLVER)
-    (package / "solver/run.py").write_text("A = 2")
+    (package / "periodic/run.py").write_text("A = 2")
     parsed = []
     monkeypatch.setattr(
         "ast.parse", lambda content, parse=ast.parse: parsed.append(content) or parse(content)
@@ -211,7 +211,7 @@ def test_all_modules_that_requests_load_count():
     files = json.loads(output(LOADED_BY, json.dumps(requests)))
     loaded = {Path(file).relative_to(PACKAGE).as_posix() for file in files}
     assert "sweeps/evaluate.py" in loaded
-    outer = "(foundation|config|sweeps|solver/methods)/"  # these read and write requests
+    outer = "(foundation|config|sweeps|periodic/methods)/"  # these read and write requests
     sources = source_digest.LOADED
     assert {f for f in loaded if not re.match(outer, f)} <= sources.solver | {"__init__.py"}
 
@@ -221,9 +221,9 @@ def test_a_scratch_file_is_not_a_method(tmp_path):
     """The real package, with temporary files of editors in a folder."""
     copy = tmp_path / "microslip"
     shutil.copytree(PACKAGE, copy, ignore=shutil.ignore_patterns("__pycache__"))
-    (copy / "solver/methods/.#euler.py").symlink_to("nobody@nowhere.1:2")
+    (copy / "periodic/methods/.#euler.py").symlink_to("nobody@nowhere.1:2")
     for name in ("euler-checkpoint", "euler copy"):
-        (copy / f"solver/methods/{name}.py").write_text("raise SystemExit('run')\n")
-    program = "from microslip.solver import method_names\nprint(*method_names.names())"
+        (copy / f"periodic/methods/{name}.py").write_text("raise SystemExit('run')\n")
+    program = "from microslip.periodic import method_names\nprint(*method_names.names())"
     names = output(program, package=copy)
     assert "copy" not in names and "checkpoint" not in names

@@ -17,10 +17,10 @@ from scipy.ndimage import binary_dilation
 from stubs import figures_stub as stub
 from stubs.figures_stub import VELOCITY, artists, words
 
-from microslip.motions.by_name import MOTIONS, motion_named
 from microslip.report.figures import drawing, scales
 from microslip.report.figures import style as look
 from microslip.report.figures.formulas import mathtext
+from microslip.scene.by_name import MOTIONS, motion_named
 from microslip.theory import paper
 
 pytestmark = [pytest.mark.slow, pytest.mark.usefixtures("without_layout")]

@@ -106,8 +106,8 @@ def test_a_load_amplitude_above_the_load_separates_the_bodies():
 
 def test_a_motion_of_the_users_own_file_has_the_units_of_its_kind(tmp_path, monkeypatch):
     """A copy of the bore with another name has the units and the answer of the bore."""
-    from microslip.motions import by_name
-    from microslip.motions.named import Bore
+    from microslip.scene import by_name
+    from microslip.scene.named import Bore
 
     own = type("OwnBore", (Bore,), {"summary": "turning as it likes"})
     monkeypatch.setitem(by_name.MOTIONS, "own-bore", own)

@@ -147,7 +147,7 @@ def test_patches_of_the_slow_bore_lie_where_theory_has_them():
 
 
 def test_the_study_asks_for_the_papers_run_as_the_paper_made_it():
-    from microslip.solver.methods import paper
+    from microslip.periodic.methods import paper
 
     request = evidence.paper_run("bore", 1.0)
     assert (request["cells"], request["steps"]) == (paper.CELLS, paper.STEPS_PER_PERIOD)

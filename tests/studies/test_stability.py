@@ -9,13 +9,13 @@ from microslip.contact.contact import FORWARD, energy_norm, forward_slip
 from microslip.contact.path import SDIRK2, make_path
 from microslip.contact.reduced import slider_contact
 from microslip.contact.ring_contact import RadialContact
-from microslip.motions.named import Bore, Transverse
-from microslip.motions.problem import Problem
-from microslip.solver.discretise import Resolution, contact_of, path_of
-from microslip.solver.method_names import method_named
-from microslip.solver.methods.march import plain_march
-from microslip.solver.search import Goal, PeriodMap, find_periodic_state
-from microslip.solver.static_limit import limit_on_a_line
+from microslip.periodic.discretise import Resolution, contact_of, path_of
+from microslip.periodic.method_names import method_named
+from microslip.periodic.methods.march import plain_march
+from microslip.periodic.search import Goal, PeriodMap, find_periodic_state
+from microslip.periodic.static_limit import limit_on_a_line
+from microslip.scene.named import Bore, Transverse
+from microslip.scene.problem import Problem
 
 MIDPOINT = method_named("midpoint").integrator
 

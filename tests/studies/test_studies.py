@@ -26,9 +26,9 @@ from microslip.contact.registry import MODELS
 from microslip.datasets import netcdf
 from microslip.foundation.canonical import canonical_json
 from microslip.foundation.errors import SolverError
-from microslip.motions.by_name import MOTIONS, motion_named
-from microslip.motions.problem import Problem
-from microslip.solver.methods import paper
+from microslip.periodic.methods import paper
+from microslip.scene.by_name import MOTIONS, motion_named
+from microslip.scene.problem import Problem
 from microslip.studies import accuracy, registry, requests, stability
 from microslip.studies.requests import Point
 from microslip.sweeps import batch, evaluate, request

@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
-from microslip.motions.by_name import motion_named
 from microslip.pressures.by_name import pressure_named
 from microslip.pressures.hertz import HERTZ
+from microslip.scene.by_name import motion_named
 from microslip.theory import masing, oscillating_load
 from microslip.theory.kinks import Kinks, kink_velocity, kinks_of
 

@@ -124,7 +124,10 @@ CLAIMS = {"tolerance": 0.01, "velocity": [0.1], "cells": 8}
 CLAIMS |= {"amplitude_transverse": [1], "amplitude_bore": [1]}
 SMALLER = {
     "studies/evidence.py": {"PAPER_SQUARES, PAPER_STEPS = 32, 100": "= 16, 20"},
-    "solver/methods/paper.py": {"STEPS_PER_PERIOD = 32, 100": "= 16, 20", "STEPS = 8000": "= 400"},
+    "periodic/methods/paper.py": {
+        "STEPS_PER_PERIOD = 32, 100": "= 16, 20",
+        "STEPS = 8000": "= 400",
+    },
 }
 """Replacements of constants in modules, which shorten the runs of the paper from 10 s to 1 s."""
 
@@ -177,7 +180,7 @@ METHODS = {
 METHOD = '''
 """Backward Euler under another name."""
 
-from microslip.solver.method import Method
+from microslip.periodic.method import Method
 from microslip.contact.path import EULER
 
 METHOD = Method("my own way", integrator=EULER)
@@ -185,7 +188,7 @@ METHOD = Method("my own way", integrator=EULER)
 
 
 def write_method(project, stem):
-    (project.folder / f"src/microslip/solver/methods/{stem}.py").write_text(METHOD)
+    (project.folder / f"src/microslip/periodic/methods/{stem}.py").write_text(METHOD)
 
 
 @pytest.fixture(scope="module")
@@ -241,7 +244,7 @@ def test_a_second_method_computes_its_own_trials_only(studies, tmp_path):
 
 def test_editing_a_method_computes_its_trials_again_but_a_comment_does_not(studies, tmp_path):
     project = studies.copied(tmp_path / "copy")
-    project.append("src/microslip/solver/methods/my_method.py", "\n# More to read.\n")
+    project.append("src/microslip/periodic/methods/my_method.py", "\n# More to read.\n")
     assert project.planned() == {}
-    project.append("src/microslip/solver/methods/my_method.py", "\nSPARE = 1\n")
+    project.append("src/microslip/periodic/methods/my_method.py", "\nSPARE = 1\n")
     assert project.planned("accuracy", "stability")["solve_batch"] == 2

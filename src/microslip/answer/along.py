@@ -22,15 +22,15 @@ from microslip.contact.contact import Contact, StepFailure, forward_slip, full_s
 from microslip.contact.coulomb import project
 from microslip.contact.path import LONG_STROKE, Path, make_path
 from microslip.foundation.errors import InputError
-from microslip.motions.motion import Motion
-from microslip.motions.problem import Problem
-from microslip.motions.samples import SampledPath
+from microslip.periodic.discretise import Resolution, contact_of
+from microslip.periodic.run import unsolved
+from microslip.periodic.snapshots import bounds_at_phases
 from microslip.pressures.by_name import pressure_named
 from microslip.pressures.hertz import HERTZ
 from microslip.pressures.pressure import Pressure
-from microslip.solver.discretise import Resolution, contact_of
-from microslip.solver.run import unsolved
-from microslip.solver.snapshots import bounds_at_phases
+from microslip.scene.motion import Motion
+from microslip.scene.problem import Problem
+from microslip.scene.samples import SampledPath
 
 STARTS = ("stress-free", "full-slip", "full-rotation")
 """Names of the initial states."""

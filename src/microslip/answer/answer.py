@@ -9,8 +9,8 @@ from typing import Any, Self
 
 from microslip.contact.registry import MODELS
 from microslip.foundation.number_text import number_text
-from microslip.motions.problem import Problem
-from microslip.solver.effort import Effort
+from microslip.periodic.effort import Effort
+from microslip.scene.problem import Problem
 
 CLOSED_FORM = "closed-form"
 """Model name in results that need no run."""

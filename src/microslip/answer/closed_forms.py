@@ -6,8 +6,8 @@ import math
 from collections.abc import Callable
 
 from microslip.answer.answer import Estimate
-from microslip.motions.problem import Problem
 from microslip.pressures.hertz import HERTZ
+from microslip.scene.problem import Problem
 from microslip.theory import hertz, masing, paper
 from microslip.theory.exact import LARGEST_DROPS, STATIC_LIMITS
 

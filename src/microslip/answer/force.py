@@ -20,10 +20,10 @@ from microslip.answer.limits import (
     without_forward_motion,
 )
 from microslip.answer.request import Request, ladder_of, prescribed, result_of_runs, runs
-from microslip.motions.drive import Force
-from microslip.motions.problem import Problem
-from microslip.solver.budget import Spent
-from microslip.solver.method_names import method_named
+from microslip.periodic.budget import Spent
+from microslip.periodic.method_names import method_named
+from microslip.scene.drive import Force
+from microslip.scene.problem import Problem
 from microslip.theory import paper
 
 FIRST_DRIFT, FACTOR = 0.1, 4.0
@@ -227,8 +227,8 @@ def _velocity_near(request: Request) -> tuple[float, float]:
     the estimate, unless its velocity is too low to be resolved.
     """
     # imported here because they load compiled code
-    from microslip.solver.run import Settings
-    from microslip.solver.simulate import simulate
+    from microslip.periodic.run import Settings
+    from microslip.periodic.simulate import simulate
 
     force, moving = _force(request), replace(request.problem, velocity=FIRST_VELOCITY)
     ladder = ladder_of(replace(request, problem=moving), COARSE_TOLERANCE)

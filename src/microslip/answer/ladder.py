@@ -22,9 +22,9 @@ from microslip.contact.path import LONG_STROKE
 from microslip.contact.registry import MODELS
 from microslip.foundation.arguments import SMALLEST_TOLERANCE
 from microslip.foundation.errors import InputError
-from microslip.motions.problem import Problem
-from microslip.solver.discretise import Resolution, contact_of, path_of
-from microslip.solver.static_limit import SLOW_LOOP, at_turning_points
+from microslip.periodic.discretise import Resolution, contact_of, path_of
+from microslip.periodic.static_limit import SLOW_LOOP, at_turning_points
+from microslip.scene.problem import Problem
 
 ORDER = 2
 """Order of convergence of rings, angles and time steps."""

@@ -21,14 +21,14 @@ from microslip.foundation.arguments import (
     real,
 )
 from microslip.foundation.errors import InputError
-from microslip.motions.by_name import motion_named
-from microslip.motions.drive import Drive, Force, Spring
-from microslip.motions.motion import LOOP, Motion
-from microslip.motions.problem import Problem
+from microslip.periodic import method_names
 from microslip.pressures.by_name import pressure_named
 from microslip.pressures.hertz import HERTZ
 from microslip.pressures.pressure import Pressure
-from microslip.solver import method_names
+from microslip.scene.by_name import motion_named
+from microslip.scene.drive import Drive, Force, Spring
+from microslip.scene.motion import LOOP, Motion
+from microslip.scene.problem import Problem
 
 
 class Limit(NamedTuple):

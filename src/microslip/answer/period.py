@@ -17,13 +17,13 @@ from microslip.answer.limits import choose_model, problem_of, within
 from microslip.contact.contact import StepFailure, rigid_displacement
 from microslip.contact.modes import PolarContact
 from microslip.foundation.errors import InputError, SolverError
-from microslip.motions.motion import Motion
-from microslip.motions.problem import Problem
+from microslip.periodic.discretise import Resolution, contact_of, path_of
+from microslip.periodic.simulate import simulate
+from microslip.periodic.steady import steady_state
 from microslip.pressures.hertz import HERTZ
 from microslip.pressures.pressure import Pressure
-from microslip.solver.discretise import Resolution, contact_of, path_of
-from microslip.solver.simulate import simulate
-from microslip.solver.steady import steady_state
+from microslip.scene.motion import Motion
+from microslip.scene.problem import Problem
 
 PERIOD_CELLS, PERIOD_STEPS = 16, 64
 """Default resolution.  The mean force agrees with `solve` within 2e-3, see test_period.py."""

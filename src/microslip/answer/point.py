@@ -11,13 +11,13 @@ from microslip.answer.limits import method_refusal, oscillates, problem_of
 from microslip.answer.request import TOLERANCE, Request, prescribed, request_of
 from microslip.contact.registry import MODELS
 from microslip.foundation.errors import InputError
-from microslip.motions.by_name import motion_named
-from microslip.motions.motion import Motion
-from microslip.motions.problem import Problem
+from microslip.periodic.method_names import SHIPPED, method_named, missing
 from microslip.pressures.by_name import pressure_named
 from microslip.pressures.hertz import HERTZ
 from microslip.pressures.pressure import Pressure
-from microslip.solver.method_names import SHIPPED, method_named, missing
+from microslip.scene.by_name import motion_named
+from microslip.scene.motion import Motion
+from microslip.scene.problem import Problem
 
 
 def solve(
@@ -237,9 +237,9 @@ def run_trial(
     if refusal:
         raise ValueError(f"model = {model!r}, method = {method!r}: {refusal}")
     # imported here because they load compiled code
-    from microslip.solver.discretise import Resolution
-    from microslip.solver.run import Settings
-    from microslip.solver.simulate import simulate
+    from microslip.periodic.discretise import Resolution
+    from microslip.periodic.run import Settings
+    from microslip.periodic.simulate import simulate
 
     resolution = Resolution(cells, angles, max(steps // 2, 1))
     problem = Problem(motion_named(motion), velocity, amplitude, poisson, pressure_named(pressure))

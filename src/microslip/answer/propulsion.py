@@ -23,10 +23,10 @@ from microslip.answer.limits import problem_of
 from microslip.answer.point import solve
 from microslip.foundation.errors import InputError
 from microslip.foundation.number_text import number_text
-from microslip.motions.motion import Motion
-from microslip.motions.problem import Problem
 from microslip.pressures.hertz import HERTZ
 from microslip.pressures.pressure import Pressure
+from microslip.scene.motion import Motion
+from microslip.scene.problem import Problem
 
 FACTOR, FASTEST = 4.0, 1e6
 """Search for the root: factor between trial velocities, and largest velocity divided by the first

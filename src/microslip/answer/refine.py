@@ -32,11 +32,11 @@ import numpy as np
 
 from microslip.answer.answer import UNKNOWN, Answer, Estimate
 from microslip.answer.ladder import LOOSEST, ORDER, Ladder
-from microslip.motions.problem import Problem
-from microslip.solver.budget import Spent
-from microslip.solver.discretise import Resolution
-from microslip.solver.effort import Effort
-from microslip.solver.run import NAMES, Run
+from microslip.periodic.budget import Spent
+from microslip.periodic.discretise import Resolution
+from microslip.periodic.effort import Effort
+from microslip.periodic.run import NAMES, Run
+from microslip.scene.problem import Problem
 
 SAFETY = 1.5
 """Safety factor on the correction.  Calibrated by

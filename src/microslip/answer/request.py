@@ -21,14 +21,14 @@ from microslip.answer.closed_forms import Exact, closed_form, no_vibration
 from microslip.answer.limits import choose_model, refuse, within
 from microslip.foundation.arguments import is_real, without_array
 from microslip.foundation.errors import InputError
-from microslip.motions.problem import Problem
-from microslip.solver import method_names
-from microslip.solver.budget import Budget
+from microslip.periodic import method_names
+from microslip.periodic.budget import Budget
+from microslip.scene.problem import Problem
 
 if TYPE_CHECKING:  # these load compiled code, which a closed form does not need
     from microslip.answer.ladder import Ladder
-    from microslip.solver.discretise import Resolution
-    from microslip.solver.run import Run
+    from microslip.periodic.discretise import Resolution
+    from microslip.periodic.run import Run
 
 TOLERANCE = 1e-3
 """Default tolerance, also used as the accuracy of runs if no tolerance is requested."""
@@ -253,9 +253,9 @@ def _run_of(
 
     The runs raise budget.Spent if the budget of the request is exceeded.
     """
-    from microslip.solver.run import Settings
-    from microslip.solver.simulate import simulate
-    from microslip.solver.stick_edge import edge_focus
+    from microslip.periodic.run import Settings
+    from microslip.periodic.simulate import simulate
+    from microslip.periodic.stick_edge import edge_focus
 
     own, free = request.problem, request.problem.drive is None
     repeats = free and own.motion.periodic and own.velocity > 0.0

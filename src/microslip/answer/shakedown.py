@@ -33,11 +33,11 @@ from microslip.answer.request import (
 )
 from microslip.foundation.arguments import real
 from microslip.foundation.errors import InputError
-from microslip.motions.drive import Force
-from microslip.motions.motion import Motion
-from microslip.motions.problem import Problem
 from microslip.pressures.hertz import HERTZ
 from microslip.pressures.pressure import Pressure
+from microslip.scene.drive import Force
+from microslip.scene.motion import Motion
+from microslip.scene.problem import Problem
 
 TOLERANCE = 1e-2
 """Default tolerance of the displacement, in u_lim."""

@@ -42,7 +42,7 @@ def point_motions() -> dict[str, str]:
     """Description of each motion of `point`, with the units of velocity and amplitude."""
     from dataclasses import fields
 
-    from microslip.motions.by_name import MOTIONS
+    from microslip.scene.by_name import MOTIONS
 
     texts = {}
     for name, one in MOTIONS.items():

@@ -18,7 +18,7 @@ from microslip.foundation.arguments import LARGEST
 from microslip.foundation.canonical import number
 from microslip.foundation.errors import InputError
 from microslip.foundation.spec import near_miss
-from microslip.solver import method_names
+from microslip.periodic import method_names
 
 MOST_POINTS = 1_000_000
 """Largest number of points in a sweep.  With more points, planning takes more than a minute."""
@@ -581,7 +581,7 @@ class Accuracy(Settings):
 
     methods: Methods = method_names.names()
     """Methods to compare, with parameters as in "projected-gradient:step=0.5". A method has the
-    name of its file in src/microslip/solver/methods, with hyphens; "shipped" is the method of
+    name of its file in src/microslip/periodic/methods, with hyphens; "shipped" is the method of
     microslip.solve. The default is all methods."""
     points: dict[Text, StudyPoint]
     """Points at which all methods and models run, by name. Each point has a panel."""

@@ -23,7 +23,7 @@ from itertools import pairwise
 
 import numpy as np
 
-from microslip.motions.motion import HALF_PERIOD
+from microslip.scene.motion import HALF_PERIOD
 
 _GAMMA = 1.0 - np.sqrt(0.5)
 

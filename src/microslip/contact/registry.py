@@ -31,7 +31,7 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from microslip.contact.contact import Contact
     from microslip.contact.rings import Focus
-    from microslip.motions.problem import Problem
+    from microslip.scene.problem import Problem
 
 
 @dataclass(frozen=True)

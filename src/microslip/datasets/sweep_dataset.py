@@ -21,7 +21,7 @@ from microslip.datasets.catalogue import FORMS
 from microslip.datasets.variables import variable
 from microslip.foundation import named_files, source_digest
 from microslip.foundation.canonical import canonical_json
-from microslip.motions.by_name import motion_named
+from microslip.scene.by_name import motion_named
 from microslip.sweeps.request import runs_of, solver_names
 
 CONVENTIONS = "CF-1.11"

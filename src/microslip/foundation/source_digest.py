@@ -28,7 +28,7 @@ OUTER = {"app", "bundle", "config", "datasets", "foundation", "report", "si", "s
 """Rooms that do not make numbers, except for the files in NUMBERS."""
 NUMBERS = {"foundation/compiled.py", "sweeps/evaluate.py", "sweeps/period_codec.py"}
 """Files in OUTER on which results depend: compilation, and conversion of the solver's output."""
-METHODS = "solver/methods/"
+METHODS = "periodic/methods/"
 """Folder whose files count only for requests that name them."""
 ENDINGS = {".py", ".csv", ".html", ".css", ".js"}
 """File name extensions of modules, of their tables, and of parts of pages."""

@@ -15,11 +15,11 @@ import numpy as np
 
 from microslip.foundation.arguments import LARGEST
 from microslip.foundation.errors import InputError
-from microslip.motions.by_name import motion_named
-from microslip.motions.motion import Motion
 from microslip.pressures.by_name import pressure_named
 from microslip.pressures.ellipse import SMALLEST_RATIO
 from microslip.pressures.pressure import Pressure
+from microslip.scene.by_name import motion_named
+from microslip.scene.motion import Motion
 from microslip.si.inputs import AT_REST, OSCILLATIONS, Inputs
 from microslip.theory import hertz
 

@@ -22,8 +22,8 @@ import numpy as np
 
 from microslip.foundation.arguments import count, real
 from microslip.foundation.errors import InputError
-from microslip.motions.from_file import COLUMNS, EVEN
-from microslip.motions.samples import FEWEST_SAMPLES, NORMAL
+from microslip.scene.from_file import COLUMNS, EVEN
+from microslip.scene.samples import FEWEST_SAMPLES, NORMAL
 
 FEWEST_PERIODS, FEWEST_PER_PERIOD = 4, 4
 """Smallest number of periods in a record, of which half a period is lost at each end, and of

@@ -199,8 +199,8 @@ def kind_of(motion: Any) -> Kind:
         return Kind(stroke.name, text, "", needed, ("amplitude", "frequency"), stroke)
     import numpy as np
 
-    from microslip.motions.by_name import motion_named
-    from microslip.motions.motion import LOOP
+    from microslip.scene.by_name import motion_named
+    from microslip.scene.motion import LOOP
     from microslip.theory import hertz
 
     record, allowed = motion_named(motion), ""

@@ -9,8 +9,8 @@ import numpy as np
 
 from microslip.answer.answer import Estimate, Result
 from microslip.foundation.errors import InputError
-from microslip.motions.by_name import motion_named
-from microslip.motions.problem import Problem
+from microslip.scene.by_name import motion_named
+from microslip.scene.problem import Problem
 
 MAP = "map"
 """Model name in a Result that comes from a map."""

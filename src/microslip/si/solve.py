@@ -26,7 +26,7 @@ from microslip.foundation.arguments import (
     SMALLEST_TOLERANCE,
 )
 from microslip.foundation.errors import InputError, shown
-from microslip.motions.problem import Problem
+from microslip.scene.problem import Problem
 from microslip.si.contact import DRIVES, Contact
 from microslip.si.map import MAP, FrictionMap
 from microslip.si.output import Value

@@ -13,8 +13,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from microslip.foundation.canonical import number as text_of_number
-from microslip.solver import method_names
-from microslip.solver.method_names import SHIPPED
+from microslip.periodic import method_names
+from microslip.periodic.method_names import SHIPPED
 from microslip.studies import requests as forms
 from microslip.studies.requests import Point
 from microslip.studies.solved import Row, Solved, number

@@ -1,7 +1,7 @@
 """The static limit of the two oscillating motions, and the paper's formulas for it.
 
 The paper's formulas count the whole friction bound inside the stick zone, although the oscillation
-uses a part of it (see microslip.solver.static_limit).  The paper's own runs do not show the
+uses a part of it (see microslip.periodic.static_limit).  The paper's own runs do not show the
 difference, because their velocity is too large and their resolution is too coarse.
 """
 

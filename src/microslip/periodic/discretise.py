@@ -1,0 +1,129 @@
+"""Discretisation of a problem: the mesh of the contact and the path in time."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from functools import lru_cache
+from typing import Any
+
+import numpy as np
+
+from microslip.contact.contact import Contact
+from microslip.contact.path import (
+    SDIRK2,
+    Integrator,
+    Path,
+    make_path,
+    phases_between,
+    turning_point_grading,
+    turning_point_width,
+)
+from microslip.contact.registry import MODELS
+from microslip.contact.rings import Focus
+from microslip.scene.problem import Problem
+
+WEAKEST_FOCUS, STRONGEST_FOCUS, STATIC_FOCUS = 0.3, 1.0 - 2.0**-6, 0.9
+"""Smallest and largest mesh.Focus.strength, and the value used for the static limit."""
+
+
+@dataclass(frozen=True, order=True)
+class Resolution:
+    """Resolution of a problem.
+
+    Attributes
+    ----------
+    cells : int
+        Number of rings, or of squares along a side.
+    angles : int
+        Number of angular points on half the disc.
+    steps : int
+        Number of time steps in half a period; not used for steady motions.
+    """
+
+    cells: int
+    angles: int
+    steps: int
+
+
+def focus_strength(drift: float) -> float:
+    """Strength of the ring grading towards the stick radius.
+
+    `drift` is the forward displacement per radian of phase, in u_lim; 0 for the static limit.
+
+    In a layer of width drift^(2/3) at the stick radius, the slip is as small as the drift.  Ring
+    widths grow quadratically from the stick radius.  So the ratio of the smallest to the mean ring
+    width should be the square root of the layer's width.  The ratio is rounded to a power of two,
+    so that points share meshes.
+    """
+    if drift == 0.0:
+        return STATIC_FOCUS
+    layer = 2.0 ** round(np.log2(drift) / 3.0)
+    return float(np.clip(1.0 - layer, WEAKEST_FOCUS, STRONGEST_FOCUS))
+
+
+def _focus(problem: Problem) -> Focus | float | None:
+    """Grading of the rings towards the radius at which slip starts."""
+    radius = problem.focus
+    if radius is None or not problem.motion.periodic:
+        return radius
+    return Focus((radius,), focus_strength(problem.drift))
+
+
+def contact_of(
+    problem: Problem,
+    model: str,
+    resolution: Resolution,
+    focus: Focus | None = None,
+) -> Contact:
+    """Build the contact of a problem.
+
+    Parameters
+    ----------
+    problem : Problem
+        The problem.  If its normal load oscillates, the contact carries the load at the start of a
+        period.
+    model : str
+        Name in contact.registry.MODELS.
+    resolution : Resolution
+        Resolution of the model.
+    focus : mesh.Focus or None
+        Grading of the rings.  By default, they are graded towards the radius at which slip starts.
+    """
+    place = focus or _focus(problem)
+    contact = MODELS[model].build(problem, resolution.cells, resolution.angles, place)
+    if problem.depth is None:
+        return contact
+    return contact.at_indentation(problem.deepest, float(problem.depth(np.array(problem.start))))
+
+
+def path_of(problem: Problem, contact: Any, steps: int, integrator: Integrator = SDIRK2) -> Path:
+    """Build the path of a problem, starting at a turning point.
+
+    The path covers half a period if the second half is its mirror image, otherwise a whole period.
+
+    Parameters
+    ----------
+    problem : Problem
+        The problem.
+    contact : Contact
+        The contact, or another object with a `grading`.  If it is not None, it replaces the
+        grading for the problem.
+    steps : int
+        Approximate number of steps in half a period.
+    integrator : path.Integrator
+        Time integrator; it sets the positions of the stages.
+    """
+    grading = turning_point_grading(problem.drift, problem.stroke)
+    if contact.grading is not None:
+        grading = contact.grading
+    return _path(problem, steps, grading, integrator)
+
+
+@lru_cache(maxsize=32)
+def _path(problem: Problem, steps: int, grading: float, integrator: Integrator) -> Path:
+    # on a loop the slip can reverse at any phase
+    on_a_line = problem.straight and problem.motion.periodic
+    width = turning_point_width(problem.drift, problem.stroke) if on_a_line else math.inf
+    phases = phases_between(problem.turns, steps, grading, width)
+    return make_path(problem.displacement, phases, integrator, problem.depth)

@@ -1,0 +1,180 @@
+"""One run of a contact under a force below the static limit, until it comes to rest.
+
+First, the force alone displaces the contact by partial slip.  Then the oscillation begins at its
+mean position, and each period displaces the contact by less than the period before.  The remaining
+displacement decays at least as fast as a power of the number of periods.  So the displacements
+between successive doublings of this number decay at least as fast as a geometric series.
+"""
+
+from __future__ import annotations
+
+from typing import cast
+
+import numpy as np
+
+from microslip.contact.contact import Body, March, StepFailure, forward_slip
+from microslip.contact.path import EULER, Path, make_path
+from microslip.contact.ring_contact import RingContact
+from microslip.periodic.discretise import Resolution, path_of
+from microslip.periodic.effort import Effort
+from microslip.periodic.run import Run, Settings, unsolved
+from microslip.periodic.search import PeriodMap
+from microslip.scene.motion import HALF_PERIOD
+from microslip.scene.problem import Problem
+
+FIRST_LOOK, MOST_INTERVALS = 16, 16384
+"""Number of (half) periods before the first check for rest, and largest number of (half)
+periods."""
+LOOKS = 1.5, 4.0 / 3.0
+"""Factors, used alternately, by which the number of (half) periods grows from check to check.  The
+factors keep this number a multiple of four."""
+STEP_SHARE = 1e-4
+"""Ratio of the tolerance of a step (as a force divided by mu F_z) to the tolerance of the
+displacement (in u_lim)."""
+SLOWEST_RATIO = 0.9
+"""Let r be the ratio of the displacements in two successive doublings of the number of periods.
+The remaining displacement is extrapolated only if r is at most this value."""
+LONG, DRIFTING = 200, 1.8
+"""After LONG (half) periods, a ratio r above DRIFTING means that the contact keeps drifting; a
+steady drift has r = 2.  On a coarse mesh, the force can exceed the threshold."""
+MOST_SHARE = 0.9
+"""`most_after` is the number of periods after which the oscillation has caused this fraction of the
+displacement."""
+
+
+def run_to_rest(
+    problem: Problem, model: str, resolution: Resolution, tolerance: float, settings: Settings
+) -> Run:
+    """Run a contact under a constant force until it comes to rest.
+
+    Parameters
+    ----------
+    problem : problem.Problem
+        The problem at velocity 0 with a Force below the static limit.  Its motion must be even, see
+        under_force.is_even.
+    model : str
+        Name in contact.registry.MODELS of a model that supports drives.
+    resolution : discretise.Resolution
+        Resolution of the model.
+    tolerance : float
+        Tolerance of the remaining displacement, in u_lim.
+    settings : run.Settings
+        Settings of the run.
+
+    Returns
+    -------
+    Run
+        The run, with the values `displacement` (from the position without a force to the position
+        at rest, in u_lim), `pushed` (the part of it caused by the force alone), and `most_after`
+        (the number of periods in which the contact covers the fraction MOST_SHARE of the
+        displacement caused by the oscillation).  Its `distance` bounds the remaining displacement.
+        It is not converged if the contact does not come to rest or a step failed.
+    """
+    # or a contact wrapped to count its marches
+    contact = cast(RingContact, settings.contact(problem, model, resolution))
+    assert problem.drive is not None and problem.drive.force is not None
+    body = Body(0.0, 0.0, 0.0, problem.drive.force * problem.mean_load)
+    walk = _Walk(contact, body, STEP_SHARE * tolerance)
+    cycle = PeriodMap(
+        contact, path_of(problem, contact, resolution.steps), mirror=problem.half_period_mirror
+    )
+    interval = cycle.path.phase[-1] - cycle.path.phase[0]
+    pushed = walk.march(_still(problem), 0.0 * forward_slip(contact))
+    # from the mean position to the start of an interval of the map, where the state is mirrored
+    # once for each interval by which this start is postponed
+    end, images = cycle.path.phase[0], 0
+    while end <= 0.0:
+        end, images = end + interval, images + 1
+    steps = max(1, round(resolution.steps * end / (HALF_PERIOD[1] - HALF_PERIOD[0])))
+    phases = np.linspace(0.0, end, steps + 1)
+    ways = [
+        walk.march(make_path(problem.displacement, phases, depth=problem.depth), walk.last.state)
+    ]
+    state = walk.last.state
+    for _ in range(images):
+        state = cycle.image(state)
+    look, guess = FIRST_LOOK, None
+    for count in range(1, MOST_INTERVALS + 1):
+        ways.append(walk.march(cycle.path, state, guess))
+        guess, state = walk.last, cycle.image(walk.last.state)
+        if count == look:
+            remaining, drifts = _remaining(ways[1:], walk.residual / contact.stiffness)
+            if remaining <= tolerance or drifts:
+                break
+            look = round(look * LOOKS[look % 3 == 0])
+    residual, period = walk.residual / contact.stiffness, interval / (2.0 * np.pi)
+    reason = unsolved(walk.residual, walk.solves, walk.step_tolerance)
+    if remaining > tolerance:
+        reason = (
+            f"still moves after {count * period:g} periods, by {ways[-1]:.1e} in the last march"
+        )
+    travel = np.cumsum(ways)
+    added = travel[-1] + (0.5 * remaining if np.isfinite(remaining) else 0.0)
+    most = int(np.searchsorted(np.maximum.accumulate(travel), MOST_SHARE * added))
+    if added <= residual:  # within the residual of the steps
+        most = 0
+    return Run(
+        {
+            "displacement": float(pushed + added),
+            "pushed": float(pushed),
+            "most_after": float(most * period),
+        },
+        distance=0.5 * remaining,
+        residual=residual,
+        periods=float(count * period),
+        effort=Effort.of(walk.solves, walk.iterations, state.size),
+        reason=reason,
+        state=state,
+    )
+
+
+class _Walk:
+    """Marches of a contact under a force, with the sums of their residuals and iterations."""
+
+    def __init__(self, contact: RingContact, body: Body, step_tolerance: float):
+        self.contact, self.body, self.step_tolerance = contact, body, step_tolerance
+        self.residual, self.iterations, self.solves = 0.0, 0, 0
+
+    def march(self, path: Path, state: np.ndarray, guess: March | None = None) -> float:
+        """March along a path, and return the displacement of the contact.
+
+        Raises StepFailure if the tractions diverge.
+        """
+        march = self.contact.march(path, state, self.step_tolerance, guess, body=self.body)
+        if not np.isfinite(march.state).all():
+            raise StepFailure("diverged: tractions are not finite")
+        self.residual += march.residual
+        self.iterations += march.iterations
+        self.solves += march.solves
+        self.last = march
+        return float(march.body[-1, 0] - march.body[0, 0])
+
+
+def _still(problem: Problem) -> Path:
+    """Path without oscillation.  One step suffices, since slip only grows with the force."""
+    of_phase = problem.depth
+    depth = None if of_phase is None else lambda phase: of_phase(0.0 * phase)
+    return make_path(lambda phase: (0.0 * phase,) * 3, np.array([0.0, 1.0]), EULER, depth)
+
+
+def _remaining(ways: list[float], rounding: float) -> tuple[float, bool]:
+    """Upper bound on the remaining displacement, and whether the contact keeps drifting.
+
+    The displacements between doublings of the number of intervals are extrapolated as a geometric
+    series.  The bound is infinite if the ratio of the last two is above SLOWEST_RATIO.
+
+    Parameters
+    ----------
+    ways : list of float
+        Displacement in each interval.
+    rounding : float
+        Displacement within the residual of the steps, at which the contact is at rest.
+    """
+    count = len(ways)
+    before = max(sum(ways[count // 4 : count // 2]), 0.0)
+    last = max(sum(ways[count // 2 :]), 0.0)
+    drifts = count >= LONG and last > DRIFTING * before
+    if last <= rounding:
+        return last, drifts
+    ratio = last / before if before > 0.0 else np.inf
+    return last * ratio / (1.0 - ratio) if ratio < SLOWEST_RATIO else np.inf, drifts

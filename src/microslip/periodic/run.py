@@ -1,0 +1,131 @@
+"""Settings and result of a run."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from microslip.contact.contact import Contact
+from microslip.periodic.budget import Budget
+from microslip.periodic.effort import Effort
+from microslip.periodic.method import SHIPPED, Method
+
+if TYPE_CHECKING:
+    from microslip.contact.rings import Focus
+    from microslip.scene.problem import Problem
+from microslip.periodic.discretise import Resolution, contact_of
+
+NAMES = ("friction", "torque", "dissipation", "velocity", "displacement")
+"""Names of the values of a run that have error estimates."""
+
+
+@dataclass(frozen=True)
+class Settings:
+    """Settings of a run that do not depend on the problem.
+
+    Attributes
+    ----------
+    method : method.Method
+        Method, which contains the step solver and the search for the periodic state.
+    tighter : bool
+        Whether the steps of slow motions are solved to a smaller tolerance.
+    budget : budget.Budget or None
+        Budget of the marches.  None means unlimited.
+    focus : mesh.Focus or None
+        Grading of the rings.  By default, they are graded towards the radius at which slip starts.
+    slope : float
+        Under a prescribed force: rise of the friction with the velocity.  It converts an unbalanced
+        force, divided by mu times the mean normal load, to an error of the velocity.
+    """
+
+    method: Method = SHIPPED
+    tighter: bool = False
+    budget: Budget | None = None
+    focus: Focus | None = None
+    slope: float = np.inf
+
+    def contact(
+        self, problem: Problem, model: str, resolution: Resolution, focus: Focus | None = None
+    ) -> Contact:
+        """Build a contact with the method's step solver.  The contact counts its marches."""
+        contact = self.method.dressed(contact_of(problem, model, resolution, focus or self.focus))
+        return contact if self.budget is None else self.budget.metered(contact)
+
+
+AS_SHIPPED = Settings()
+
+
+@dataclass(frozen=True)
+class Run:
+    """Result of one run.
+
+    Attributes
+    ----------
+    values : mapping of str to float
+        Values by name.  All runs have `friction`, the mean forward force divided by mu times the
+        mean normal load, except for runs to rest.  Further values are `torque` (divided by its
+        full-slip value), `dissipation` (energy per period, divided by mu F_z u_lim), `velocity`
+        (mean forward velocity of a driven contact), and, for runs to rest, those listed in
+        rest.py.
+    distance : float
+        Estimated distance from the periodic (or steady) state, in the unit of the result.
+    residual : float
+        Residual of the step solver summed over the last period, in the unit of the result.
+    periods : float
+        Number of full periods marched in the search for the periodic state; 0 for a steady motion.
+    effort : Effort
+        Effort of all searches.
+    reason : str
+        Reason why the state is not periodic (or steady) or a step was not solved, otherwise empty.
+    state : np.ndarray or None
+        Periodic or steady tractions, used by other runs as an initial guess; None if unknown.
+    place : np.ndarray, shape (2,)
+        Position x and rate x' of a driven body at the start of a period, see models.driven_body.
+    static_force : float
+        Mean forward force of the static limit, also used by other runs; NaN if unknown.
+    """
+
+    values: Mapping[str, float]
+    distance: float
+    residual: float
+    periods: float = 0.0
+    effort: Effort = Effort()
+    reason: str = ""
+    state: np.ndarray | None = None
+    place: np.ndarray = field(default_factory=lambda: np.zeros(2))
+    static_force: float = np.nan
+
+    @property
+    def converged(self) -> bool:
+        """Whether the state is periodic (or steady) and every step was solved."""
+        return not self.reason
+
+    @property
+    def mu(self) -> float:
+        """The value `friction`."""
+        return self.values["friction"]
+
+
+def unsolved(residual: float, solves: int, step_tolerance: float) -> str:
+    """Reason why the stages are not solved to their tolerance, otherwise empty.
+
+    Parameters
+    ----------
+    residual : float
+        Residual of the step solver summed over the stages, as a force divided by mu F_z.
+    solves : int
+        Number of stages.
+    step_tolerance : float
+        Tolerance of each stage, as a force divided by mu F_z.
+    """
+    if residual <= solves * step_tolerance:
+        return ""
+    return f"a step was left unsolved: residual {residual:.1e}"
+
+
+def failed_run(reason: str) -> Run:
+    """The Run for a failed march.  Its numbers are NaN or infinite."""
+    return Run(dict.fromkeys(NAMES, np.nan), np.inf, np.inf, reason=reason)

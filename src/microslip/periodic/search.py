@@ -1,0 +1,333 @@
+"""Search for the periodic state, the fixed point of the march over a period or half a period.
+
+The transients of a plain march last about 1/(2 pi v~) periods.  Anderson acceleration of the map
+finds its fixed point much sooner.  Convergence is judged by three quantities: the residual of the
+plain map, the distance to the next state, and an error computed from the residual and the drift
+rate of the motion.  The last quantity is needed near the static limit, where the state changes so
+slowly that a small residual is no evidence of convergence.
+
+The state of a driven body includes two more numbers, its position x and rate x' (see
+contact/march.py).  In one period, unbalanced forces hardly change the state of a heavy body or of
+a body on a soft spring.  So the map scales up the changes of x and x', as if the spring were
+stiffer and the body lighter, to match the stiffness of the contact.  The fixed point of the map
+stays the same.  A contact in full slip is much more compliant than a sticking contact.  Its
+stiffness is the rise of the mean force with the displacement.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import NamedTuple, cast
+
+import numpy as np
+
+from microslip.contact.contact import Body, Contact, March, StepFailure, energy_norm
+from microslip.contact.coulomb import project
+from microslip.contact.path import Path
+from microslip.contact.ring_contact import RingContact
+from microslip.periodic.anderson import DEPTH, accelerated, remember
+
+MOST_MARCHES = 200
+"""Default limit on the number of marches in a search."""
+FORCING = 1e-3
+"""Tolerance of the steps in a march, divided by the last change of the state."""
+LOOSEST, LOOSEST_NEAR = 1e-4, 1e-5
+"""Largest tolerance of a step.  The first value is for an initial state far from the periodic
+state, and the second value is for one near it."""
+NOISE = 1e-2
+"""Largest accepted residual of a march, divided by the force that the drift adds in this march.  An
+error of the state decays no faster than the state drifts."""
+DRIFTING, MOST_RETURNS = 0.5, 3
+"""DRIFTING: a state below the static limit is stuck if its residual exceeds this fraction of the
+force that the drift adds.  Such a state drifts without slip, so its change does not measure the
+distance to the periodic state.  The search then goes halfway back to the last state that was not
+stuck, at most MOST_RETURNS times in a row."""
+FORGETFUL = 0.2
+"""The plain map is not accelerated if its contraction factor is below this value."""
+CAUTION = 0.3
+"""Largest ratio of the effective stiffness of a soft spring to that of the contact.  With a larger
+ratio, the search would overshoot."""
+AT_REST = np.zeros(2)
+"""Position x and rate x' of a contact without a driven body."""
+NO_BODY = Body(0.0, 0.0, 0.0, 0.0)
+
+
+class Goal(NamedTuple):
+    """Goal of a search for the periodic state.
+
+    Attributes
+    ----------
+    tolerance, step_tolerance : float
+        Tolerances of the state and of a step, as forces divided by mu F_z.
+    most_marches : int
+        Largest number of marches.
+    near : bool
+        Whether the initial state is near the periodic state.  In this case, the first steps are
+        solved more accurately.
+    """
+
+    tolerance: float
+    step_tolerance: float
+    most_marches: int = MOST_MARCHES
+    near: bool = False
+
+
+@dataclass(frozen=True, eq=False)
+class PeriodicState:
+    """Result of a search for the periodic state.
+
+    Attributes
+    ----------
+    march : March
+        March over the last (half) period.
+    start : np.ndarray
+        Tractions at the beginning of this (half) period.
+    residual : float
+        Upper bound on the change of the state by the plain map, as a force divided by mu F_z.
+    distance : float
+        Estimated distance from the fixed point, as a force divided by mu F_z.
+    marches : int
+        Number of marches.
+    iterations : int
+        Number of iterations of the step solver, summed over all marches.
+    converged : bool
+        Whether the distance is within the tolerance.
+    """
+
+    march: March
+    start: np.ndarray
+    residual: float
+    distance: float
+    marches: int
+    iterations: int
+    converged: bool
+
+    @property
+    def solves(self) -> int:
+        """Number of stages, summed over all marches."""
+        return self.marches * self.march.solves
+
+
+@dataclass(frozen=True)
+class DriftRate:
+    """Data for the error estimate of slow motions, whose states change little in a period.
+
+    If the plain map still changes the state by a force r, the velocity of the state has a relative
+    error of r / `gain`.  Only the difference between the force and the static limit depends on the
+    velocity.  So the error of the force is at most r / `gain` times this difference.
+
+    Attributes
+    ----------
+    static_force : float
+        Mean forward force of the static limit, divided by mu F_z; NaN if unknown.
+    full : float
+        Mean forward force in full slip, the largest possible force.
+    gain : float
+        Rise of the force in a (half) period for a contact without slip.
+    least : float
+        Mean forward force below which a state sticks and changes slowly.  It approximately equals
+        the static limit.  NaN means that `static_force` is used.
+    """
+
+    static_force: float = 0.0
+    full: float = 0.0
+    gain: float = np.inf
+    least: float = np.nan
+
+    def error(self, force: float, change: float) -> float:
+        """Error of a mean force if the plain map still changes the state by the force `change`."""
+        if self.gain == np.inf:
+            return 0.0
+        excess = abs(force - self.static_force)
+        if np.isnan(excess):  # the limit can be any force from 0 to full slip
+            excess = max(abs(force), abs(self.full - force))
+        return excess * change / self.gain
+
+    @property
+    def sticking(self) -> float:
+        """Mean forward force below which a state sticks; NaN if unknown."""
+        return self.static_force if np.isnan(self.least) else self.least
+
+
+class PeriodMap:
+    """The map of a contact's state over a path.
+
+    A state is an array of all tractions, followed by x and x' of a driven body (0 without a body).
+
+    Parameters
+    ----------
+    contact : contact.Contact
+        The contact.
+    path : path.Path
+        Path over half a period, from turning point to turning point.  Without `mirror`, the path
+        covers a whole period.
+    drift_rate : DriftRate or None
+        Data for slow motions, or None if the motion is not slow.
+    mirror : bool
+        Whether the other half of the period is the lateral mirror image of the path.
+    body : contact.Body or None
+        The driven body and its drive; None if the contact follows the path.
+    slope : float
+        Largest rise of the mean forward force if the body advances by one unit of x per interval.
+    """
+
+    def __init__(
+        self,
+        contact: Contact,
+        path: Path,
+        drift_rate: DriftRate | None = None,
+        mirror: bool = True,
+        body: Body | None = None,
+        slope: float = np.inf,
+    ):
+        self.contact, self.path, self.mirror = contact, path, mirror
+        self.drift_rate, self.driven = drift_rate or DriftRate(), body is not None
+        self.shape, self.body = (2, *contact.forward_position.shape), body or NO_BODY
+        self.factors, self.weights, self.spread = np.ones(2), np.zeros(2), np.zeros(1)
+        if self.driven:
+            self._scale_body(slope)
+        scale = np.sqrt(np.broadcast_to(contact.weight * contact.compliance, self.shape))
+        self.metric = np.append(scale, np.sqrt(self.weights))
+
+    def _scale_body(self, slope: float) -> None:
+        contact, body = self.contact, self.body
+        bound = np.broadcast_to(contact.bound, self.shape[1:])
+        load = float(np.sum(contact.weight * bound))
+        # without contact at the start of a period there are no tractions to correct
+        self.spread = bound / load if load > 0.0 else 0.0 * bound
+        interval, stiffness = self.path.phase[-1] - self.path.phase[0], contact.stiffness
+        mass = min(body.mass, stiffness * interval**2)
+        slow = max(1.0, body.damping / (stiffness * interval))
+        if body.stiffness > 0.0:
+            self.factors[0] = max(1.0, min(CAUTION * stiffness, slope) / body.stiffness * slow)
+        if body.mass > 0.0:
+            self.factors[1] = max(1.0, body.mass / (mass * slow))
+        self.weights[:] = body.stiffness * min(1.0, body.stiffness / stiffness), mass
+
+    def march(self, state: np.ndarray, tolerance: float, previous: March | None) -> March:
+        """March along the path; `previous` is a march from a similar state."""
+        tractions = state[:-2].reshape(self.shape)
+        if not self.driven:
+            return self.contact.march(self.path, tractions, tolerance, previous)
+        contact = cast(RingContact, self.contact)  # or another contact that supports drives
+        body, start = self.body, state[-2:]
+        return contact.march(self.path, tractions, tolerance, previous, body=body, start=start)
+
+    def image(self, tractions: np.ndarray) -> np.ndarray:
+        """Convert the tractions at the end of an interval to those at the start of the next
+        interval.
+
+        The map is linear.
+        """
+        return self.contact.mirrored(tractions) if self.mirror else tractions
+
+    def step(self, state: np.ndarray, march: March) -> tuple[np.ndarray, np.ndarray]:
+        """State at the start of the next interval, and the change of the state.
+
+        The changes of x and x' are scaled up.
+        """
+        tractions, moved = self.image(march.state), AT_REST
+        if self.body.remembers:
+            moved = self.factors * (march.body[-1] - march.body[0])
+        elif self.factors[0] > 1.0:
+            # from the motion of the body, more accurate than from the forces of the steps
+            advance = self.factors[0] * (march.body[-1, 0] - march.body[0, 0])
+            force = march.forces[0, 0] - self.body.stiffness * advance
+            tractions = tractions.copy()
+            tractions[0] += (force - march.forces[-1, 0]) * self.spread
+        image = np.append(tractions, state[-2:] + moved)
+        change = image - state
+        change[-2:] = moved  # without a rounding error
+        return image, change
+
+    def norm(self, change: np.ndarray) -> float:
+        """Upper bound on the force due to a change of the state."""
+        tractions, body = change[:-2].reshape(self.shape), self.body
+        force, held = energy_norm(self.contact, tractions), 0.0
+        if body.remembers:
+            held = float(self.weights @ change[-2:] ** 2)
+        elif body.stiffness > 0.0:
+            advance = float(np.sum(self.contact.weight * tractions[0])) / body.stiffness
+            held = self.weights[0] * advance**2
+        return float(np.sqrt(force**2 + self.contact.stiffness * held)) if held else force
+
+    def gained(self, march: March, change: np.ndarray, residual: float) -> float:
+        """Change of the state by the plain map, as a force."""
+        if not self.driven:
+            return residual
+        advance = abs(march.body[-1, 0] - march.body[0, 0])
+        tractions = change[:-2].reshape(self.shape)
+        return float(advance * self.contact.stiffness + energy_norm(self.contact, tractions))
+
+
+def find_periodic_state(
+    period_map: PeriodMap, start: np.ndarray, goal: Goal, place: np.ndarray = AT_REST
+) -> PeriodicState:
+    """March periods until the state is periodic to within the tolerance.
+
+    Parameters
+    ----------
+    period_map : PeriodMap
+        The map over a (half) period.
+    start : np.ndarray
+        Initial tractions.
+    goal : Goal
+        Tolerances and largest number of marches.
+    place : np.ndarray, shape (2,)
+        Initial x and x' of a driven body.
+
+    Returns
+    -------
+    PeriodicState
+        The result of the search.  `converged` is False if the search failed.
+
+    Raises
+    ------
+    StepFailure
+        If the tractions diverge.
+    """
+    contact, path, rate = period_map.contact, period_map.path, period_map.drift_rate
+    loosest, tightest = LOOSEST_NEAR if goal.near else LOOSEST, goal.step_tolerance
+    inner = max(tightest, min(loosest, NOISE * rate.gain / path.solves))
+    state = above = np.append(start, place)
+    pairs, count = np.empty((2, DEPTH + 1, state.size)), 0
+    last, forgets, returns, iterations, sticking = np.inf, True, 0, 0, rate.sticking
+    march, best = None, None
+    for marches in range(1, goal.most_marches + 1):
+        march = period_map.march(state, inner, march)
+        iterations += march.iterations
+        image, change = period_map.step(state, march)
+        residual = period_map.norm(change)
+        if not np.isfinite(residual):
+            raise StepFailure("diverged: tractions are not finite")
+        solved = inner <= tightest
+        inner = max(tightest, min(FORCING * residual, inner))
+        forgets, last = forgets and residual <= FORGETFUL * last, residual
+        mean = float(path.mean(march.forces[:, 0]))
+        stuck = marches > 1 and mean < sticking and residual > DRIFTING * rate.gain
+        back = stuck and not period_map.driven and returns < MOST_RETURNS
+        returns = returns + 1 if back else returns if stuck else 0
+        above = above if stuck else state
+        if back:  # halfway
+            count, following = 0, 0.5 * (state + above)
+        else:
+            count, following = remember(pairs, count, image, change), image
+            if not forgets:
+                accelerated(pairs, count, period_map.metric, following := np.empty_like(image))
+        if path.end == 1.0:
+            tractions = project(following[:-2].reshape(period_map.shape), contact.bound)
+            following[:-2] = tractions.ravel()
+        distance = max(period_map.norm(following - state), residual)
+        distance = max(distance, rate.error(mean, period_map.gained(march, change, residual)))
+        near_enough = distance <= goal.tolerance
+        converged = solved and near_enough
+        if near_enough:  # solve the steps of the next march to the final tolerance
+            inner = tightest
+        if converged or best is None or distance < best.distance:
+            start = state[:-2].reshape(period_map.shape)
+            best = PeriodicState(march, start, residual, distance, marches, iterations, converged)
+        if converged:
+            break
+        state = following
+    assert best is not None  # there is at least one march
+    return replace(best, marches=marches, iterations=iterations)

@@ -1,0 +1,347 @@
+"""One run at one resolution: build the contact and the path, then find the periodic state.
+
+The search for the state of a driven contact starts from the periodic state at a prescribed
+velocity: the velocity of the spring's far end, or an approximate velocity under the force.  The
+number of periods in a search does not depend on the number of steps, so a run with many steps
+starts from the result of a run with few steps.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import replace
+from typing import NamedTuple
+
+import numpy as np
+
+from microslip.contact.contact import Body, StepFailure, forward_slip
+from microslip.contact.coulomb import project
+from microslip.periodic.discretise import Resolution, path_of
+from microslip.periodic.effort import Effort
+from microslip.periodic.means import dissipated_energy, mean_forces
+from microslip.periodic.rest import run_to_rest
+from microslip.periodic.run import AS_SHIPPED, Run, Settings, failed_run, unsolved
+from microslip.periodic.search import (
+    AT_REST,
+    MOST_MARCHES,
+    DriftRate,
+    Goal,
+    PeriodicState,
+    PeriodMap,
+    find_periodic_state,
+)
+from microslip.periodic.static_limit import SLOW_LOOP, limit_on_a_line, limit_on_a_loop
+from microslip.periodic.steady import steady_state
+from microslip.periodic.stick_edge import static_run
+from microslip.periodic.tolerances import STEP_SHARE, periods_of, step_share
+from microslip.scene.problem import Problem
+
+SLOW_EXCESS, LARGEST_EXCESS = 4.0, 0.6
+"""A search starts from the static limit plus a forward traction.  This traction is the friction
+bound times SLOW_EXCESS * drift^(2/3), but at most LARGEST_EXCESS times the bound.  Friction rises
+with the same power of the drift.  So the search starts with too much forward traction, which makes
+an accelerated search converge faster."""
+MARCHES_FROM_COARSER = 50
+"""Largest number of marches in a search that starts from interpolated tractions.  If more are
+needed, a search from the usual start is faster."""
+DRIVEN_MARCHES = 2 * MOST_MARCHES
+"""Largest number of marches in a search for a driven contact, whose body can oscillate."""
+LOOSEST_START = 1e-4
+"""Largest tolerance of the state at a prescribed velocity from which the search for a driven
+contact starts, as a force divided by mu F_z."""
+COARSENING, PREPARED_FROM = 6, 96
+"""A run of a driven contact with at least PREPARED_FROM steps starts from a run with COARSENING
+times fewer steps.  Runs with fewer steps are cheap and start directly; they suffice for a tolerance
+of 1e-3."""
+MOST_SCALED = 4.0
+"""Largest factor by which the initial tractions are scaled to match the prescribed force."""
+
+
+def simulate(
+    problem: Problem,
+    model: str,
+    resolution: Resolution,
+    tolerance: float,
+    guess: Run | None = None,
+    settings: Settings = AS_SHIPPED,
+) -> Run:
+    """Run a model of a problem at one resolution.
+
+    The problem decides what is computed: the steady state of a motion without oscillation, the
+    static limit at velocity 0, the way to rest under a force at velocity 0, otherwise the periodic
+    state.
+
+    Parameters
+    ----------
+    problem : problem.Problem
+        The problem, already checked.  With a spring, its velocity is that of the spring's far end.
+        Under a prescribed force, a velocity above 0 is an initial guess.
+    model : str
+        Name in contact.registry.MODELS.
+    resolution : discretise.Resolution
+        Resolution of the model.
+    tolerance : float
+        Tolerance of the state: a force divided by mu times the mean normal load, a velocity under a
+        prescribed force, or a displacement in u_lim for a run to rest.
+    guess : Run or None
+        Run of the same point, used as the initial guess.  It is used if it has the same numbers of
+        cells and angles, or if the contact can interpolate its tractions.
+    settings : Settings
+        Settings of the run.
+
+    Returns
+    -------
+    Run
+        The run.  If it did not converge, its `reason` says why; no exception is raised.
+
+    Raises
+    ------
+    budget.Spent
+        If the budget is exceeded.
+    """
+    method, drive = settings.method, problem.drive
+    try:
+        if method.run is not None:
+            return method.run(problem, model, resolution, tolerance * problem.mean_load)
+        if not problem.motion.periodic:
+            contact = settings.contact(problem, model, resolution)
+            return steady_state(contact, problem, tolerance * problem.mean_load)
+        if problem.velocity == 0.0 and drive is None:
+            return static_run(problem, model, resolution, tolerance, settings)
+        if problem.velocity == 0.0 and drive is not None and drive.force is not None:
+            return run_to_rest(problem, model, resolution, tolerance, settings)
+        kind = _Prescribed if drive is None else _Driven
+        return kind(problem, model, resolution, tolerance, settings).run(guess)
+    except StepFailure as failure:
+        return failed_run(str(failure))
+
+
+class Start(NamedTuple):
+    """Initial state of a search.
+
+    Attributes
+    ----------
+    state : np.ndarray
+        Tractions.
+    place : np.ndarray, shape (2,)
+        x and x' of a driven body.
+    near : bool
+        Whether the tractions are interpolated from a coarser mesh.
+    friction : float
+        Approximate friction of a driven contact.
+    """
+
+    state: np.ndarray
+    place: np.ndarray = AT_REST
+    near: bool = False
+    friction: float = np.nan
+
+
+class _Search:
+    """Search for the periodic state of one run, trying several initial states in turn.
+
+    `unit` is the force, divided by mu F_z, that corresponds to an error of 1 in the result.
+    """
+
+    most_marches = MOST_MARCHES
+    body: Body | None = None
+
+    def __init__(
+        self,
+        problem: Problem,
+        model: str,
+        resolution: Resolution,
+        tolerance: float,
+        settings: Settings,
+    ):
+        self.problem, self.model, self.resolution = problem, model, resolution
+        self.settings, self.method, self.relative = settings, settings.method, tolerance
+        self.contact = settings.contact(problem, model, resolution)
+        self.path = path_of(problem, self.contact, resolution.steps, self.method.integrator)
+        self.interval = self.path.phase[-1] - self.path.phase[0]
+        self.rate = self.contact.stiffness * problem.drift
+        self.unit = problem.mean_load
+        self.static_force = self.least = np.nan
+        self.searches: list[PeriodicState] = []
+        self.earlier: list[Run] = []
+
+    def run(self, guess: Run | None) -> Run:
+        """Search from one initial state after the other, and return the Run."""
+        find = self.method.search or find_periodic_state
+        tolerance = self.relative * self.unit
+        share = step_share(self.rate, self.resolution.steps, self.settings.tighter)
+        self.tolerance, self.step_tolerance = tolerance, share * tolerance
+        for start in self.starts(guess):
+            most = MARCHES_FROM_COARSER if start.near else self.most_marches
+            goal = Goal(tolerance, self.step_tolerance, most, start.near)
+            self.searches.append(find(self.map(start), start.state, goal, start.place))
+            if self.searches[-1].converged:
+                break
+        return self.result()
+
+    def starts(self, guess: Run | None) -> Iterator[Start]:
+        """Initial states, best first."""
+        raise NotImplementedError
+
+    def map(self, start: Start) -> PeriodMap:
+        """The map for a search from a start."""
+        full, drift_rate, slope = self.problem.mean_load, None, np.inf
+        if self.body is None or self.body.stiffness > 0.0:  # the velocity is known
+            gain = self.rate * self.interval
+            drift_rate = DriftRate(self.static_force, full, gain, self.least)
+        if self.body is not None and self.body.stiffness > 0.0:
+            # 1 - mu decreases at most as fast as 1 / velocity^2, the rate at large velocities
+            slope = 2.0 * (1.0 - start.friction) * full / (self.problem.drift * self.interval)
+        mirror = self.problem.half_period_mirror
+        return PeriodMap(self.contact, self.path, drift_rate, mirror, self.body, slope)
+
+    def values(self, periodic: PeriodicState) -> dict[str, float]:
+        """Values of a Run."""
+        mean = mean_forces(self.contact, self.problem, self.path, periodic.march.forces)
+        return {
+            "friction": float(mean[0]) / self.problem.mean_load,
+            "torque": float(mean[2]) / self.problem.pressure.torque,
+            "dissipation": dissipated_energy(self.contact, self.path, periodic),
+        }
+
+    def result(self) -> Run:
+        """The Run of the last search, with the effort of all searches."""
+        periodic, march = self.searches[-1], self.searches[-1].march
+        periods = periods_of(sum(one.marches for one in self.searches), self.problem)
+        reason = unsolved(march.residual, self.path.solves, self.step_tolerance)
+        if not periodic.converged:
+            reason = f"no periodic state within {periods:g} periods: {periodic.distance:.1e} left"
+        solves = sum(one.solves for one in self.searches)
+        iterations = sum(one.iterations for one in self.searches)
+        effort = Effort.of(solves, iterations, periodic.start.size)
+        return Run(
+            self.values(periodic),
+            distance=periodic.distance / self.unit,
+            residual=march.residual / self.unit,
+            periods=periods + sum(one.periods for one in self.earlier),
+            effort=sum((one.effort for one in self.earlier), effort),
+            reason=reason,
+            state=periodic.start,
+            place=march.body[0] if len(march.body) else AT_REST,
+            static_force=self.static_force,
+        )
+
+
+class _Prescribed(_Search):
+    """Search at a prescribed velocity."""
+
+    def starts(self, guess: Run | None) -> Iterator[Start]:
+        # for motions on a line a prepared search computes the limit;
+        # for slow loops the limit only sets `least`
+        if self.problem.straight or not self.contact.sticks:
+            self.static_force = 0.0
+        problem, contact, start = self.problem, self.contact, None
+        if guess is not None and guess.state is not None and guess.converged:
+            near = guess.state.shape != (2, *contact.forward_position.shape)
+            start = contact.prolonged(guess.state) if near else guess.state
+            if start is not None:
+                self.static_force = guess.static_force
+                yield Start(project(start, contact.bound) if near else start, near=near)
+        slipping = forward_slip(contact)
+        if self.method.prepared:
+            start, rise = slipping, problem.drift ** (2.0 / 3.0)
+            if contact.sticks and problem.straight:
+                limit = limit_on_a_line(contact, problem.oscillation, self.step_tolerance)
+                if not unsolved(limit.solver_residual, limit.solves, self.step_tolerance):
+                    self.static_force = limit.force
+                excess = min(SLOW_EXCESS * rise, LARGEST_EXCESS)
+                start = limit.shift + limit.oscillating + excess * slipping
+            elif contact.sticks and problem.drift < SLOW_LOOP:
+                # a factor of SLOW_EXCESS would prevent convergence at the smallest drifts
+                start = self._limit_of_a_loop(rise) + rise * slipping
+            yield Start(project(start, contact.bound))
+        yield Start(slipping)
+
+    def _limit_of_a_loop(self, rise: float) -> np.ndarray:
+        """Tractions of the static limit, computed with reduced accuracy.
+
+        The accuracy is chosen according to the rise of friction above the limit.  Because of the
+        reduced accuracy, the limit's force only sets `least`.
+        """
+        rest = replace(self.problem, velocity=0.0)
+        path = path_of(rest, self.contact, self.resolution.steps, self.method.integrator)
+        tolerance = max(rise, self.tolerance)
+        limit = limit_on_a_loop(self.contact, rest, path, tolerance, STEP_SHARE * tolerance)
+        assert limit.periodic is not None  # true for a loop
+        self.searches.append(limit.periodic)
+        self.least = limit.force
+        return limit.oscillating + limit.shift
+
+
+class _Driven(_Search):
+    """Search under a prescribed force or on a spring.
+
+    For a spring, the result is a force.  For a prescribed force, the result is a velocity, and
+    there are two estimates of its unit.  The first divides the force by the stiffness and by the
+    length of the interval.  The second divides the unbalanced force by the rise of friction with
+    the velocity.  The smaller force is used.
+    """
+
+    most_marches = DRIVEN_MARCHES
+    body: Body
+
+    def __init__(
+        self,
+        problem: Problem,
+        model: str,
+        resolution: Resolution,
+        tolerance: float,
+        settings: Settings,
+    ):
+        super().__init__(problem, model, resolution, tolerance, settings)
+        drive, load = problem.drive, problem.mean_load
+        assert drive is not None  # true for all driven contacts
+        self.force = None if drive.force is None else drive.force * load
+        constant = (self.force or 0.0) - drive.damping * problem.drift
+        self.body = Body(drive.stiffness, drive.damping, drive.mass, constant)
+        if self.force is not None:
+            stuck = self.contact.stiffness * self.interval * problem.unit_drift
+            self.unit = min(stuck, settings.slope * load)
+
+    def starts(self, guess: Run | None) -> Iterator[Start]:
+        slipping = forward_slip(self.contact)
+        for one in self._similar_runs(guess):
+            if one.converged and one.state is not None and one.state.shape == slipping.shape:
+                self.static_force = one.static_force
+                yield Start(one.state, one.place, friction=one.mu)
+        there = replace(self.problem, drive=None)
+        share = max(self.tolerance, LOOSEST_START) / self.problem.mean_load
+        prescribed = simulate(there, self.model, self.resolution, share, settings=self.settings)
+        self.earlier.append(prescribed)
+        self.static_force = prescribed.static_force
+        if prescribed.state is not None:
+            mean = prescribed.mu * self.problem.mean_load
+            yield self._start(prescribed.state, mean, prescribed.mu)
+        full = float(np.sum(self.contact.weight * slipping[0]))
+        yield self._start(slipping, full, prescribed.mu)
+
+    def _similar_runs(self, guess: Run | None) -> Iterator[Run]:
+        """The guess, and a Run with COARSENING times fewer steps."""
+        if guess is not None:
+            yield guess
+        if self.resolution.steps >= PREPARED_FROM:
+            fewer = replace(self.resolution, steps=self.resolution.steps // COARSENING)
+            place = self.problem, self.model, fewer, self.relative
+            self.earlier.append(simulate(*place, settings=self.settings))
+            yield self.earlier[-1]
+
+    def _start(self, tractions: np.ndarray, mean: float, friction: float) -> Start:
+        """Build a Start from tractions whose mean force over a period is about `mean`."""
+        if self.force is not None:
+            if mean > 0.0 and 0.0 <= self.force < MOST_SCALED * mean:
+                tractions = tractions * (self.force / mean)
+            tractions = project(tractions, self.contact.bound)
+        body = self.body
+        place = (body.load - mean) / body.stiffness if body.stiffness else 0.0
+        return Start(tractions, np.array([place, 0.0]), friction=friction)
+
+    def values(self, periodic: PeriodicState) -> dict[str, float]:
+        moved = periodic.march.body[:, 0]
+        rate = float(moved[-1] - moved[0]) / self.interval
+        velocity = self.problem.velocity + rate / self.problem.unit_drift
+        return super().values(periodic) | {"velocity": velocity}

@@ -1,0 +1,335 @@
+"""The static limit: friction of a forward motion that is infinitely slow.
+
+The limit is a separate problem at every point.  Let q(t) be the periodic tractions of the
+oscillation alone, and g(t) the friction bound.  As the forward velocity vanishes, every point slips
+forward a little in each period when q(t) + s reaches the bound, where s is constant.  Such a slow
+drift does not change q(t).  By the flow rule, s has the largest forward component:
+
+    mu F_z mu_static = Integral { mean of q_forward
+                                  + max s_forward : |q(t) + s| <= g(t) for all t } dA.
+
+This is the counterpart of Melan's shakedown theorem for ratcheting.  At points that slip in every
+period of the oscillation alone, s is 0, since q reaches the bound in directions that balance.  At
+these points, the mean of q remains: a loop without half-period symmetry drags the contact along.
+At points that never slip, q has an arbitrary constant part, and the maximum does not depend on it.
+
+For a motion on a line under a constant load, q(t) moves along the segment between the tractions at
+the two turning points, +-q after subtracting their mean.  So only these two instants matter.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+from functools import lru_cache
+from typing import NamedTuple
+
+import numpy as np
+
+from microslip.contact.contact import (
+    FORWARD,
+    Contact,
+    forces,
+    full_slip,
+    rigid_displacement,
+)
+from microslip.contact.path import EULER, Path, make_path
+from microslip.periodic.discretise import Resolution, path_of
+from microslip.periodic.effort import Effort
+from microslip.periodic.means import dissipated_energy, mean_forces
+from microslip.periodic.run import Run, Settings, unsolved
+from microslip.periodic.search import Goal, PeriodicState, PeriodMap, find_periodic_state
+from microslip.periodic.snapshots import bounds_at_phases, tractions_at_phases
+from microslip.periodic.tolerances import MARCH_SHARE, STEP_SHARE, periods_of
+from microslip.scene.problem import Problem
+
+STEPS = 4
+"""Number of steps from one turning point to the next.  Between turning points, the slip of each
+point grows in a constant direction, so backward Euler gives the same tractions for any number of
+steps.  A second-order method can end a step below the bound, and s depends on the square root of
+the distance from the bound."""
+SLOW_LOOP = 0.02
+"""The stick zone of the static limit determines the state on a loop if the drift is below this
+value, in u_lim per radian of phase."""
+MARCHES, MOST_ROUNDS = 120, 3
+"""Largest number of marches in a search for the periodic state of a loop, and largest number of
+searches.  An accelerated search that stalls because of rounding errors is restarted."""
+HALVINGS = 50
+"""Number of bisections in the search for the largest shift, enough to reach the rounding error."""
+FELT = 4.0
+"""Ratio of the limit's error to the distance between the tractions and the periodic state of the
+oscillation alone.  In tests, this ratio was at most 3.  Slipping points are on the bound after
+every step, so their shift is 0."""
+LOOP_STEP_SHARE = 1e-4
+"""Ratio of the step tolerance to the tolerance of the periodic state.  A point's shift depends on
+the square root of the distance between its traction and the bound."""
+ENOUGH = 4.0
+"""Largest accepted ratio of the distance reached to the distance requested; rounding limits the
+search."""
+ROUNDING = 1e-12
+"""Tolerance of the periodic state of a contact that never sticks, which takes a few marches."""
+LARGEST_SHIFT = 1e-2
+"""Largest shift of a ring outside the stick radius, divided by the largest friction bound."""
+
+
+class StaticLimit(NamedTuple):
+    """The static limit of a contact, see the docstring of this module.
+
+    Attributes
+    ----------
+    shift : np.ndarray, shape (2, ...)
+        Constant tractions s at every point.
+    oscillating : np.ndarray, shape (2, ...)
+        Tractions of the oscillation alone at the start of a period.
+    force : float
+        Mean forward force, divided by mu F_z.
+    solver_residual : float
+        Residual of the step solver summed over the stages of the last march, as a force divided by
+        mu F_z.
+    solves : int
+        Number of stages in this march.
+    periodic : search.PeriodicState or None
+        The periodic state of the oscillation alone; None for a motion on a line.
+    """
+
+    shift: np.ndarray
+    oscillating: np.ndarray
+    force: float
+    solver_residual: float
+    solves: int
+    periodic: PeriodicState | None = None
+
+
+def at_turning_points(problem: Problem) -> bool:
+    """Whether the tractions at the turning points determine the static limit.
+
+    This is the case for a motion on a line under a constant load.
+    """
+    return problem.straight and not problem.motion.loads
+
+
+@lru_cache(maxsize=32)
+def _quarter(oscillation: Callable) -> Path:
+    """The path from the mean position to the second turning point."""
+    return make_path(oscillation, np.linspace(0.0, np.pi / 2, STEPS // 2 + 1), EULER)
+
+
+def limit_on_a_line(contact: Contact, oscillation: Callable, step_tolerance: float) -> StaticLimit:
+    """Static limit of a contact at its turning points.
+
+    `oscillation(phase)` returns the rigid displacement without forward motion.  The first turning
+    point is at the phase -pi/2.
+    """
+    start = np.zeros((2, *contact.lateral_position.shape))
+    # by Masing's rule the first quarter period from a stress-free start ends on the closed loop, at
+    # the second turning point; the tractions at the first one have the opposite sign
+    march = contact.march(_quarter(oscillation), start, step_tolerance)
+    shift = lens_corner(-march.state, contact.bound)
+    force = float(forces(contact, shift)[FORWARD])
+    return StaticLimit(shift, -march.state, force, march.residual, march.solves)
+
+
+def lens_corner(oscillating: np.ndarray, bound: np.ndarray) -> np.ndarray:
+    """Constant tractions s at every point of a line; arrays (2, ...), forward component first.
+
+    The two discs |s +- q| <= g intersect in a lens.  s is the forward tip of one disc if the other
+    disc contains it, otherwise the forward corner of the lens.
+    """
+    q_forward, q_lateral = oscillating
+    size = np.hypot(q_forward, q_lateral)
+    height = np.sqrt(np.maximum(bound**2 - size**2, 0.0))
+    with np.errstate(invalid="ignore", divide="ignore"):
+        slope = np.where(size > 0.0, np.abs(q_lateral) / size, 1.0)
+        turn = np.where(size > 0.0, -np.sign(q_lateral) * q_forward / size, 0.0)
+    corner = height * np.stack([slope, turn])
+    # only the disc whose centre is further back can have its tip inside the other disc
+    ahead = np.abs(q_forward)
+    tip = np.stack([bound - ahead, -np.sign(q_forward) * q_lateral])
+    other = np.hypot(bound - 2.0 * ahead, 2.0 * q_lateral)
+    shift = np.where(other <= bound, tip, corner)
+    return np.where(size < bound, shift, 0.0)
+
+
+def loop_energy(
+    contact: Contact, oscillation: Callable, oscillating: np.ndarray | None = None
+) -> float:
+    """Energy that an oscillation on a line dissipates in a period, divided by mu F_z u_lim.
+
+    Each slipping point slips in a constant direction.  By Masing's rule, it slips twice as far
+    between the turning points as in the first loading.  So the energy is four times the friction
+    bound times the slip of the first loading, summed over the points.
+
+    Parameters
+    ----------
+    contact : contact.Contact
+        The contact.
+    oscillation : callable
+        Rigid displacement at a phase, as in `limit_on_a_line`.
+    oscillating : np.ndarray or None
+        Tractions of the oscillation at the first turning point, see StaticLimit.  None for a
+        contact that never sticks; the tractions are then those of the periodic state.
+    """
+    if oscillating is None:
+        path = make_path(oscillation, np.pi * np.array([-0.5, 0.5, 1.5]), EULER)
+        cycle, goal = PeriodMap(contact, path, mirror=False), Goal(ROUNDING, ROUNDING)
+        start = np.zeros(cycle.shape)
+        oscillating = cycle.image(find_periodic_state(cycle, start, goal).march.state)
+    place = np.array(oscillation(np.array(-0.5 * np.pi)), dtype=float)
+    slip = rigid_displacement(contact, place) - contact.displacement(oscillating)
+    return 4.0 * float(np.vdot(contact.weight * full_slip(contact, *oscillating), slip))
+
+
+def limit_on_a_loop(
+    contact: Contact, problem: Problem, path: Path, tolerance: float, step_tolerance: float
+) -> StaticLimit:
+    """Static limit of a contact from the periodic state of the oscillation alone.
+
+    Parameters
+    ----------
+    contact : contact.Contact
+        The contact.
+    problem : problem.Problem
+        The problem at velocity 0.
+    path : path.Path
+        Path over a period, or half a period.
+    tolerance, step_tolerance : float
+        Tolerances of the state and of a step, as forces divided by mu F_z.
+
+    Returns
+    -------
+    StaticLimit
+        The limit; `periodic.converged` is False if the search failed.
+    """
+    mirror = problem.half_period_mirror
+    period_map, rounds = PeriodMap(contact, path, mirror=mirror), list[PeriodicState]()
+    start, goal = np.zeros(period_map.shape), Goal(tolerance, step_tolerance, MARCHES)
+    while not rounds or not (rounds[-1].converged or len(rounds) == MOST_ROUNDS):
+        rounds.append(find_periodic_state(period_map, start, goal))
+        start = rounds[-1].start
+    marches = sum(one.marches for one in rounds)
+    iterations = sum(one.iterations for one in rounds)
+    periodic = replace(rounds[-1], marches=marches, iterations=iterations)
+    march, shift = periodic.march, np.zeros(period_map.shape)
+    force = float(mean_forces(contact, problem, path, march.forces)[FORWARD])
+    if contact.sticks:
+        tractions = tractions_at_phases(contact, path, march)
+        bounds = np.broadcast_to(bounds_at_phases(contact, path), tractions[:, 0].shape)
+        if mirror:
+            bounds = np.concatenate([bounds, bounds])
+            tractions = np.concatenate([tractions, [contact.mirrored(q) for q in tractions]])
+        shift = largest_shift(tractions, bounds)
+        force += float(np.sum(contact.weight * shift[FORWARD]))
+    return StaticLimit(shift, start, force, march.residual, march.solves, periodic)
+
+
+def largest_shift(tractions: np.ndarray, bounds: np.ndarray) -> np.ndarray:
+    """Among the shifts s with |q + s| <= g at all phases, find the one with the largest forward
+    component.
+
+    The discs |q + s| <= g are convex, and so is their intersection.  The intersection contains
+    s = 0 and therefore every forward shift below the largest one.
+
+    Parameters
+    ----------
+    tractions : np.ndarray, shape (phases, 2, ...)
+        Tractions q, forward component first.
+    bounds : np.ndarray, shape (phases, ...) or broadcast to it
+        Friction bounds g.  Tractions exceed them only by rounding errors.
+
+    Returns
+    -------
+    np.ndarray, shape (2, ...)
+        Shift s at every point.  Its lateral component is the middle of the allowed interval, or 0
+        if the forward component is 0.
+    """
+    forward, lateral = tractions[:, 0], tractions[:, 1]
+    bounds = np.maximum(bounds, np.hypot(forward, lateral))  # so that s = 0 is allowed
+    least, most = np.zeros(forward.shape[1:]), 2.0 * bounds.min(axis=0)
+
+    def reach(shift: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Whether a forward shift lies inside the discs of all phases, and bounds on the lateral
+        shift."""
+        across = bounds**2 - (forward + shift) ** 2
+        width = np.sqrt(np.maximum(across, 0.0))
+        ends = (-lateral - width).max(axis=0), (width - lateral).min(axis=0)
+        return (across >= 0.0).all(axis=0), *ends
+
+    for _ in range(HALVINGS):
+        shift = 0.5 * (least + most)
+        fits, low, high = reach(shift)
+        fits &= low <= high
+        least, most = np.where(fits, shift, least), np.where(fits, most, shift)
+    _, low, high = reach(least)
+    return np.array([least, np.where(least > 0.0, 0.5 * (low + high), 0.0)])
+
+
+def limit_run(
+    contact: Contact, problem: Problem, resolution: Resolution, tolerance: float, settings: Settings
+) -> tuple[Run, np.ndarray | None]:
+    """Run of the static limit on one contact.
+
+    Parameters
+    ----------
+    contact : contact.Contact
+        The contact.
+    problem : problem.Problem
+        The problem at velocity 0.
+    resolution : discretise.Resolution
+        Resolution of the contact.
+    tolerance : float
+        Tolerance of the state, as a force divided by mu times the mean normal load.
+    settings : run.Settings
+        Settings of the run.
+
+    Returns
+    -------
+    run : Run
+        The run.  For a rigid contact and an oscillation on a line, the limit is 0.
+    sticks : np.ndarray or None
+        Mask of the points that stick; None if it is unknown.
+    """
+    load, sticks = problem.mean_load, None
+    if at_turning_points(problem):
+        limit, inner = None, STEP_SHARE * tolerance
+        if contact.sticks:
+            limit = limit_on_a_line(contact, problem.displacement, inner)
+            sticks = np.hypot(*limit.shift) > LARGEST_SHIFT * np.max(contact.bound)
+        solves, residual = (limit.solves, limit.solver_residual) if limit else (0, 0.0)
+        oscillating = limit.oscillating if limit else None
+        run = Run(
+            {
+                "friction": (limit.force if limit else 0.0) / load,
+                "dissipation": loop_energy(contact, problem.displacement, oscillating),
+            },
+            distance=0.0,
+            residual=residual / load,
+            # the limit needs a march of a quarter period and no search, so there are no periods
+            effort=Effort.of(solves, 0, 2 * contact.forward_position.size),
+            reason=unsolved(residual, solves, inner),
+        )
+        return run, None if run.reason else sticks
+    path = path_of(problem, contact, resolution.steps, settings.method.integrator)
+    distance = tolerance / FELT
+    inner = min(LOOP_STEP_SHARE, MARCH_SHARE / path.steps) * distance
+    limit = limit_on_a_loop(contact, problem, path, distance, inner)
+    periodic = limit.periodic
+    assert periodic is not None  # true for a loop
+    if contact.sticks:
+        sticks = limit.shift[FORWARD] > LARGEST_SHIFT * bounds_at_phases(contact, path).max()
+    periods = periods_of(periodic.marches, problem)
+    reason = unsolved(limit.solver_residual, limit.solves, inner)
+    if periodic.distance > ENOUGH * distance:  # the distance is part of the error
+        reason = f"no periodic state within {periods:g} periods: {periodic.distance:.1e} left"
+    run = Run(
+        {
+            "friction": limit.force / load,
+            # a constant traction does no work over a closed loop
+            "dissipation": dissipated_energy(contact, path, periodic),
+        },
+        distance=FELT * periodic.distance / load,
+        residual=limit.solver_residual / load,
+        periods=periods,
+        effort=Effort.of(periodic.solves, periodic.iterations, periodic.start.size),
+        reason=reason,
+    )
+    return run, None if run.reason else sticks

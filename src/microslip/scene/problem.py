@@ -1,0 +1,217 @@
+"""A problem: a motion at one velocity and amplitude, with its drive and its pressure."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from functools import cached_property
+
+import numpy as np
+
+from microslip.foundation.errors import InputError
+from microslip.pressures.hertz import HERTZ
+from microslip.pressures.pressure import Pressure
+from microslip.scene.drive import Drive
+from microslip.scene.motion import LOOP, Motion
+
+
+@dataclass(frozen=True)
+class Problem:
+    """A motion at one velocity and amplitude.  All quantities are dimensionless, and the object is
+    hashable.
+
+    Parameters
+    ----------
+    motion : Motion
+        The motion, such as `Transverse()` or `Elliptic(forward=0.5)`.
+    velocity : float
+        The paper's dimensionless velocity; 0 is the limit v -> 0.  Under a prescribed force, the
+        velocity is part of the result; leave this argument at 0.
+    amplitude : float or None
+        The paper's dimensionless amplitude; None for steady motions.
+    poisson : float
+        Poisson's ratio, 0 to 0.5.
+    pressure : Pressure
+        Distribution of the load.
+    drive : Force, Spring or None
+        Drive of the forward motion; None if the velocity is prescribed.
+    backward : bool
+        Whether the forward direction is reversed.  Then, under a symmetric pressure, friction at v
+        equals minus the friction of the original motion at -v.
+    follows : bool
+        Whether the body follows the forward oscillation of the contact, as a massless body under a
+        constant force does.  The forward oscillation is then subtracted.
+
+    Raises
+    ------
+    InputError
+        If an argument has another type, if a number is not finite, if the amplitude is missing, or
+        if a steady motion has one.
+    """
+
+    motion: Motion
+    velocity: float = 0.0
+    amplitude: float | None = None
+    poisson: float = 0.0
+    pressure: Pressure = HERTZ
+    drive: Drive | None = None
+    backward: bool = False
+    follows: bool = False
+
+    def __post_init__(self) -> None:
+        for name, kind in (("motion", Motion), ("pressure", Pressure)):
+            if not isinstance(getattr(self, name), kind):
+                allowed = f"allowed is a {kind.__name__}; microslip.solve takes its text, too"
+                raise InputError(name, getattr(self, name), allowed)
+        if self.drive is not None and not isinstance(self.drive, Drive):
+            raise InputError("drive", self.drive, "allowed is a Force or a Spring")
+        numbers = {"velocity": self.velocity, "poisson": self.poisson}
+        if self.motion.periodic:
+            if self.amplitude is None:
+                allowed = f"{self.motion.name} needs an amplitude >= 0"
+                raise InputError("amplitude", None, allowed)
+            numbers["amplitude"] = self.amplitude
+        elif self.amplitude is not None:
+            raise InputError("amplitude", self.amplitude, f"{self.motion.name} has no amplitude")
+        for name, value in numbers.items():
+            if not math.isfinite(value):
+                raise InputError(name, value, "allowed is a finite number")
+
+    def __str__(self) -> str:
+        """The problem as one line of text, without default values."""
+        words = [f"{self.motion.name} velocity={self.velocity:.12g}"]
+        if self.amplitude is not None:
+            words.append(f"amplitude={self.amplitude:.12g}")
+        words += [f"poisson={self.poisson:.12g}"] if self.poisson else []
+        words += [f"pressure={self.pressure.name}"] if self.pressure != HERTZ else []
+        words += [str(self.drive)] if self.drive else []
+        return " ".join(words)
+
+    # Symmetries that both the motion and the pressure have
+
+    @property
+    def half_period_mirror(self) -> bool:
+        """Whether the second half of a period is the mirror image of the first half; see Motion."""
+        return self.motion.half_period_mirror and self.pressure.mirrored
+
+    @property
+    def straight(self) -> bool:
+        """Whether the oscillation alone follows a straight line; see Motion."""
+        return self.motion.straight and not self.follows
+
+    @property
+    def propels(self) -> bool:
+        """Whether the oscillation alone can propel the contact; see Motion."""
+        return self.motion.propels and not self.follows
+
+    # Kinematics
+
+    @property
+    def size(self) -> float:
+        """The amplitude; 0 for a steady motion."""
+        return 0.0 if self.amplitude is None else self.amplitude
+
+    @property
+    def _sign(self) -> float:
+        return -1.0 if self.backward else 1.0
+
+    def _displacement(
+        self, phase: np.ndarray, velocity: float
+    ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Rigid displacement at a velocity."""
+        motion, sign = self.motion, self._sign
+        amplitude = (self.size, self.poisson)
+        forward, lateral, angle = motion.displacement(phase, sign * velocity, *amplitude)
+        if self.follows:
+            forward = forward - motion.displacement(phase, 0.0, *amplitude)[0]
+        return sign * forward, lateral, sign * angle
+
+    def displacement(self, phase: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Rigid displacement (forward, lateral, angle) at a phase."""
+        return self._displacement(phase, self.velocity)
+
+    def oscillation(self, phase: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Rigid displacement (forward, lateral, angle) at a phase, for velocity 0."""
+        return self._displacement(phase, 0.0)
+
+    @cached_property
+    def turns(self) -> tuple[float, ...]:
+        """Phases of the turning points; see Motion.  They cover a whole period if the pressure is
+        not symmetric."""
+        velocity = 0.0 if self.follows else self._sign * self.velocity
+        first = self.motion.turns(velocity, self.size)
+        if self.motion.half_period_mirror and not self.half_period_mirror:
+            return (*first, *(phase + np.pi for phase in first[1:]))
+        return first
+
+    @property
+    def start(self) -> float:
+        """Phase at which a march begins: the first turning point."""
+        return self.turns[0]
+
+    @property
+    def focus(self) -> float | None:
+        """Radius towards which rings are graded, or None; see Motion."""
+        return self.motion.focus(self._sign * self.velocity, self.size, self.pressure)
+
+    @cached_property
+    def unit_drift(self) -> float:
+        """Mean forward displacement per radian of phase at velocity 1, in u_lim."""
+        return self.motion.drift(1.0, self.size, self.poisson)
+
+    @property
+    def drift(self) -> float:
+        """Mean forward displacement per radian of phase, in u_lim."""
+        return self.unit_drift * self.velocity
+
+    @cached_property
+    def stroke(self) -> float:
+        """Half the peak-to-peak displacement of the edge of the contact, in u_lim."""
+        return self.motion.stroke(self.size, self.poisson)
+
+    @cached_property
+    def mean_speed(self) -> float:
+        """Mean speed of the oscillation: path length per radian of phase, in u_lim."""
+        moves = np.diff(np.stack(self.oscillation(LOOP)), axis=1)
+        return float(np.sqrt(np.sum(moves**2, axis=0)).sum()) / (2.0 * np.pi)
+
+    @property
+    def largest_energy(self) -> float:
+        """Work of full friction along the path of one period, divided by mu F_z u_lim.
+
+        It is an upper bound on the dissipated energy.
+        """
+        return 2.0 * np.pi * self.mean_load * (self.mean_speed + abs(self.drift))
+
+    # Numbers from files
+
+    @property
+    def readings(self) -> tuple[Problem, ...]:
+        """Problems that interpolate the same data differently; see Motion.readings and
+        Pressure.readings."""
+        motions = (replace(self, motion=other) for other in self.motion.readings)
+        pressures = (replace(self, pressure=other) for other in self.pressure.readings)
+        return (*motions, *pressures)
+
+    # Normal load
+
+    @property
+    def depth(self) -> Callable[[np.ndarray], np.ndarray] | None:
+        """Function of the phase that returns the indentation depth divided by its reference value.
+
+        The attribute is None if the load is constant.
+        """
+        if not self.motion.loads:
+            return None
+        return lambda phase: self.motion.depth(phase, self.size, self.pressure)
+
+    @property
+    def deepest(self) -> float:
+        """Largest indentation depth divided by its reference value."""
+        return self.motion.deepest(self.size, self.pressure)
+
+    @cached_property
+    def mean_load(self) -> float:
+        """Mean normal load in a period divided by its reference value."""
+        return float(self.motion.mean_load(self.size, self.pressure))

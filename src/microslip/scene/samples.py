@@ -1,0 +1,348 @@
+"""Motions from samples: a path from the first row to the last one, or one period of any shape.
+
+A row holds the forward, lateral and angular displacement of the indenter, and the normal load or
+the indentation.  Along a path, all of these quantities change linearly between rows.  A period is
+interpolated by periodic cubic splines through equally spaced rows.
+"""
+
+from __future__ import annotations
+
+import hashlib
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from microslip.foundation.arguments import LARGEST
+from microslip.foundation.errors import InputError
+from microslip.pressures.pressure import Pressure
+from microslip.scene.motion import LOOP, NORMAL, PLANE, Motion, stick_focus, within_rings
+
+if TYPE_CHECKING:
+    from scipy.interpolate import CubicSpline
+
+
+@dataclass(frozen=True, eq=False)
+class _Samples(Motion):
+    """A motion given by rows.
+
+    Attributes
+    ----------
+    rows : np.ndarray, shape (rows, 3)
+        Forward and lateral displacement in u_lim, angle in u_lim / a.
+    height : np.ndarray or None, shape (rows,)
+        Normal load or indentation divided by its reference value; None if both are constant.
+    by_load : bool
+        Whether `height` is a load.
+    """
+
+    rows: np.ndarray
+    height: np.ndarray | None
+    by_load: bool
+
+    @property
+    def loads(self) -> bool:
+        return self.height is not None
+
+    @property
+    def rotates(self) -> bool:
+        return self._varies(2)
+
+    @property
+    def half_disc(self) -> bool:
+        return not (self.rotates and self._varies(1))
+
+    def _varies(self, column: int) -> bool:
+        return bool(np.ptp(self.rows[:, column]) > 0.0)
+
+    def _depth_at(self, height: np.ndarray, pressure: Pressure) -> np.ndarray:
+        """Indentation depth at a load or an indentation."""
+        return pressure.of_load(height) if self.by_load else height
+
+
+@dataclass(frozen=True, eq=False)
+class SampledPath(_Samples):
+    """A motion through a sequence of rows, without repetition.  The phase is the row number."""
+
+    periodic = False
+    summary = "a path through rows"
+
+    @classmethod
+    def of_columns(cls, columns: Mapping[str, Any]) -> SampledPath:
+        """Create the path from named columns; see PLANE and NORMAL.  A quantity is constant if its
+        column is None.
+
+        Raises
+        ------
+        InputError
+            If a column has an unknown name, or contains values that are not numbers from -1e6 to
+            1e6, if columns have different lengths, if there are fewer than two rows, if a load or
+            an indentation is below 0, or if both are given.
+        """
+        return cls(*_rows_of(columns, 2))
+
+    @property
+    def name(self) -> str:
+        return "path"
+
+    def at(self, phase: np.ndarray, values: np.ndarray) -> np.ndarray:
+        """Interpolate the values of the rows linearly."""
+        return np.interp(phase, np.arange(len(values)), values)
+
+    def displacement(
+        self, phase: np.ndarray, velocity: float, amplitude: float, poisson: float
+    ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        forward, lateral, angle = (self.at(phase, column) for column in self.rows.T)
+        return forward, lateral, angle
+
+    def depth(self, phase: np.ndarray, amplitude: float, pressure: Pressure) -> np.ndarray:
+        assert self.height is not None  # else the depth is constant
+        return self._depth_at(self.at(phase, self.height), pressure)
+
+    def deepest(self, amplitude: float, pressure: Pressure) -> float:
+        return float(self.depth(np.arange(len(self.rows)), amplitude, pressure).max())
+
+    def lengths(self, pressure: Pressure) -> np.ndarray:
+        """Largest displacement of a contact point between consecutive rows, in u_lim, shape (rows -
+        1,).
+
+        If the indentation changes, the change in the local u_lim counts as a displacement.
+        """
+        forward, lateral, angle = np.abs(np.diff(self.rows, axis=0)).T
+        out = np.hypot(forward, lateral) + angle
+        if self.loads:
+            out += np.abs(np.diff(self.depth(np.arange(len(self.rows)), 0.0, pressure)))
+        return out
+
+
+@dataclass(frozen=True, eq=False)
+class Sampled(_Samples):
+    """One period of a motion of any shape, from equally spaced samples.
+
+    With the amplitude A, the indenter moves by A times the interpolated displacements.  A load or
+    an indentation h oscillates as 1 + A (h - 1).
+
+    Attributes
+    ----------
+    rows : np.ndarray, shape (rows, 3)
+        Forward and lateral displacement in u_lim, and angle in u_lim / a, for A = 1.  The end point
+        of the period is omitted.
+    height : np.ndarray or None, shape (rows,)
+        Normal load or indentation divided by its reference value; None if both are constant.
+    by_load : bool
+        Whether `height` is a load.
+    text : str
+        Name of the motion, with a digest of the numbers or of their file.  Motions with equal names
+        are equal.
+    """
+
+    text: str
+
+    summary = "sliding forward while moving along samples of a period"
+    amplitude_label = "factor of the samples"
+
+    @classmethod
+    def of_columns(cls, columns: Mapping[str, Any]) -> Sampled:
+        """Create the motion from named columns; see PLANE and NORMAL.  A quantity is constant if
+        its column is None.
+
+        Raises
+        ------
+        InputError
+            In the same cases as `SampledPath.of_columns`, and if there are fewer than
+            FEWEST_SAMPLES rows.
+        """
+        rows, height, by_load = _rows_of(columns, FEWEST_SAMPLES)
+        parts = [rows] if height is None else [rows, height]
+        digest = hashlib.sha256(b"".join(one.tobytes() for one in parts)).hexdigest()[:16]
+        kind = "" if height is None else ",load" if by_load else ",indentation"
+        return cls(rows, height, by_load, f"array:sha256={digest}{kind}")
+
+    @property
+    def name(self) -> str:
+        """Name of the motion, with a digest of the samples."""
+        return self.text
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, Sampled) and self.text == other.text
+
+    def __hash__(self) -> int:
+        return hash(self.text)
+
+    @cached_property
+    def _plane(self) -> CubicSpline:
+        return _spline(self.rows - self.rows.mean(axis=0))
+
+    @cached_property
+    def _height_spline(self) -> CubicSpline:
+        height = np.ones(len(self.rows)) if self.height is None else self.height
+        return _spline(height - 1.0)
+
+    @cached_property
+    def _loop(self) -> np.ndarray:
+        """Displacements at the phases LOOP for A = 1, shape (phases, 3)."""
+        return self._plane(LOOP)
+
+    @property
+    def readings(self) -> tuple[Motion, ...]:
+        """The motion through every second sample."""
+        if len(self.rows) < 2 * FEWEST_SAMPLES:
+            return ()
+        height = None if self.height is None else self.height[::2]
+        text = f"{self.text} (every second row)"
+        return (Sampled(self.rows[::2], height, self.by_load, text),)
+
+    def _repeats(self, signs: Sequence[float]) -> bool:
+        """Whether the forward, lateral and angular displacements are multiplied by these signs
+        after half a period, and the load is unchanged."""
+        if len(self.rows) % 2:
+            return False
+        plane = self.rows - self.rows.mean(axis=0)
+        values = plane if self.height is None else np.column_stack([plane, self.height])
+        factors = np.append(np.asarray(signs, float), 1.0)[: values.shape[1]]
+        later = np.roll(values, len(values) // 2, axis=0)
+        return bool(np.abs(later - factors * values).max() <= ROUNDING * np.abs(values).max())
+
+    @cached_property
+    def half_period_mirror(self) -> bool:
+        return self._repeats((1.0, -1.0, -1.0))
+
+    @property
+    def straight(self) -> bool:
+        return False
+
+    @cached_property
+    def propels(self) -> bool:
+        signs = ((-1.0, a, b) for a in (1.0, -1.0) for b in (1.0, -1.0))
+        return self._varies(0) and not any(map(self._repeats, signs))
+
+    @cached_property
+    def cycles(self) -> int:
+        """Root-mean-square number of cycles in a period, in the column with the most cycles."""
+        power = np.abs(np.fft.rfft(self.rows - self.rows.mean(axis=0), axis=0)) ** 2
+        if self.height is not None:
+            height = np.abs(np.fft.rfft(self.height - self.height.mean())) ** 2
+            power = np.column_stack([power, height])
+        power = power[:, power.sum(axis=0) > 0.0]
+        order = np.arange(len(power))[:, None]
+        return int(np.ceil(np.sqrt((order**2 * power).sum(axis=0) / power.sum(axis=0)).max()))
+
+    def displacement(
+        self, phase: np.ndarray, velocity: float, amplitude: float, poisson: float
+    ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        forward, lateral, angle = amplitude * np.moveaxis(self._plane(phase), -1, 0)
+        return velocity * phase + forward, lateral, angle
+
+    def focus(self, velocity: float, amplitude: float, pressure: Pressure) -> float | None:
+        """Stick radius of a straight oscillation that has the same largest distance from the
+        centre.  Under an oscillating load, the smallest contact radius divided by the largest."""
+        if self.loads:
+            least, most = self._extremes(amplitude, pressure)
+            return within_rings(float(pressure.radius(least) / pressure.radius(most)))
+        if self.rotates:
+            return None
+        reach = np.hypot(*(self._loop[:, :2] - 0.5 * (self._loop.max(0) + self._loop.min(0))[:2]).T)
+        return stick_focus(amplitude * float(reach.max()), pressure)
+
+    def stroke(self, amplitude: float, poisson: float) -> float:
+        return 0.5 * amplitude * float(np.ptp(self._loop, axis=0).max())
+
+    def depth(self, phase: np.ndarray, amplitude: float, pressure: Pressure) -> np.ndarray:
+        return self._depth_at(
+            np.maximum(1.0 + amplitude * self._height_spline(phase), 0.0), pressure
+        )
+
+    def _extremes(self, amplitude: float, pressure: Pressure) -> tuple[float, float]:
+        """Smallest and largest indentation."""
+        turns = self._height_spline.derivative().roots(extrapolate=False)
+        phases = np.concatenate([[0.0], turns[np.isfinite(turns)]])
+        depths = self.depth(phases, amplitude, pressure)
+        return float(depths.min()), float(depths.max())
+
+    def deepest(self, amplitude: float, pressure: Pressure) -> float:
+        return self._extremes(amplitude, pressure)[1]
+
+    def share_without_load(self, amplitude: float) -> float:
+        """Fraction of a period in which the load or the indentation is at most 0."""
+        if not self.loads:
+            return 0.0
+        height = 1.0 + amplitude * self._height_spline(self._fine_phases)
+        return float(np.mean(height <= ROUNDING))
+
+    @property
+    def _fine_phases(self) -> np.ndarray:
+        return np.linspace(0.0, 2.0 * np.pi, 64 * len(self.rows), endpoint=False)
+
+    def mean_load(self, amplitude: float, pressure: Pressure) -> float:
+        if not self.loads:
+            return 1.0
+        phases = self._fine_phases
+        return float(np.mean(pressure.total(self.depth(phases, amplitude, pressure))))
+
+
+FEWEST_SAMPLES = 4
+"""Smallest number of rows in a period.  It also applies to the motion through every second row."""
+ROUNDING = 1e-9
+"""Largest accepted deviation of samples from a symmetry, divided by the largest sample."""
+
+
+def uneven_row(time: np.ndarray, most: float) -> int | None:
+    """Index of the time that is farthest from equal spacing.  It is None if the times increase and
+    no time deviates by more than `most` spacings."""
+    even = np.linspace(time[0], time[-1], len(time))
+    distance = np.abs(time - even)
+    step = (time[-1] - time[0]) / max(len(time) - 1, 1)
+    return None if step > 0.0 and distance.max() <= most * step else int(np.argmax(distance))
+
+
+def _spline(values: np.ndarray) -> CubicSpline:
+    """Periodic cubic spline through one period of samples (along the first axis) as a function of
+    the phase."""
+    from scipy.interpolate import CubicSpline  # only here: it takes a while to load
+
+    phase = np.linspace(0.0, 2.0 * np.pi, len(values) + 1)
+    return CubicSpline(phase, np.concatenate([values, values[:1]]), bc_type="periodic")
+
+
+def _rows_of(columns: Mapping[str, Any], fewest: int) -> tuple[np.ndarray, np.ndarray | None, bool]:
+    """Return three values: displacements (rows, 3), the load or indentation (rows,) or None, and
+    whether it is a load."""
+    for name in columns:
+        if name not in (*PLANE, *NORMAL):
+            raise InputError("columns", name, f"unknown; allowed are {', '.join(PLANE + NORMAL)}")
+    arrays = {name: _column(name, one) for name, one in columns.items() if one is not None}
+    if not arrays:
+        raise InputError("forward", None, "allowed is a displacement for every row")
+    first, length = next((name, len(one)) for name, one in arrays.items())
+    if length < fewest:
+        raise InputError(first, length, f"allowed are at least {fewest} rows")
+    for name, one in arrays.items():
+        if len(one) != length:
+            raise InputError(name, len(one), f"allowed are as many rows as {first}: {length}")
+    heights = [name for name in NORMAL if name in arrays]
+    if len(heights) > 1:
+        raise InputError("indentation", "with a load", "allowed is one of the two")
+    for name in heights:
+        if arrays[name].min() < 0.0:
+            raise InputError(name, float(arrays[name].min()), "allowed are numbers >= 0")
+        if arrays[name].max() == 0.0:
+            raise InputError(name, 0.0, "allowed is a path that touches the flat")
+    rows = np.stack([arrays.get(name, np.zeros(length)) for name in PLANE], axis=1)
+    return rows, arrays[heights[0]] if heights else None, "indentation" not in arrays
+
+
+def _column(name: str, values: Any) -> np.ndarray:
+    try:
+        out = np.array(values, float)
+    except (TypeError, ValueError):
+        raise InputError(name, values, "allowed is an array of numbers") from None
+    if out.ndim != 1:
+        raise InputError(name, out.shape, "allowed is an array of one dimension")
+    usual = np.abs(out) <= LARGEST["amplitude"]
+    if not usual.all():
+        row, most = int(np.argmin(usual)), LARGEST["amplitude"]
+        allowed = f"allowed are numbers from -{most:g} to {most:g}; this is row {row}"
+        raise InputError(name, float(out[row]), allowed)
+    return out

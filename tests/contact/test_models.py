@@ -1,0 +1,365 @@
+"""The contact models against Mindlin, Lubkin, closed forms of simple models, and each other.
+
+Motions are rows of displacements (forward, lateral, angle) at the ends of steps.
+"""
+
+from functools import cache
+from itertools import pairwise
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from microslip.contact.contact import forces, forward_slip
+from microslip.contact.coulomb import project
+from microslip.contact.modes import PolarContact
+from microslip.contact.path import EULER, SDIRK2, half_period_phases, make_path
+from microslip.contact.reduced import slider_contact
+from microslip.contact.registry import MODELS
+from microslip.contact.ring_contact import RadialContact, RingContact
+from microslip.contact.splitting import PENALTIES, best_penalty
+from microslip.contact.squares import CartesianContact
+from microslip.periodic.discretise import Resolution
+from microslip.periodic.search import Goal, PeriodMap, find_periodic_state
+from microslip.periodic.simulate import simulate
+from microslip.scene.named import Bore, Transverse
+from microslip.scene.problem import Problem
+from microslip.theory import hertz, paper
+
+
+def at_rest(contact):
+    return np.zeros((2, *contact.forward_position.shape))
+
+
+def through(motions, integrator=EULER):
+    """Path along straight lines through rows of (forward, lateral, angle)."""
+    motions = np.asarray(motions, dtype=float)
+    phase = np.arange(len(motions))
+
+    def displacement(t):
+        return tuple(np.interp(t, phase, column) for column in motions.T)
+
+    return make_path(displacement, phase, integrator)
+
+
+def fitted_order(counts, errors):
+    """Order of convergence: minus the slope of log(error) over log(count)."""
+    return -np.polyfit(np.log(counts), np.log(np.abs(errors)), 1)[0]
+
+
+# Cattaneo and Mindlin: translation along one line
+
+
+def mindlin_deresiewicz(turns, points=8):
+    """Displacements and forces of an oscillation from rest through the turning points.
+
+    After a turning point, the force changes by twice Mindlin's law of half the displacement.
+    """
+    u, force = [0.0], [0.0]
+    start, scale = (0.0, 0.0), 1
+    for turn in turns:
+        for u_k in np.linspace(u[-1], turn, points + 1)[1:]:
+            way = u_k - start[0]
+            law = scale * hertz.mindlin_force(abs(way) / scale)
+            u.append(u_k)
+            force.append(start[1] + np.sign(way) * law)
+        start, scale = (u[-1], force[-1]), 2
+    return np.array(u), np.array(force)
+
+
+ONE_WAY = {
+    "radial": (lambda n: RadialContact.resolved(n), [8, 16, 32, 64]),
+    "radial, focused": (lambda n: RadialContact.resolved(n, 0.5), [8, 16, 32, 64]),
+    "polar": (lambda n: PolarContact(n, 4, False), [8, 16, 32, 64]),
+    "cartesian": (lambda n: CartesianContact(n), [8, 12, 16, 24]),
+    "cartesian, odd": (lambda n: CartesianContact(n), [9, 13, 17, 25]),
+}
+
+
+@pytest.mark.parametrize("name", ONE_WAY)
+def test_forces_are_those_of_mindlin_and_deresiewicz(name):
+    """Loading, unloading and reloading, in an oblique direction."""
+    u, expected = mindlin_deresiewicz([0.7, -0.4, 0.5])
+    along = np.array([np.cos(0.4), np.sin(0.4), 0.0])
+    build, cells = ONE_WAY[name]
+    errors = []
+    for n in cells:
+        contact = build(n)
+        march = contact.march(through(u[:, None] * along), at_rest(contact), 1e-7)
+        assert march.forces @ [-np.sin(0.4), np.cos(0.4), 0] == pytest.approx(0.0, abs=1e-5)
+        errors.append(np.abs(march.forces @ along - expected).max())
+    assert errors[-1] < 3e-3
+    assert fitted_order(cells, errors) == pytest.approx(2.0, abs=0.45)
+
+
+# Lubkin: pure twist
+
+
+TWIST = {
+    "polar": (lambda n, nu: PolarContact(n, 4, True, nu), [8, 16, 32]),
+    "polar, focused": (lambda n, nu: PolarContact(n, 4, True, nu, 0.5), [8, 16, 32]),
+    "cartesian": (lambda n, nu: CartesianContact(n, nu), [8, 12, 16, 24]),
+}
+
+
+@pytest.mark.parametrize("nu", [0.0, 0.3])
+@pytest.mark.parametrize("name", TWIST)
+def test_torque_of_pure_twist_is_lubkins(name, nu):
+    stick = np.array([0.9, 0.7, 0.5, 0.3])
+    build, cells = TWIST[name]
+    angles = np.concatenate([[0.0], hertz.lubkin_angle(stick, nu)])
+    errors = []
+    for n in cells:
+        contact = build(n, nu)
+        march = contact.march(through(np.outer(angles, [0, 0, 1])), at_rest(contact), 1e-7)
+        assert march.forces[:, 0] == pytest.approx(0.0, abs=1e-5)
+        errors.append(np.abs(march.forces[1:, 2] - hertz.lubkin_torque(stick)).max())
+    assert errors[-1] < 4e-3
+    assert fitted_order(cells, errors) == pytest.approx(2.0, abs=0.45)
+
+
+# The models without partial slip
+
+
+@pytest.mark.parametrize(("velocity", "amplitude"), [(1e-3, 1.0), (0.1, 0.5), (1.0, 3.0), (10, 2)])
+def test_rigid_translation_is_eq_6(velocity, amplitude):
+    expected = paper.large_amplitude_transverse(velocity, amplitude)
+    steps = [32, 64, 128]
+    problem = Problem(Transverse(), velocity, amplitude, 0.0)
+    errors = [simulate(problem, "rigid", Resolution(1, 1, n), 1e-6).mu - expected for n in steps]
+    assert abs(errors[-1]) < 2e-4
+    assert fitted_order(steps, errors) == pytest.approx(2.0, abs=0.2)
+
+
+@pytest.mark.parametrize("velocity", [0.01, 0.1, 0.5, 1.0, 3.0])
+def test_rigid_rotation_is_eq_29(velocity):
+    resolution = Resolution(32, 32, 128)
+    for amplitude in (0.3, 4.0):  # the result does not depend on it
+        run = simulate(Problem(Bore(), velocity, amplitude, 0.3), "rigid", resolution, 1e-6)
+        assert run.mu == pytest.approx(paper.large_amplitude_bore(velocity), abs=5e-4)
+
+
+# Models against each other
+
+
+def half_period(motion, velocity, amplitude, nu, steps, integrator=SDIRK2):
+    def displacement(phase):
+        return motion.displacement(phase, velocity, amplitude, nu)
+
+    return make_path(displacement, half_period_phases(steps, 0.4), integrator)
+
+
+@pytest.mark.parametrize("integrator", [EULER, SDIRK2], ids=lambda method: method.name)
+def test_radial_is_polar_in_translation_without_coupling(integrator):
+    rings, angles = 10, 4
+    radial, polar = RadialContact.resolved(rings, 0.6), PolarContact(rings, angles, False, 0.0, 0.6)
+    path = half_period(Transverse(), 0.1, 0.8, 0.0, 24, integrator)
+    start = [0.9 * project(np.ones((2, n, rings)), radial.bound) for n in (1, angles)]
+    one, other = radial.march(path, start[0], 1e-10), polar.march(path, start[1], 1e-10)
+    assert other.forces[:, :2] == pytest.approx(one.forces[:, :2], abs=1e-8)
+    assert other.state == pytest.approx(np.tile(one.state, (1, angles, 1)), abs=1e-6)
+
+
+@pytest.mark.parametrize("nu", [0.0, 0.3])
+@pytest.mark.parametrize(
+    ("motion", "velocity", "amplitude"),
+    [(Transverse(), 0.2, 1.2), (Bore(), 0.2, 1.0), (Bore(), 0.5, 2.0)],
+)
+def test_cartesian_converges_to_polar(motion, velocity, amplitude, nu):
+    """At equal steps, so that only the discretisation in space differs."""
+
+    def mean(model, *resolution):
+        problem = Problem(motion, velocity, amplitude, nu)
+        run = simulate(problem, model, Resolution(*resolution), 1e-4)
+        assert run.converged
+        return run.mu
+
+    cells = [8, 12, 16, 24]
+    reference = mean("polar", 32, 16, 12)
+    coarse = abs(mean("polar", 16, 8, 12) - reference)
+    errors = np.array([mean("cartesian", n, 1, 12) for n in cells]) - reference
+    assert coarse < abs(errors[-1])
+    assert abs(errors[-1]) < 2e-3
+    assert 1.2 < fitted_order(cells, errors) < 2.4
+
+
+# One step
+
+
+def operator(contact):
+    """Matrix of the influence operator on flattened states."""
+    shape = at_rest(contact).shape
+    units = np.eye(int(np.prod(shape)))
+    return np.stack([contact.displacement(u.reshape(shape)).ravel() for u in units], axis=1)
+
+
+def rigid(contact, motion):
+    """Rigid displacement (forward, lateral) of every point."""
+    forward, lateral, angle = motion
+    return np.stack(
+        [forward + angle * contact.lateral_position, lateral - angle * contact.forward_position]
+    )
+
+
+def residual(contact, q, slip):
+    """Residual of Coulomb's law, a force, from a second implementation."""
+    return np.sum(
+        contact.weight
+        * np.hypot(*(project(q + slip / contact.compliance, contact.bound) - q))
+        * (contact.bound > 0)
+    )
+
+
+def larger_residual(contact):
+    """Largest ratio of the residual of Coulomb's law to the residual of the step solver.
+
+    The splitting stops at a distance d between tractions that satisfy elasticity and tractions
+    within the bound.  The slip of the latter has the error A d; besides, the penalty differs from
+    the compliance."""
+    matrix = np.abs(operator(contact))
+    weight = np.broadcast_to(contact.weight, (2, *contact.forward_position.shape)).ravel()
+    scale = np.broadcast_to(contact.compliance, (2, *contact.forward_position.shape)).ravel()
+    elastic = ((weight / scale) @ matrix / weight).max()
+    if not isinstance(contact, RingContact):
+        return 1.0 + elastic
+    penalty = PENALTIES.max() * best_penalty(contact.compliance, len(contact.bound))
+    return max(1.0, float(np.max(penalty / contact.compliance))) + elastic
+
+
+def assert_coulomb(contact, q, slip, tolerance):
+    """Assert |q| <= g to the last bits, and slip only on the bound in the direction of the
+    traction."""
+    size, speed = np.hypot(*q), np.hypot(*slip) * (contact.bound > 0)
+    assert np.all(size <= contact.bound * (1 + 4e-16))
+    assert residual(contact, q, slip) <= larger_residual(contact) * tolerance
+    # largest slip of a point whose residual is at most the tolerance
+    off = tolerance * contact.compliance / contact.weight
+    slips = speed > 100 * off
+    # points with much more slip are on the bound and slip in the direction of the traction
+    bound = np.broadcast_to(contact.bound, size.shape)
+    assert size[slips] == pytest.approx(bound[slips], rel=1e-12)
+    lag = bound * speed - (q * slip).sum(axis=0)
+    allowed = 2.1 * off * (2 * bound + speed / contact.compliance)
+    assert np.all(lag[slips] <= np.broadcast_to(allowed, size.shape)[slips])
+
+
+SMALL = {
+    "radial": (lambda: RadialContact.resolved(6), "translation", 1e-11),
+    "slider": (slider_contact, "translation", 1e-12),
+    "polar, translation": (lambda: PolarContact(5, 4, False, 0.0, 0.5), "translation", 1e-10),
+    "polar, coupled translation": (lambda: PolarContact(5, 4, False, 0.5), "translation", 1e-10),
+    "polar, rotation": (lambda: PolarContact(5, 4, True, 0.0), "mirror", 1e-10),
+    "polar, coupled rotation": (lambda: PolarContact(5, 4, True, 0.4, 0.5), "mirror", 1e-10),
+    "cartesian": (lambda: CartesianContact(6), "any", 1e-8),
+    "cartesian, coupled": (lambda: CartesianContact(6, 0.4), "any", 1e-8),
+}
+
+
+@cache
+def small(name):
+    """The entry with its contact, which is created once."""
+    build, *rest = SMALL[name]
+    return build(), *rest
+
+
+FREE = {"translation": [1, 1, 0], "mirror": [1, 0, 1], "any": [1, 1, 1]}
+"""Symmetry of a contact -> factors 0 or 1 of the (forward, lateral, angle) that it allows."""
+
+STEP = st.tuples(*[st.floats(-1.5, 1.5, allow_subnormal=False)] * 3)
+STEPS = st.lists(STEP, min_size=1, max_size=5)
+
+
+def motions_from(increments, free):
+    return np.concatenate([[np.zeros(3)], np.cumsum(np.array(increments) * free, axis=0)])
+
+
+@pytest.mark.parametrize("name", SMALL)
+@settings(max_examples=25, deadline=None)
+@given(increments=STEPS)
+def test_every_step_obeys_coulomb_and_balances_energy(name, increments):
+    """Slip and energy of backward Euler steps are computed from the operator and the motion, not by
+    the solver."""
+    contact, symmetry, tolerance = small(name)
+    q = at_rest(contact)
+    motions = motions_from(increments, FREE[symmetry])
+    for before, after in pairwise(motions):
+        march = contact.march(through([before, after]), q, tolerance)
+        assert march.residual <= tolerance
+        sums = np.array([forces(contact, q), forces(contact, march.state)])
+        if isinstance(contact, PolarContact):  # by symmetry of the disc
+            sums[:, 1 if contact.rotates else 2] = 0.0
+        assert march.forces == pytest.approx(sums, abs=1e-12)
+        change = march.state - q
+        slip = rigid(contact, after - before) - contact.displacement(change)
+        assert_coulomb(contact, march.state, slip, tolerance)
+
+        def over_area(a, b):
+            return np.sum(contact.weight * (a * b).sum(axis=0))
+
+        work = march.forces.mean(axis=0) @ (after - before)
+        stored = 0.5 * over_area(march.state, contact.displacement(march.state))
+        stored -= 0.5 * over_area(q, contact.displacement(q))
+        # dissipation by Coulomb's law; half a step earlier the traction was smaller by change / 2
+        dissipation = np.sum(contact.weight * contact.bound * np.hypot(*slip))
+        rounding = 1e-13 + 20 * tolerance * (1 + np.abs(after - before).sum())
+        balance = stored + dissipation - 0.5 * over_area(change, slip)
+        assert work == pytest.approx(balance, abs=rounding)
+        # numerical dissipation of backward Euler: end tractions do more work than mean tractions
+        numerical = march.forces[1] @ (after - before) - stored - dissipation
+        assert numerical >= -rounding
+        assert numerical == pytest.approx(
+            0.5 * over_area(change, contact.displacement(change)), abs=rounding
+        )
+        q = march.state
+
+
+@pytest.mark.parametrize("name", SMALL)
+def test_equal_marches_give_equal_bits(name):
+    contact, symmetry, _ = small(name)
+    path = through([[0, 0, 0], np.array([0.4, 0.3, 0.8]) * FREE[symmetry]])
+    one, other = (contact.march(path, forward_slip(contact), 1e-6) for _ in range(2))
+    assert np.array_equal(one.fields, other.fields) and np.array_equal(one.forces, other.forces)
+
+
+# Order of the integrators
+
+
+SMOOTH = {
+    "slider": (slider_contact, Transverse(), 1.0, 1.5),
+    "radial": (lambda: RadialContact.resolved(8), Transverse(), 0.5, 2.0),
+    "polar": (lambda: PolarContact(6, 4, True, 0.3), Bore(), 0.5, 2.0),
+    "cartesian": (lambda: CartesianContact(8, 0.3), Bore(), 0.5, 2.0),
+}
+
+
+@cache
+def smooth(name):
+    """The entry with its contact, which is created once."""
+    build, *rest = SMOOTH[name]
+    return build(), *rest
+
+
+@pytest.mark.parametrize("name", ["radial", "polar"])
+def test_order_of_the_integrators_in_the_periodic_mean(name):
+    contact, motion, velocity, amplitude = smooth(name)
+
+    def mean(steps, integrator):
+        path = half_period(motion, velocity, amplitude, 0.3, steps, integrator)
+        start, goal = forward_slip(contact), Goal(1e-7, 1e-9)
+        result = find_periodic_state(PeriodMap(contact, path), start, goal)
+        assert result.converged
+        return path.mean(result.march.forces)[0]
+
+    reference = mean(512, SDIRK2)
+    steps = [16, 32, 64]
+    for integrator in (EULER, SDIRK2):
+        errors = [mean(n, integrator) - reference for n in steps]
+        assert fitted_order(steps, errors) == pytest.approx(integrator.order, abs=0.25)
+
+
+def test_models_refuse_what_they_cannot_resolve():
+    refuses = MODELS["radial"].refuses
+    assert refuses(Problem(Bore(), 1.0, 1.0)) and refuses(Problem(Transverse(), 1.0, 1.0, 0.1))
+    assert MODELS["slider"].refuses(Problem(Bore(), 1.0, 1.0))
+    assert not any(model.refuses(Problem(Transverse(), 1.0, 1.0)) for model in MODELS.values())

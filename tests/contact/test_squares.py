@@ -1,0 +1,176 @@
+"""Squares: the compiled convolution against direct sums, and the step solver against a plain
+one."""
+
+import numpy as np
+import pytest
+from reference_march import solved_stage
+from scipy.integrate import dblquad
+
+from microslip.contact.contact import forward_slip
+from microslip.contact.convolution import convolve, influence, square_convolution, workspace
+from microslip.contact.coulomb import coulomb_residual, project
+from microslip.contact.descent import PATIENCE
+from microslip.contact.path import EULER, SDIRK2, half_period_phases, make_path
+from microslip.contact.squares import CartesianContact, DescentSolver
+from microslip.scene.named import Bore, Transverse
+from microslip.theory.hertz import G_STAR
+
+NUS = [0.0, 0.4]
+
+
+@pytest.fixture
+def rng():
+    return np.random.default_rng(20201109)
+
+
+def path_of(motion, steps, velocity=0.1, amplitude=1.0, nu=0.0, integrator=SDIRK2):
+    """Path of half a period."""
+
+    def displacement(phase):
+        return motion.displacement(phase, velocity, amplitude, nu)
+
+    return make_path(displacement, half_period_phases(steps), integrator)
+
+
+def force_between(contact, one, other):
+    """Sum of the distances between tractions, a force over mu F_z."""
+    return np.sum(contact.weight * np.hypot(*(one - other)))
+
+
+# The convolution
+
+
+def direct_sum(cells, nu, state):
+    """Displacement as a sum over the tractions of all cells."""
+    direct, cross = influence(cells, 2 * cells, nu)  # negative offsets at the end: index -1, -2, ..
+    tractions = state[1] + 1j * state[0]
+    out = np.zeros((cells, cells), complex)
+    for i in range(cells):
+        for j in range(cells):
+            rows, columns = np.arange(cells)[:, None] - i, np.arange(cells)[None, :] - j
+            out += (
+                direct[rows, columns] * tractions[i, j]
+                + cross[rows, columns] * tractions[i, j].conj()
+            )
+    return np.stack([out.imag, out.real])
+
+
+@pytest.mark.parametrize("half_widths", [(1.0, 1.0), (1.0, 0.1), (0.4, 1.0)])
+def test_influence_is_the_integral_of_cerrutis_solution(half_widths):
+    nu, cells = 0.3, 4
+    direct, cross = influence(cells, 2 * cells, nu, half_widths=half_widths)
+    a, b = (2.0 * half / cells for half in half_widths)
+
+    def integral(of, i, j):
+        """Integral over the cell with the forward offset i and the lateral offset j."""
+        sides = ((i - 0.5) * a, (i + 0.5) * a, (j - 0.5) * b, (j + 0.5) * b)
+        return dblquad(lambda y, x: of(x, y) / np.hypot(x, y) ** 3, *sides)[0] / (np.pi * G_STAR)
+
+    for i, j in [(1, 0), (0, -1), (2, 1), (-1, 3)]:
+        parts = (
+            integral(lambda x, y: x * x + y * y, i, j),
+            nu / (2.0 - nu) * integral(lambda x, y: y * y - x * x, i, j),
+            nu / (2.0 - nu) * integral(lambda x, y: 2.0 * x * y, i, j),
+        )
+        found = direct[i, j], cross[i, j].real, cross[i, j].imag
+        assert found == pytest.approx(parts, abs=1e-9)
+
+
+@pytest.mark.parametrize("nu", NUS)
+@pytest.mark.parametrize("cells", [2, 3, 4, 5, 7, 9, 12, 14, 16])
+def test_convolution_is_linear_and_equal_to_the_direct_sum(cells, nu, rng):
+    """Tractions are nonzero in all cells, including corners, where a cyclic convolution would
+    differ."""
+    operator = square_convolution(cells, nu)[0]
+    state, out = rng.normal(size=(2, cells, cells)), np.empty((2, cells, cells))
+    convolve(operator, workspace(operator), state, out)
+    assert out == pytest.approx(direct_sum(cells, nu, state), abs=1e-13)
+
+
+@pytest.mark.parametrize("cells", [3, 4, 7])
+def test_loads_of_cells_are_integrals_of_the_bound(cells):
+    contact = CartesianContact(cells)
+    half, load = contact.widths[0] / 2, contact.weight * contact.bound
+    assert load.sum() == pytest.approx(1.0, abs=1e-14)
+    for i, j in [(0, 0), (0, 1), (0, cells // 2), (1, 1)]:
+        y, x = contact.forward_position[i, j], contact.lateral_position[i, j]
+
+        def chord(s, sign, x=x):
+            return min(max(sign * np.sqrt(max(1 - s * s, 0.0)), x - half), x + half)
+
+        expected, _ = dblquad(
+            lambda t, s: 1.5 / np.pi * np.sqrt(max(1 - s * s - t * t, 0.0)),
+            y - half,
+            y + half,
+            lambda s: chord(s, -1),
+            lambda s: chord(s, 1),
+        )
+        assert load[i, j] == pytest.approx(expected, abs=1e-7)
+
+
+# One step
+
+
+def plain_step(contact, nu, b):
+    """Tractions of a step, from a plain solver with the dense matrix of direct sums."""
+    cells = len(contact.bound)
+    units = np.eye(2 * cells**2).reshape(-1, 2, cells, cells)
+    matrix = np.stack([direct_sum(cells, nu, unit).ravel() for unit in units], axis=1)
+    return solved_stage(matrix, b, contact.bound, np.zeros_like(b))
+
+
+def solved(contact, b, start, tolerance, patience=PATIENCE):
+    """Solve a step; returns (tractions, slip, residual, iterations)."""
+    q, slip, iterations, residual, _ = DescentSolver(contact, tolerance, patience).solve(b, start)
+    return q, slip, residual, iterations
+
+
+@pytest.mark.parametrize("nu", NUS)
+@pytest.mark.parametrize("size", [0.03, 0.3, 1.0, 5.0])
+@pytest.mark.parametrize("cells", [5, 6])
+def test_step_is_that_of_a_plain_solver(cells, size, nu, rng):
+    contact = CartesianContact(cells, nu)
+    b = size * rng.normal(size=(2, cells, cells))
+    start = project(rng.normal(size=b.shape), contact.bound)
+    expected = plain_step(contact, nu, b)
+    q, slip, residual, _ = solved(contact, b, start, 1e-13)
+    assert residual <= 1e-13
+    assert q == pytest.approx(expected, abs=1e-11)
+    assert slip == pytest.approx(b - direct_sum(cells, nu, q), abs=1e-13)
+
+
+@pytest.mark.parametrize("nu", NUS)
+@pytest.mark.parametrize("size", [1e-3, 0.1, 1.0, 30.0])
+def test_steps_are_solved_down_to_rounding(size, nu, rng):
+    """The residual agrees with coulomb.coulomb_residual."""
+    contact = CartesianContact(16, nu)
+    before = project(rng.normal(size=(2, 16, 16)) * contact.bound, contact.bound)
+    forward, lateral, angle = size * rng.normal(size=3)
+    b = contact.displacement(before)
+    b += np.stack(
+        [forward + angle * contact.lateral_position, lateral - angle * contact.forward_position]
+    )
+    q, slip, residual, iterations = solved(contact, b, before, 1e-12)
+    assert residual <= 1e-12
+    assert iterations < 250
+    total = coulomb_residual(q, slip, contact.bound, contact.weight, contact.compliance)
+    assert total == pytest.approx(residual, abs=1e-14)
+
+
+# Marches
+
+
+@pytest.mark.parametrize("integrator", [EULER, SDIRK2], ids=lambda method: method.name)
+@pytest.mark.parametrize("motion", [Transverse(), Bore()], ids=lambda motion: motion.name)
+def test_first_guesses_change_the_effort_but_not_the_march(motion, integrator, rng):
+    contact, tolerance = CartesianContact(8), 1e-11
+    path = path_of(motion, 12, integrator=integrator)
+    first = contact.march(path, forward_slip(contact), 1e-3)
+    near = project(forward_slip(contact) + 1e-3 * rng.normal(size=(2, 8, 8)), contact.bound)
+    plain = contact.march(path, near, tolerance)
+    guided = contact.march(path, near, tolerance, previous=first)
+    assert force_between(contact, guided.state, plain.state) < 1e3 * tolerance
+    assert guided.forces == pytest.approx(plain.forces, abs=1e3 * tolerance)
+    assert guided.residual <= guided.solves * tolerance
+    again = contact.march(path, near, tolerance, previous=plain)
+    assert again.iterations < 0.2 * plain.iterations

@@ -1,0 +1,128 @@
+"""Methods that need another package: their messages without it, and their results with it."""
+
+import os
+import sys
+from importlib.util import find_spec
+
+import numpy as np
+import pytest
+from stubs.studies_stub import configured
+
+import microslip
+from microslip.answer import point as trial
+from microslip.contact.path import EULER, make_path
+from microslip.contact.squares import CartesianContact
+from microslip.foundation import canonical
+from microslip.periodic import method_names
+from microslip.periodic.methods import aspher
+from microslip.studies import accuracy, requests
+
+os.environ.setdefault("OMP_NUM_THREADS", "1")  # read when the package is first imported
+needs_it = pytest.mark.skipif(find_spec("aspher") is None, reason="the package is not installed")
+
+
+# Without the package
+
+
+@pytest.fixture
+def without(monkeypatch):
+    """An environment without the package aspher."""
+
+    def result(name):
+        return None if name == "aspher" else find_spec(name)
+
+    monkeypatch.setattr(method_names, "find_spec", result)
+    monkeypatch.setitem(sys.modules, "aspher", None)
+
+
+@pytest.fixture
+def within(monkeypatch):
+    """An environment that seems to have the package, which cannot be imported."""
+    monkeypatch.setattr(method_names, "find_spec", lambda name: object())
+
+
+def test_no_other_method_needs_a_package(without):
+    lacking = {name: method_names.missing(name) for name in method_names.names()}
+    assert {name for name, reason in lacking.items() if reason} == {"aspher"}
+    assert "the package aspher" in lacking["aspher"]
+    assert method_names.method_named("aspher").requires == "aspher"
+
+
+def test_without_the_package_its_name_is_good_and_its_runs_are_refused(without):
+    method_names.split("aspher")
+    assert "aspher" in configured({"methods": ["shipped", "aspher"]}).accuracy.methods
+    with pytest.raises(ValueError, match="needs the package aspher"):
+        microslip.solve("transverse", 0.5, 3.0, model="cartesian", cells=8, method="aspher")
+    where = {"poisson": 0.0, "model": "cartesian", "cells": 8, "angles": 1}
+    with pytest.raises(ValueError, match="the package aspher"):
+        trial.run_trial("transverse", 0.5, 3.0, **where, method="aspher", steps=8, tolerance=1e-3)
+
+
+def asked(names):
+    study = configured({"methods": names}).accuracy
+    return [
+        canonical.canonical_json(request)
+        for point in study.points.values()
+        for _, request in accuracy.trials(study, point)
+    ]
+
+
+def test_nothing_is_asked_without_the_package(without):
+    assert requests.models_for("aspher", "transverse", 0.0) == []
+    assert asked(["shipped", "aspher"]) == asked(["shipped"])
+
+
+def test_rotation_is_refused(within):
+    where = {"poisson": 0.0, "model": "cartesian", "cells": 8, "angles": 1, "steps": 8}
+    with pytest.raises(ValueError, match="translations"):
+        trial.run_trial("bore", 0.1, 1.0, **where, method="aspher", tolerance=1e-3)
+
+
+# The march, with a stand-in for the package
+
+
+# With the package
+
+
+def straight(distance, steps):
+    def displacement(phase):
+        return distance * phase, 0.0 * phase, 0.0 * phase
+
+    return make_path(displacement, np.linspace(0.0, 1.0, steps + 1), EULER)
+
+
+@needs_it
+def test_one_direction_is_cattaneo_and_mindlin():
+    """F/(mu F_z) = 1 - (1 - u/u_lim)^(3/2), and the force of our squares."""
+    cells, path = 24, straight(1.2, 12)
+    solver = aspher.Solver(cells, 0.0)
+    assert solver.bound.sum() * solver.size**2 == pytest.approx(1.0, abs=1e-6)
+    result, residuals = np.transpose([solver.step(*to) for to in path.positions[1:, :2]])
+    ours = CartesianContact(cells).march(path, np.zeros((2, cells, cells)), 1e-9).forces[1:, 0]
+    assert solver.failed == 0
+    assert residuals.max() < 1e-3
+    left = np.maximum(1.0 - path.positions[1:, 0], 0.0)
+    assert result == pytest.approx(1.0 - left**1.5, abs=2e-3)
+    assert result == pytest.approx(ours, abs=3e-3)
+
+
+def trial_at(method, velocity, amplitude, steps, tolerance):
+    where = {"poisson": 0.0, "model": "cartesian", "cells": 12, "angles": 1}
+    point = "transverse", velocity, amplitude
+    return trial.run_trial(*point, **where, method=method, steps=steps, tolerance=tolerance)
+
+
+@needs_it
+@pytest.mark.parametrize(("velocity", "amplitude", "within"), [(0.05, 0.1, 1e-3), (0.1, 0.5, 1e-2)])
+def test_means_agree_with_ours_on_the_same_squares_and_steps(velocity, amplitude, within):
+    """The means differ by the discrete normal contact of the package and the residual of its steps.
+
+    The residual is very small if the direction of slip hardly changes.
+    """
+    theirs = trial_at("aspher", velocity, amplitude, 24, 1e-3)
+    ours = trial_at("euler", velocity, amplitude, 24, 1e-5)
+    assert within < 0.3 * (1.0 - ours["mu_macro"])  # smaller than the effect of the vibration
+    assert theirs["mu_macro"] == pytest.approx(ours["mu_macro"], abs=within)
+    assert theirs["converged"] == (theirs["reason"] == "")
+    assert theirs["unknowns"] == ours["unknowns"] == 2 * 12**2
+    assert theirs["effort"] == theirs["iterations"] * theirs["unknowns"] > 0

@@ -1,0 +1,202 @@
+"""The accelerated search for the periodic state against a plain march until nothing changes."""
+
+import numpy as np
+import pytest
+
+from microslip.contact.contact import energy_norm, forward_slip
+from microslip.contact.path import EULER, SDIRK2, half_period_phases, make_path
+from microslip.contact.registry import MODELS
+from microslip.periodic import discretise
+from microslip.periodic.discretise import Resolution, contact_of
+from microslip.periodic.search import Goal, PeriodMap, find_periodic_state
+from microslip.periodic.simulate import simulate
+from microslip.scene.named import Bore, Transverse
+from microslip.scene.problem import Problem
+from microslip.theory import paper
+
+TOLERANCE = 1e-5
+STEP_TOLERANCE = 1e-3 * TOLERANCE  # as in simulate
+STEPS = 12
+
+CASES = {
+    "slider": ("slider", Transverse(), 0.0, 1, 1),
+    "radial": ("radial", Transverse(), 0.0, 8, 1),
+    "polar, translation": ("polar", Transverse(), 0.3, 5, 4),
+    "polar, rotation": ("polar", Bore(), 0.0, 5, 4),
+    "polar, coupled rotation": ("polar", Bore(), 0.3, 5, 4),
+    "cartesian, translation": ("cartesian", Transverse(), 0.0, 6, 1),
+    "cartesian, rotation": ("cartesian", Bore(), 0.3, 6, 1),
+}
+"""Model, motion, nu, cells and angles of each case."""
+POINTS = {
+    "slider": [(1.0, 2.0), (0.1, 0.5), (0.005, 0.8)],
+    "radial": [(1.0, 0.5), (0.1, 1.0), (0.02, 2.0), (0.005, 0.5), (1e-3, 0.2)],
+    "polar, translation": [(1.0, 0.5), (0.1, 1.0), (0.02, 2.0), (0.02, 0.5), (0.005, 0.2)],
+    "polar, rotation": [(1.0, 0.5), (0.1, 1.0), (0.02, 2.0), (0.02, 0.5), (0.03, 0.1)],
+    "polar, coupled rotation": [(1.0, 0.5), (0.05, 1.0), (0.02, 0.2)],
+    "cartesian, translation": [(1.0, 0.5), (0.1, 1.0)],
+    "cartesian, rotation": [(1.0, 0.5), (0.1, 1.0)],
+}
+
+
+def contact_at(name, velocity, amplitude):
+    model, motion, nu, cells, angles = CASES[name]
+    problem = Problem(motion, velocity, amplitude, nu)
+    return MODELS[model].build(problem, cells, angles, problem.focus)
+
+
+def path_of(name, velocity, amplitude, integrator=SDIRK2, whole=False):
+    """Path over half a period, or over a whole period with the same steps."""
+    _, motion, nu, _, _ = CASES[name]
+    phase = half_period_phases(STEPS)
+    if whole:
+        phase = np.concatenate([phase, phase[1:] + np.pi])
+
+    def displacement(t):
+        return motion.displacement(t, velocity, amplitude, nu)
+
+    return make_path(displacement, phase, integrator)
+
+
+def plain_march(contact, path, state, change, most=20_000):
+    """(tractions, forces) of the half period in which the plain map changes less than `change`."""
+    for _ in range(most):
+        march = contact.march(path, state, STEP_TOLERANCE)
+        before, state = state, contact.mirrored(march.state)
+        if energy_norm(contact, state - before) < change:
+            return state, march.forces
+    raise AssertionError("the plain march did not come to rest")
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    ("name", "velocity", "amplitude"),
+    [(name, *point) for name, points in POINTS.items() for point in points],
+)
+def test_found_state_is_that_of_the_plain_march(name, velocity, amplitude):
+    """The plain march starts from the stress-free contact."""
+    model, label, nu, cells, angles = CASES[name]
+    resolution = Resolution(cells, angles, STEPS)
+    motion = Problem(label, velocity, amplitude, nu)
+    run = simulate(motion, model, resolution, TOLERANCE)
+    assert run.converged and run.distance <= TOLERANCE
+    contact = contact_of(motion, model, resolution)
+    path = discretise.path_of(motion, contact, STEPS)
+    stands_still = 1e-7 if model == "cartesian" else 1e-9  # its steps are solved less accurately
+    state, forces = plain_march(contact, path, 0.0 * forward_slip(contact), stands_still)
+    assert run.mu == pytest.approx(path.mean(forces[:, 0]), abs=2 * TOLERANCE)
+    assert energy_norm(contact, run.state - state) < 30 * TOLERANCE
+
+
+@pytest.mark.parametrize("integrator", [EULER, SDIRK2], ids=lambda method: method.name)
+@pytest.mark.parametrize("name", CASES)
+def test_second_half_of_the_period_mirrors_the_first(name, integrator):
+    """A march over the whole period makes no use of the symmetry."""
+    motion, point = CASES[name][1], POINTS[name][1]
+    contact, path = contact_at(name, *point), path_of(name, *point, integrator)
+    cycle = PeriodMap(contact, path)
+    result = find_periodic_state(cycle, forward_slip(contact), Goal(TOLERANCE, STEP_TOLERANCE))
+    assert result.converged
+    whole = path_of(name, *point, integrator, whole=True)
+    march = contact.march(whole, result.start, STEP_TOLERANCE)
+    assert energy_norm(contact, march.state - result.start) < 3 * TOLERANCE
+    first, second = march.forces[: STEPS + 1], march.forces[STEPS:]
+    assert second[:, 0] == pytest.approx(first[:, 0], abs=3 * TOLERANCE)
+    turning = 2 if motion.rotates else 1  # the force or torque along the oscillation
+    assert second[:, turning] == pytest.approx(-first[:, turning], abs=3 * TOLERANCE)
+    assert np.abs(first[:, turning]).max() > 0.1
+    assert whole.mean(march.forces)[0] == pytest.approx(
+        path.mean(result.march.forces)[0], abs=TOLERANCE
+    )
+
+
+@pytest.mark.parametrize("name", CASES)
+def test_verdict_is_that_of_the_plain_map(name):
+    contact, path = contact_at(name, *POINTS[name][1]), path_of(name, *POINTS[name][1])
+    start = forward_slip(contact)
+    enough = find_periodic_state(PeriodMap(contact, path), start, Goal(TOLERANCE, STEP_TOLERANCE))
+    assert enough.converged and enough.residual <= enough.distance <= TOLERANCE
+    fewer = Goal(TOLERANCE, STEP_TOLERANCE, enough.marches - 1)
+    few = find_periodic_state(PeriodMap(contact, path), start, fewer)
+    assert not few.converged
+    assert few.marches < enough.marches
+    for result in (enough, few):
+        # the result of the search is one march of the plain map
+        march = contact.march(path, result.start, STEP_TOLERANCE)
+        loose = max(1e-6, result.march.residual)  # early steps have a larger tolerance
+        assert march.forces == pytest.approx(result.march.forces, abs=loose)
+        change = energy_norm(contact, contact.mirrored(march.state) - result.start)
+        assert change == pytest.approx(result.residual, rel=0.02, abs=loose)
+
+
+def test_run_reports_what_was_not_reached(monkeypatch):
+    monkeypatch.setattr("microslip.periodic.simulate._Search.most_marches", 2)
+    for motion, model, angles in ((Bore(), "polar", 4), (Transverse(), "radial", 1)):
+        problem = Problem(motion, 0.1, 1.0, 0.0)
+        run = simulate(problem, model, Resolution(6, angles, 8), TOLERANCE)
+        assert not run.converged
+        assert "no periodic state" in run.reason and run.distance > TOLERANCE
+
+
+@pytest.mark.parametrize("amplitude", [0.2, 0.5, 0.9, 1.5])
+def test_rings_converge_down_to_very_small_velocities(amplitude):
+    """The friction approaches the static limit from above."""
+    means = []
+    for velocity in (1e-3, 1e-4, 1e-5):
+        problem = Problem(Transverse(), velocity, amplitude, 0.0)
+        run = simulate(problem, "radial", Resolution(24, 1, 24), TOLERANCE)
+        assert run.converged and run.periods < 20
+        means.append(run.mu)
+    assert means[0] > means[1] > means[2]
+    assert means[2] == pytest.approx(paper.static_limit_transverse(amplitude), abs=3e-3)
+
+
+@pytest.mark.parametrize(("velocity", "amplitude"), [(1e-3, 0.05), (3e-4, 0.5)])
+def test_slow_motions_of_small_amplitude_are_not_taken_for_periodic_too_early(velocity, amplitude):
+    """In a slow period every state changes little, so a small residual alone proves nothing."""
+    problem = Problem(Bore(), velocity, amplitude, 0.0)
+    runs = [
+        simulate(problem, "polar", Resolution(6, 4, 12), tolerance) for tolerance in (3e-5, 3e-7)
+    ]
+    assert all(run.converged for run in runs)
+    assert runs[0].mu == pytest.approx(runs[1].mu, abs=1e-4)
+
+
+@pytest.mark.parametrize(
+    ("velocity", "amplitude", "rings", "steps"),
+    [
+        # undamped Newton corrections cycle or diverge
+        (1.34e-6, 0.867, 35, 78),
+        (1.45e-6, 0.903, 17, 78),
+        (5.67e-6, 0.412, 52, 26),
+        (7.12e-6, 0.739, 9, 77),
+        (1.14e-5, 0.518, 58, 53),
+        # almost full stick; full slip
+        (1e-6, 0.01, 32, 16),
+        (1e-6, 1e3, 8, 32),
+        (1e3, 0.01, 8, 12),
+        (1e3, 1e3, 16, 96),
+    ],
+)
+def test_rings_converge_at_the_ends_of_the_parameters(velocity, amplitude, rings, steps):
+    problem = Problem(Transverse(), velocity, amplitude, 0.0)
+    runs = [
+        simulate(problem, "radial", Resolution(rings, 1, steps), tolerance)
+        for tolerance in (1e-4, 1e-7)
+    ]
+    assert all(run.converged and run.periods < 40 for run in runs)
+    assert runs[0].mu == pytest.approx(runs[1].mu, abs=1.5e-4)
+
+
+def radial_run(velocity, amplitude, rings, steps, tolerance=1e-6, guess=None):
+    problem = Problem(Transverse(), velocity, amplitude, 0.0)
+    return simulate(problem, "radial", Resolution(rings, 1, steps), tolerance, guess)
+
+
+@pytest.mark.parametrize("steps", [16, 48])
+def test_all_effort_is_counted(steps):
+    """A step has two stages, a ring two tractions, and a period two marches."""
+    run = radial_run(0.01, 0.5, 8, steps)
+    assert run.effort.solves == 2 * run.periods * 2 * steps
+    assert run.effort.work == 16 * run.effort.solves
+    assert run.effort.updates == 16 * run.effort.iterations >= run.effort.work

@@ -1,0 +1,92 @@
+"""The static limit: closed forms, pointwise solutions with every model, and slow marches."""
+
+import numpy as np
+import pytest
+
+import microslip
+from microslip.contact.registry import MODELS
+from microslip.periodic.static_limit import lens_corner, limit_on_a_line
+from microslip.scene.named import Bore, Transverse
+from microslip.scene.problem import Problem
+from microslip.theory import hertz, paper
+
+
+def contact_for(motion, amplitude, model, cells, angles=1, poisson=0.0):
+    problem = Problem(motion, 0.0, amplitude, poisson)
+    return MODELS[model].build(problem, cells, angles, problem.focus)
+
+
+def oscillation(motion, amplitude, poisson=0.0):
+    return lambda phase: motion.displacement(phase, 0.0, amplitude, poisson)
+
+
+def numerical_limit(motion, amplitude, model, cells, angles=1, poisson=0.0):
+    contact = contact_for(motion, amplitude, model, cells, angles, poisson)
+    residual, *_ = limit_on_a_line(contact, oscillation(motion, amplitude, poisson), 1e-10)
+    return float(np.sum(contact.weight * residual[0]))
+
+
+def test_oscillating_tractions_are_those_of_mindlin_and_lubkin():
+    radial = contact_for(Transverse(), 0.5, "radial", 64)
+    result = limit_on_a_line(radial, oscillation(Transverse(), 0.5), 1e-11).oscillating
+    total = np.sum(radial.weight * result[1])
+    assert result[0] == pytest.approx(0.0, abs=1e-14)
+    assert total == pytest.approx(-hertz.mindlin_force(0.5), abs=3e-4)
+
+    polar = contact_for(Bore(), 1.0, "polar", 32, 4)
+    forward, lateral = limit_on_a_line(polar, oscillation(Bore(), 1.0), 1e-10).oscillating
+    torque = polar.lateral_position * forward - polar.forward_position * lateral
+    assert np.sum(polar.weight * torque) == pytest.approx(-hertz.lubkin_torque(0.5), abs=3e-4)
+
+
+@pytest.mark.slow
+def test_residual_is_the_furthest_point_of_the_lens():
+    # brute force over a fine grid of candidate tractions
+    rng = np.random.default_rng(3)
+    axis = np.linspace(-1.0, 1.0, 801)
+    forward, lateral = np.meshgrid(axis, axis, indexing="ij")
+    for q_forward, q_lateral in rng.uniform(-0.75, 0.75, (12, 2)):
+        oscillating = np.array([[q_forward], [q_lateral]])
+        allowed = np.maximum(
+            np.hypot(forward + q_forward, lateral + q_lateral),
+            np.hypot(forward - q_forward, lateral - q_lateral),
+        )
+        expected = forward[allowed <= 1.0].max(initial=0.0)
+        residual = lens_corner(oscillating, np.ones(1))
+        if np.hypot(q_forward, q_lateral) < 1.0:
+            assert residual[0, 0] == pytest.approx(expected, abs=6e-3)
+        for sign in (1.0, -1.0):
+            inside = np.hypot(*(residual[:, 0] + sign * oscillating[:, 0]))
+            assert inside <= 1.0 + 1e-12 or not residual.any()
+
+
+@pytest.mark.parametrize("amplitude", [0.1, 0.5, 0.9])
+def test_pointwise_form_converges_to_the_closed_form_transverse(amplitude):
+    exact = float(paper.static_limit_transverse(amplitude))
+    errors = [abs(numerical_limit(Transverse(), amplitude, "radial", n) - exact) for n in (8, 32)]
+    order = np.log(errors[0] / errors[1]) / np.log(4.0)
+    assert errors[1] < 3e-4
+    assert order > 1.3
+
+
+@pytest.mark.parametrize("amplitude", [0.3, 1.0, 2.0])
+@pytest.mark.parametrize("poisson", [0.0, 0.4])
+def test_pointwise_form_agrees_with_the_closed_form_bore(amplitude, poisson):
+    result = numerical_limit(Bore(), amplitude, "polar", 32, 16, poisson)
+    assert result == pytest.approx(float(paper.static_limit_bore(amplitude)), abs=3e-4)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    ("motion", "amplitude", "poisson"),
+    [("transverse", 0.5, 0.0), ("transverse", 0.5, 0.3), ("bore", 1.0, 0.0)],
+)
+def test_slow_marches_approach_the_limit(motion, amplitude, poisson):
+    limit = microslip.solve(motion, 0.0, amplitude, poisson=poisson, tolerance=1e-3)
+    velocities = [1e-3, 1e-4, 1e-5]
+    slow = [microslip.solve(motion, v, amplitude, poisson=poisson) for v in velocities]
+    excess = np.array([answer.mu_macro for answer in slow]) - limit.mu_macro
+    assert all(answer.converged for answer in slow)
+    assert np.all(np.diff(excess) < 0.0)
+    last = limit.mu_macro_error + slow[-1].mu_macro_error
+    assert -last < excess[-1] < 2e-3 + last
