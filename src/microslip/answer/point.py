@@ -77,7 +77,7 @@ def solve(
         Imposed numbers of cells and of steps per full period.  By default, they are chosen
         according to the tolerance.
     method : str
-        "shipped", or another name in solver.method_names.names() for a comparison.
+        "shipped", or another name in periodic.method_names.names() for a comparison.
     most_work : float or None
         Limit on the work of all runs together.  The work of a run is its number of step solves
         times its number of unknowns.  Defaults to MOST_WORK.
