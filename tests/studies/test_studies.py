@@ -95,8 +95,8 @@ def test_a_block_varies_one_quantity_and_step_lengths_are_for_methods_that_have_
         place = ("motion", "velocity", "amplitude", "poisson")
         assert [probe[n] for n in place] == [reference[n] for n in place]
         assert (reference["cells"], reference["steps"]) == (None, None)
-        if block.varied != "step":
-            assert float(probe[block.varied]) == value
+        if block.quantity != "step":
+            assert float(probe[block.quantity]) == value
     cases = [(block, value) for _, block, value in stability.cases(study) if block.step]
     probes = [stability.probe(study, "projected-gradient", *case) for case in cases]
     assert [probe["method"].partition("=")[2] for probe in probes] == ["0.25", "0.5", "1", "2"]

@@ -615,7 +615,7 @@ class Block(Settings):
     """Heading of the block. The default is the name of the varied quantity."""
 
     @property
-    def varied(self) -> str:
+    def quantity(self) -> str:
         """Name of the varied quantity."""
         names = ("velocity", "amplitude", "poisson", "cells", "steps", "step")
         return " and ".join(name for name in names if len(getattr(self, name)) > 1)
@@ -623,20 +623,20 @@ class Block(Settings):
     @property
     def values(self) -> tuple[float, ...]:
         """Values of the varied quantity."""
-        return getattr(self, self.varied)
+        return getattr(self, self.quantity)
 
     @property
     def note(self) -> str:
         """Values of the fixed quantities, as text."""
         symbols = {"velocity": "v", "amplitude": "A", "poisson": "nu"}
-        values = {name: getattr(self, name)[0] for name in symbols if name != self.varied}
+        values = {name: getattr(self, name)[0] for name in symbols if name != self.quantity}
         words = [f"{symbols[n]} {v:g}" for n, v in values.items() if v or n != "poisson"]
         return ", ".join([self.motion, *words])
 
     @model_validator(mode="after")
     def _refuse_mismatch(self) -> Self:
-        if self.varied not in Block.model_fields:
-            message = f"{self.varied or 'no key'} has several numbers"
+        if self.quantity not in Block.model_fields:
+            message = f"{self.quantity or 'no key'} has several numbers"
             raise Refusal(f"{message}; allowed: one key with several numbers")
         return self
 

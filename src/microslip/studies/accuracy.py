@@ -21,8 +21,8 @@ from numpy.typing import ArrayLike
 
 from microslip.periodic.method_names import SHIPPED, method_named
 from microslip.studies import requests as forms
+from microslip.studies.answers import MOTIONS, Answers, Row, names_along, number
 from microslip.studies.requests import AnyPoint, Point
-from microslip.studies.solved import MOTIONS, Row, Solved, names_along, number
 from microslip.theory import paper
 
 if TYPE_CHECKING:
@@ -113,16 +113,16 @@ def requests(study: Accuracy) -> Iterator[tuple[tuple, dict]]:
 # The dataset
 
 
-def values(study: Accuracy, solved: Solved) -> dict[str, Any]:
+def values(study: Accuracy, answers: Answers) -> dict[str, Any]:
     """Return the values of the variables."""
     import pandas as pd
 
-    points = [_point(name, point, solved) for name, point in study.points.items()]
+    points = [_point(name, point, answers) for name, point in study.points.items()]
     runs = pd.DataFrame(
         [
             trial
             for row, point in zip(points, study.points.values(), strict=True)
-            for trial in _trials(study, row, point, solved)
+            for trial in _trials(study, row, point, answers)
         ],
         columns=names_along("trial", "accuracy"),
     )
@@ -130,10 +130,10 @@ def values(study: Accuracy, solved: Solved) -> dict[str, Any]:
     entries = {name: [row[name] for row in points] for name in points[0]} | dict(runs)
     entries |= profiles(runs, list(study.points), tolerances) | {"map_tolerance": tolerances}
     for motion in MOTIONS:
-        entries |= _map(study, motion, tolerances, solved)
-    if solved.machines:
+        entries |= _map(study, motion, tolerances, answers)
+    if answers.machines:
         for name in ("cpu", "host", "threads"):
-            entries[f"machine_{name}"] = [machine[name] for machine in solved.machines]
+            entries[f"machine_{name}"] = [machine[name] for machine in answers.machines]
     return entries
 
 
@@ -149,12 +149,12 @@ def report(dataset: xr.Dataset) -> Iterator[str]:
         )
 
 
-def _point(name: str, point: AnyPoint, solved: Solved) -> Row:
+def _point(name: str, point: AnyPoint, answers: Answers) -> Row:
     """Return the row of a point."""
     if point.amplitude is None:
         mu, error, source = float(paper.bore_forward(point.velocity)), 0.0, "closed form, Eq 21"
     else:
-        result = solved(forms.reference(point))
+        result = answers(forms.reference(point))
         mu, error = number(result, "mu_macro"), number(result, "mu_macro_error")
         source = f"model {result['model']}, tolerance {forms.reference(point)['tolerance']}"
         source += "" if result["converged"] else f", not met: {result.get('reason') or ''}"
@@ -167,11 +167,11 @@ def _point(name: str, point: AnyPoint, solved: Solved) -> Row:
     }
 
 
-def _trials(study: Accuracy, place: Row, point: AnyPoint, solved: Solved) -> list[Row]:
+def _trials(study: Accuracy, place: Row, point: AnyPoint, answers: Answers) -> list[Row]:
     """Return the rows of the trials at one point.  place: row of the point."""
     rows = []
     for level, request in trials(study, point):
-        row = solved(request)
+        row = answers(request)
         if not row.get("applies", True):
             continue
         by_tolerance = request["kind"] == "choice"
@@ -192,7 +192,7 @@ def _trials(study: Accuracy, place: Row, point: AnyPoint, solved: Solved) -> lis
                 "effort": number(row, "effort"),
                 "converged": bool(row.get("converged")),
                 "reason": row.get("reason") or "",
-                "trial_machine": solved.machines.index(machine) if machine else -1,
+                "trial_machine": answers.machines.index(machine) if machine else -1,
                 "claimed_error": number(row, "mu_macro_error") if by_tolerance else np.nan,
             }
         )
@@ -211,15 +211,15 @@ BEST = (("", "model", ""), ("_cells", "cells", 0), ("_seconds", "seconds", np.na
 tolerance."""
 
 
-def _map(study: Accuracy, motion: str, tolerances: Sequence[float], solved: Solved) -> dict:
+def _map(study: Accuracy, motion: str, tolerances: Sequence[float], answers: Answers) -> dict:
     """Return the cheapest model at each point of a map, for each tolerance."""
     import pandas as pd
 
     rows = []
     for place, (_, truth, runs) in enumerate(map_requests(study, motion)):
-        reference = number(solved(truth), "mu_macro")
+        reference = number(answers(truth), "mu_macro")
         for request in runs:
-            row = solved(request)
+            row = answers(request)
             error = abs(number(row, "mu_macro") - reference) if row.get("converged") else np.inf
             cost = number(row, "seconds")
             rows.append((place, request["model"], request["cells"], cost, error))

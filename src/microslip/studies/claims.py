@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from microslip.studies import evidence, static_limits, verdicts
-from microslip.studies.solved import Row, Solved, number
+from microslip.studies.answers import Answers, Row, number
 from microslip.studies.statements import PARTS, STATEMENTS
 from microslip.theory import hertz, paper
 
@@ -42,15 +42,15 @@ def requests(study: Claims) -> Iterator[tuple[tuple, dict]]:
                 yield (2, request["kind"] == "patches"), request
 
 
-def values(study: Claims, solved: Solved) -> dict[str, Any]:
+def values(study: Claims, answers: Answers) -> dict[str, Any]:
     """Return the values of the variables."""
     import pandas as pd
 
-    tables = evidence.tables_of(study, solved)
+    tables = evidence.tables_of(study, answers)
     checks = pd.concat({name: part.checks(tables) for name, part in PARTS.items()}, names=["part"])
     entries = _verdicts(checks) | static_limits.values(study, tables)
-    entries |= _patches(study, solved)
-    runs = pd.DataFrame([_run(*run) for run in solved.rows.values()])
+    entries |= _patches(study, answers)
+    runs = pd.DataFrame([_run(*run) for run in answers.rows.values()])
     return entries | dict(runs)
 
 
@@ -69,9 +69,9 @@ def _verdicts(checks: pd.DataFrame) -> dict[str, Any]:
     checks: checks of all parts, with the name of the part as the first level of the index.
     """
     own = {name: checks[checks.index.get_level_values("part") == name] for name in PARTS}
-    judged = {name: verdicts.of_part(part["outcome"]) for name, part in own.items()}
+    of_parts = {name: verdicts.of_part(part["outcome"]) for name, part in own.items()}
     claims = [
-        verdicts.of_claim(judged[n] for n, p in PARTS.items() if p.claim == claim and p.counts)
+        verdicts.of_claim(of_parts[n] for n, p in PARTS.items() if p.claim == claim and p.counts)
         for claim in STATEMENTS
     ]
     columns = ("run", "other_run", "amplitude", "velocity", "value", "against", "margin", "error")
@@ -85,7 +85,7 @@ def _verdicts(checks: pd.DataFrame) -> dict[str, Any]:
         "part_counts": [part.counts for part in PARTS.values()],
         "part_where": [verdicts.where(part) for part in own.values()],
         "part_shown_by": [verdicts.shown_by(part) for part in own.values()],
-        "part_verdict": list(judged.values()),
+        "part_verdict": list(of_parts.values()),
         **{
             f"part_{name}": [int((part["outcome"] == code).sum()) for part in own.values()]
             for code, name in enumerate(verdicts.OUTCOMES)
@@ -163,9 +163,9 @@ def command(request: dict) -> str:
 # Patches of the oscillating bore
 
 
-def _patches(study: Claims, solved: Solved) -> dict:
+def _patches(study: Claims, answers: Answers) -> dict:
     """Return the stick patches and edges at the smallest velocity and the amplitude nearest 1."""
-    rows = [solved(fine) for fine, _ in evidence.requests_of(study)["periods"]]
+    rows = [answers(fine) for fine, _ in evidence.requests_of(study)["periods"]]
     slowest = min(float(row["velocity"]) for row in rows)
     rows = [r for r in rows if float(r["velocity"]) == slowest and r.get("converged")]
     if not rows:

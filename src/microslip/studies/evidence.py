@@ -22,8 +22,8 @@ import numpy as np
 
 from microslip.config.settings import STATIC_AMPLITUDES
 from microslip.studies import requests as forms
+from microslip.studies.answers import MOTIONS, Answers, Row, number
 from microslip.studies.requests import Point, exact_model
-from microslip.studies.solved import MOTIONS, Row, Solved, number
 from microslip.sweeps.evaluate import request_of
 from microslip.sweeps.request import STARTS
 from microslip.theory import paper
@@ -66,7 +66,7 @@ def velocities(study: Claims) -> list[float]:
     return sorted({*study.velocity, PAPER_VELOCITY})
 
 
-def limited(study: Claims, motion: str) -> list[float]:
+def static_amplitudes(study: Claims, motion: str) -> list[float]:
     """Return the amplitudes of a motion at which static friction is visible in the paper's maps."""
     return [a for a in study.amplitude[motion] if a <= STATIC_AMPLITUDES[motion]]
 
@@ -100,7 +100,7 @@ def requests_of(study: Claims) -> dict[str, list[list[dict]]]:
                 point(motion, 0.0, a, model="cartesian", cells=PAPER_SQUARES),
                 paper_run(motion, a),
             ]
-            for a in limited(study, motion)
+            for a in static_amplitudes(study, motion)
         ]
     largest = study.amplitude["transverse"][-1]
     if largest > STATIC_AMPLITUDES["transverse"]:  # the whole contact slides
@@ -115,7 +115,7 @@ def requests_of(study: Claims) -> dict[str, list[list[dict]]]:
             for n in (study.cells, 2 * (study.cells // 4))
         ]
         for v in near_static
-        for a in limited(study, "bore")
+        for a in static_amplitudes(study, "bore")
     ]
     tables["steady"] = [[point("continuous-bore", v, model="polar")] for v in STEADY_VELOCITIES]
     tables["transients"] = [
@@ -140,7 +140,7 @@ def requests_of(study: Claims) -> dict[str, list[list[dict]]]:
 # Tables of evidence
 
 
-def tables_of(study: Claims, solved: Solved) -> dict[str, pd.DataFrame]:
+def tables_of(study: Claims, answers: Answers) -> dict[str, pd.DataFrame]:
     """Return all tables of evidence by name."""
     import pandas as pd
 
@@ -149,14 +149,14 @@ def tables_of(study: Claims, solved: Solved) -> dict[str, pd.DataFrame]:
     def table(name: str, read: Callable[..., dict]) -> pd.DataFrame:
         lines = []
         for some in requests.get(name, []):
-            rows = [solved(request) for request in some]
+            rows = [answers(request) for request in some]
             keys = {"run": rows[0]["key"], "other_run": "".join(row["key"] for row in rows[1:2])}
             place = {axis: number(some[0], axis) for axis in ("amplitude", "velocity")}
             lines.append(place | keys | {"other": np.nan} | read(*rows))
         names = ["amplitude", "velocity", "run", "other_run", "other", "value", "error"]
         return pd.DataFrame(lines) if lines else pd.DataFrame(columns=names, dtype=float)
 
-    tables = {"steady": table("steady", point_of), "flat end": table("flat end", extrapolated)}
+    tables = {"steady": table("steady", point_of), "flat end": table("flat end", flat_end_of)}
     tables["steady faster"] = beside_previous(tables["steady"])
     for motion in MOTIONS:
         points, closed = table(motion, point_of), table(f"{motion} closed", point_of)
@@ -249,7 +249,7 @@ def end_of(name: str, *rows: Row) -> dict:
     return {"value": fine[-1], "error": error}
 
 
-def extrapolated(*rows: Row) -> dict:
+def flat_end_of(*rows: Row) -> dict:
     """Return friction for a flat end, extrapolated from three indenters.
 
     For an indenter with exponent n, the friction differs from that of a flat end by a power series

@@ -4,7 +4,7 @@ A study is a module with four functions and two texts:
 
 - requests(settings): pairs of a job and a request.  A job is a tuple; those that begin with a
   smaller number start earlier;
-- values(settings, solved): values of the variables of the dataset, computed from solved requests;
+- values(settings, answers): values of the variables of the dataset, computed from answers;
 - report(dataset): lines of text that summarise the dataset;
 - TITLE and COMMENT of the dataset.
 
@@ -20,7 +20,7 @@ from types import ModuleType
 from typing import TYPE_CHECKING, Any
 
 from microslip.foundation.canonical import canonical_json, sha256
-from microslip.studies.solved import Solved, rows_of
+from microslip.studies.answers import Answers, rows_of
 from microslip.sweeps.batch import lookup
 
 if TYPE_CHECKING:
@@ -74,8 +74,8 @@ def undivided(
     from microslip.datasets import sweep_dataset
     from microslip.datasets.variables import flags, variable
 
-    module, settings, solved = _module(study), configuration.studies[study], Solved(answer)
-    values = module.values(settings, solved)
+    module, settings, answers = _module(study), configuration.studies[study], Answers(answer)
+    values = module.values(settings, answers)
     variables = {}
     for row in rows_of("variables.csv", study):
         name, dims, kind = row["name"], row["dims"].split(), row["kind"]
@@ -85,11 +85,11 @@ def undivided(
         elif name in values:
             variables[name] = flags(dims, values[name], row["long_name"], kind.split())
     # The keys also depend on the sources of the methods.
-    more: dict[str, Any] = {"results_digest": sha256("\n".join(sorted(solved.keys)))}
+    more: dict[str, Any] = {"results_digest": sha256("\n".join(sorted(answers.keys)))}
     tolerance = getattr(settings, "tolerance", None)
     more |= {"comment": module.COMMENT} | ({} if tolerance is None else {"tolerance": tolerance})
     attributes = sweep_dataset.provenance(
-        module.TITLE, settings.model_dump(), solved.versions, **more
+        module.TITLE, settings.model_dump(), answers.versions, **more
     )
     return xr.Dataset(variables, attrs=attributes)
 

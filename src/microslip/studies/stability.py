@@ -16,8 +16,8 @@ from microslip.foundation.canonical import number as text_of_number
 from microslip.periodic import method_names
 from microslip.periodic.method_names import SHIPPED
 from microslip.studies import requests as forms
+from microslip.studies.answers import Answers, Row, number
 from microslip.studies.requests import Point
-from microslip.studies.solved import Row, Solved, number
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -47,8 +47,8 @@ def cases(study: Stability) -> list[tuple[str, Block, float]]:
 
 def _point(block: Block, value: float) -> Point:
     place = {name: getattr(block, name)[0] for name in ("velocity", "amplitude", "poisson")}
-    if block.varied in place:
-        place[block.varied] = value
+    if block.quantity in place:
+        place[block.quantity] = value
     return Point(block.motion, **place)
 
 
@@ -58,16 +58,18 @@ def probe(study: Stability, method: str, block: Block, value: float) -> dict | N
     A block with step lengths applies to methods with this parameter and, for comparison, to the
     shipped method.
     """
-    if block.varied == "step" and method != SHIPPED:
+    if block.quantity == "step" and method != SHIPPED:
         name, numbers = method_names.split(method)
         if "step" not in (method_names.declared(name, "parameters") or ()):
             return None
         words = (f"{k}={text_of_number(n)}" for k, n in (numbers | {"step": value}).items())
         method = f"{name}:{','.join(words)}"
-    imposed = {name: values[0] for name in ("cells", "steps") if (values := getattr(block, name))}
-    if block.varied in imposed:
-        imposed[block.varied] = value
-    return forms.probe(_point(block, value), method, study.tolerance, **imposed)
+    resolution = {
+        name: values[0] for name in ("cells", "steps") if (values := getattr(block, name))
+    }
+    if block.quantity in resolution:
+        resolution[block.quantity] = value
+    return forms.probe(_point(block, value), method, study.tolerance, **resolution)
 
 
 def reference(study: Stability, block: Block, value: float) -> dict:
@@ -125,16 +127,16 @@ def outcome(
     return CONVERGED if abs(mu - reference) <= error + reference_error else WRONG
 
 
-def values(study: Stability, solved: Solved) -> dict[str, Any]:
+def values(study: Stability, answers: Answers) -> dict[str, Any]:
     """Return the values of the variables."""
     every, blocks = cases(study), study.axes
-    truths = [solved(reference(study, block, value)) for _, block, value in every]
+    truths = [answers(reference(study, block, value)) for _, block, value in every]
     mu = np.array([number(truth, "mu_macro") for truth in truths])
     error = np.array([number(truth, "mu_macro_error") for truth in truths])
     imposed = [bool(block.cells or block.steps) for _, block, _ in every]
     probes = [[probe(study, m, block, v) for _, block, v in every] for m in study.methods]
     results: list[list[Row]] = [
-        [{"applies": False} if request is None else solved(request) for request in row]
+        [{"applies": False} if request is None else answers(request) for request in row]
         for row in probes
     ]
     names = {"mu_macro": "mu_macro", "claimed_error": "mu_macro_error", "work": "work"}
@@ -154,7 +156,7 @@ def values(study: Stability, solved: Solved) -> dict[str, Any]:
         "reference": mu,
         "reference_error": error,
         "axis": list(blocks),
-        "axis_label": [block.title or block.varied for block in blocks.values()],
+        "axis_label": [block.title or block.quantity for block in blocks.values()],
         "axis_note": [block.note for block in blocks.values()],
         "case_axis": [name for name, *_ in every],
         "case_value": [value for *_, value in every],

@@ -96,12 +96,12 @@ def values(study: Claims, tables: dict[str, pd.DataFrame]) -> dict[str, Any]:
     for motion in FORMULAS:
         shown = np.array(SHARE_AMPLITUDES[motion])
         at = motion, radius, shown[:, None]
-        named = {"used_share": used_share(*at), "left_share": left_share(*at)}
-        named |= {"share_amplitude": shown} | _curves(motion)
-        named |= _table(
+        columns = {"used_share": used_share(*at), "left_share": left_share(*at)}
+        columns |= {"share_amplitude": shown} | _curves(motion)
+        columns |= _table(
             motion, *(tables[f"{motion} {name}"] for name in ("limit", "slow", "paper"))
         )
-        entries |= {f"{motion}_{name}": value for name, value in named.items()}
+        entries |= {f"{motion}_{name}": value for name, value in columns.items()}
     return entries
 
 

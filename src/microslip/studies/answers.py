@@ -1,4 +1,4 @@
-"""Solved requests of a study, and the tables of the variables of its dataset."""
+"""Answers to the requests of a study, and the tables of the variables of its dataset."""
 
 from __future__ import annotations
 
@@ -11,13 +11,13 @@ from typing import Any
 from microslip.foundation.canonical import canonical_json
 
 Row = dict[str, Any]
-"""A solved request: the entries of the request and of its result, and the name `key` of the result.
+"""An answer: the entries of the request and of its result, and the name `key` of the result.
 An entry of the result replaces that of the request."""
 MOTIONS = ("transverse", "bore")
 """Motions that replace {motion} in the tables of variables and groups."""
 
 
-class Solved:
+class Answers:
     """Function that returns the Row of a request.
 
     Attributes
