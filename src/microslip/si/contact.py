@@ -8,7 +8,7 @@ are assumed to be uncoupled.
 from __future__ import annotations
 
 import math
-from functools import cached_property
+from functools import cached_property, reduce
 from typing import Any
 
 import numpy as np
@@ -165,12 +165,13 @@ class Contact:
                 sizes[direction] = size / self.u_lim
         return sizes
 
-    @property
+    @cached_property
     def amplitude(self) -> Any:
         """Amplitude for microslip.solve, the largest of `amplitudes`; None for a steady motion."""
         if self.steady:
             return None
-        return np.max(np.stack(np.broadcast_arrays(*self.amplitudes.values())), axis=0)
+        first, *others = self.amplitudes.values()
+        return reduce(np.maximum, others, first)
 
     @cached_property
     def motion(self) -> str | Motion:

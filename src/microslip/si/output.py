@@ -6,7 +6,7 @@ import math
 import re
 from collections.abc import Iterator
 from dataclasses import dataclass, field
-from functools import cache, cached_property
+from functools import cache
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from microslip.foundation.number_text import ROUNDING, interval_text, number_text, prefixed
@@ -233,23 +233,13 @@ class Prediction:
 
     def numbers(self) -> Iterator[tuple[str, str, str, Any]]:
         """Name of the column, SI unit, description and number of each input and each output.  The
-        number is None if it is missing."""
-        for name, entry in INPUTS.items():
-            if entry.unit is not None:
-                unit = self.input_units.get(name, entry.unit)
-                key = "amplitude_factor" if name == "amplitude" and not unit else name
-                yield from _columns(name, key, unit, self.input_values.get(name, NOTHING))
+        value and the error of every output are present, None if they do not apply."""
+        for name, one in self.input_values.items():
+            unit = self.input_units[name]
+            key = "amplitude_factor" if name == "amplitude" and not unit else name
+            yield from _columns(name, key, unit, one)
         for name, output in OUTPUTS.items():
-            yield from _columns(name, name, output.unit, self.values.get(name, NOTHING))
-
-    @cached_property
-    def _numbers(self) -> dict[str, Any]:
-        """Numbers by column.  The speed is an input or an output."""
-        numbers: dict[str, Any] = {}
-        for name, _, _, number in self.numbers():
-            if numbers.get(name) is None:
-                numbers[name] = number
-        return numbers
+            yield from _columns(name, name, output.unit, self.values.get(name, NOTHING), KINDS[:2])
 
     def to_dict(self) -> dict[str, Any]:
         """All columns as a plain dict.  The value and the error of every output are present, None
@@ -257,9 +247,10 @@ class Prediction:
         plain: dict[str, Any] = {name: getattr(self, name) for name in (*TEXTS, *REASONS)}
         plain |= {"converged": self.converged, "inputs": dict(self.inputs)}
         plain |= {name: list(getattr(self, name)) for name in LISTS}
-        always = {column(n, one.unit, kind) for n, one in OUTPUTS.items() for kind in KINDS[:2]}
-        numbers = self._numbers.items()
-        return plain | {n: x for n, x in numbers if x is not None or n in always}
+        for name, _, _, number in self.numbers():
+            if plain.get(name) is None:  # the speed is an input or an output
+                plain[name] = number
+        return plain
 
     def to_xarray(self) -> xr.Dataset:
         """The numbers as variables with units, and the texts as attributes."""
@@ -277,8 +268,10 @@ class Prediction:
         return xr.Dataset(variables, attrs={"record": "Prediction"} | about)
 
     def __getattr__(self, name: str) -> Any:
-        if not name.startswith("_") and name in self._numbers:
-            return self._numbers[name]
+        if not name.startswith("_"):
+            columns = self.to_dict()
+            if name in columns or name in _names():
+                return columns.get(name)
         raise AttributeError(f"{type(self).__name__} has no column {name!r}")
 
     def __str__(self) -> str:
@@ -317,15 +310,26 @@ PLAIN = {"u_lim", "mu_macro", "mu_apparent", "mu_static", "mu_static_apparent"}
 
 
 NOTHING = Value(None, None)
-"""An output or an input that is missing."""
+"""An output that does not apply."""
 
 
 def _columns(
-    name: str, key: str, unit: str, one: Value
-) -> Iterator[tuple[str, str, str, float | None]]:
-    """Name of the column, SI unit, description and number for each part of a Value."""
+    name: str, key: str, unit: str, one: Value, always: tuple[str, ...] = ()
+) -> Iterator[tuple[str, str, str, Any]]:
+    """Name of the column, SI unit, description and number for each part of a Value, and for those
+    in `always` without a number."""
     for kind in KINDS:
-        yield column(key, unit, kind), unit, f"{name.replace('_', ' ')}, {kind}", getattr(one, kind)
+        number = getattr(one, kind)
+        if number is not None or kind in always:
+            yield column(key, unit, kind), unit, f"{name.replace('_', ' ')}, {kind}", number
+
+
+def _names() -> set[str]:
+    """All possible names of columns with numbers."""
+    units = [(name, one.unit) for name, one in OUTPUTS.items()]
+    units += [(name, one.unit) for name, one in INPUTS.items() if one.unit is not None]
+    units += [("amplitude", "rad"), ("amplitude_factor", "")]
+    return {column(name, unit, kind) for name, unit in units for kind in KINDS}
 
 
 def line(title: str, text: str) -> str:

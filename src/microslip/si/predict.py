@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import replace
 from functools import reduce
 from operator import mul
@@ -88,7 +89,7 @@ def checked_inputs(motion: Any, **given: Any) -> Inputs:
 
 def predict_inputs(inputs: Inputs) -> Prediction:
     """The Prediction for checked inputs.  Raises InputError."""
-    contact, answer, root = solved(inputs)
+    contact, answer, root = solved(inputs, Contact)
     values, search = outputs(contact, answer), inputs.search
     given = {name: Value(one.si, None) for name, one in inputs.quantities.items()}
     if search and root is not None:
@@ -143,8 +144,13 @@ def unsolved(inputs: Inputs, reason: str) -> Prediction:
     )
 
 
-def solved(inputs: Inputs) -> tuple[Contact, Answer, Value | None]:
-    """The contact, its answer, and the result of a search.  Raises InputError."""
+def solved(
+    inputs: Inputs, contact_of: Callable[[Inputs], Contact] = contact_of
+) -> tuple[Contact, Answer, Value | None]:
+    """The contact, its answer, and the result of a search.  Raises InputError.
+
+    contact_of: Contact for checked inputs, otherwise contact_of.
+    """
     contact, root = find_reduction(inputs) if inputs.search else (contact_of(inputs), None)
     return contact, answer_of(contact), root
 

@@ -6,25 +6,10 @@ import math
 from dataclasses import dataclass, field
 from typing import Any
 
+from microslip.answer import limits
 from microslip.answer.answer import Estimate, Result
-from microslip.answer.limits import (
-    LARGEST_FORCE,
-    is_even,
-    least_load,
-    oscillates,
-    oscillates_forward,
-    without_forward_motion,
-)
-from microslip.answer.limits import (
-    problem_of as checked_problem,
-)
 from microslip.answer.point import solve
-from microslip.foundation.arguments import (
-    LARGEST,
-    LARGEST_BODY,
-    SMALLEST_STIFFNESS,
-    SMALLEST_TOLERANCE,
-)
+from microslip.foundation import arguments
 from microslip.foundation.errors import InputError, shown
 from microslip.scene.problem import Problem
 from microslip.si.contact import DRIVES, Contact
@@ -125,7 +110,7 @@ def solve_at(contact: Contact, velocity: float | None, tolerance: float, **chang
     amplitude = None if amplitude is None else float(amplitude)
     poisson, pressure = float(contact.poisson), contact.pressure
     if velocity is not None:
-        velocity = min(velocity, LARGEST["velocity"])
+        velocity = min(velocity, arguments.LARGEST["velocity"])
     if inputs.map is not None:
         assert velocity is not None  # a map is not allowed with a force
         friction = FrictionMap(inputs.map, str(contact.motion), pressure)
@@ -162,7 +147,7 @@ def problem_of(contact: Contact) -> Problem:
     """The dimensionless Problem in the limit of vanishing speed."""
     amplitude = None if contact.steady else float(contact.amplitude)
     settings: dict[str, Any] = {"poisson": float(contact.poisson), "pressure": contact.pressure}
-    return checked_problem(contact.motion, 0.0, amplitude, **settings)
+    return limits.problem_of(contact.motion, 0.0, amplitude, **settings)
 
 
 def largest_force(contact: Contact) -> float:
@@ -173,7 +158,7 @@ def largest_force(contact: Contact) -> float:
     """
     if contact.inputs.mass or contact.steady:
         return 1.0
-    return min(1.0, least_load(problem_of(contact)))
+    return min(1.0, limits.least_load(problem_of(contact)))
 
 
 def _threshold(contact: Contact, limit: Result | None) -> Estimate | None:
@@ -187,12 +172,12 @@ def _threshold(contact: Contact, limit: Result | None) -> Estimate | None:
     if limit is None:
         return Estimate(0.0)  # under a steady spin any force moves the contact
     problem, mass = problem_of(contact), contact.inputs.mass
-    if not oscillates_forward(problem) or is_even(problem):
+    if not limits.oscillates_forward(problem) or limits.is_even(problem):
         return limit.friction
-    held = without_forward_motion(problem)
-    if not mass and not oscillates(held):
+    held = limits.without_forward_motion(problem)
+    if not mass and not limits.oscillates(held):
         return Estimate(1.0)
-    if mass or contact.inputs.force is None or not is_even(held):
+    if mass or contact.inputs.force is None or not limits.is_even(held):
         return None
     return solve(held, tolerance=STATIC_TOLERANCE).friction
 
@@ -228,7 +213,7 @@ def _friction(
         reason += f"{threshold.error:.1e} of mu times the load"
         from microslip.answer.force import GAP_MARGIN  # late: compiled code
 
-        drive["force"] = min(threshold.value + GAP_MARGIN * threshold.error, LARGEST_FORCE)
+        drive["force"] = min(threshold.value + GAP_MARGIN * threshold.error, limits.LARGEST_FORCE)
         faster = solve_at(contact, None, tolerance, **drive).mean_velocity
         half = 0.5 * (faster.value + faster.error)
         between = Estimate(half, {"model": half})
@@ -236,7 +221,7 @@ def _friction(
     accepted = tolerance * max(result.velocity, SLOWEST)
     if result.mean_velocity.error <= accepted:
         return result
-    return solve_at(contact, None, max(MARGIN * accepted, SMALLEST_TOLERANCE), **drive)
+    return solve_at(contact, None, max(MARGIN * accepted, arguments.SMALLEST_TOLERANCE), **drive)
 
 
 def within_range(drive: dict[str, float]) -> dict[str, float]:
@@ -247,12 +232,12 @@ def within_range(drive: dict[str, float]) -> dict[str, float]:
     natural frequency.
     """
     body = {name: value for name, value in drive.items() if name != "force"}
-    scale = max(1.0, max(body.values(), default=0.0) / LARGEST_BODY)
-    groups = {name: min(value / scale, LARGEST_BODY) for name, value in body.items()}
+    scale = max(1.0, max(body.values(), default=0.0) / arguments.LARGEST_BODY)
+    groups = {name: min(value / scale, arguments.LARGEST_BODY) for name, value in body.items()}
     if "stiffness" in groups:  # a softer spring exerts nearly the same force
-        groups["stiffness"] = max(groups["stiffness"], SMALLEST_STIFFNESS)
+        groups["stiffness"] = max(groups["stiffness"], arguments.SMALLEST_STIFFNESS)
     if "force" in drive:
-        groups["force"] = min(drive["force"], LARGEST_FORCE)
+        groups["force"] = min(drive["force"], limits.LARGEST_FORCE)
     return groups
 
 
