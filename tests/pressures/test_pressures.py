@@ -87,11 +87,6 @@ def test_squares_carry_the_load_and_the_torque(name, cells):
     assert loads == pytest.approx(loads[:, ::-1], abs=1e-12)
 
 
-def test_thin_rings_give_the_loads_of_squares_in_closed_form():
-    difference = pressure_named("power").cell_loads(32) - HERTZ.cell_loads(32)
-    assert np.abs(difference).sum() < 5e-5
-
-
 @pytest.mark.slow
 @pytest.mark.parametrize("name", [*ROUND, *PLANAR])
 def test_u_lim_is_the_largest_displacement_under_full_slip(name):
@@ -212,37 +207,27 @@ def test_integrals_over_the_record_are_the_closed_forms_of_a_sphere(name):
     assert result == pytest.approx(hertz.lubkin_traction(r, 0.4), rel=1e-9)
 
 
-@pytest.mark.slow
-@pytest.mark.parametrize("name", ["power:exponent=1", "power:exponent=8", "punch"])
-@pytest.mark.parametrize(
-    ("motion", "amplitude", "model"),
-    [("transverse", 0.5, "radial"), ("longitudinal", 0.5, "radial"), ("bore", 1.0, "polar")],
-)
-def test_static_limits_agree_with_those_point_by_point(name, motion, amplitude, model):
-    exact = microslip.solve(motion, 0.0, amplitude, pressure=name)
-    result = microslip.solve(motion, 0.0, amplitude, pressure=name, model=model, tolerance=5e-3)
-    assert exact.model == "closed-form"
-    assert_agree(result, exact)
+EXACT = [
+    ("transverse", 0.0, 0.5, "radial"),
+    ("longitudinal", 0.0, 0.5, "radial"),
+    ("bore", 0.0, 1.0, "polar"),
+    ("longitudinal", 0.01, 0.6, "radial"),
+    ("longitudinal", 0.3, 0.6, "radial"),
+    ("continuous-bore", 0.6, None, "polar"),  # Eqs 17 and 18
+]
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize("name", ["power:exponent=1", "power:exponent=8", "punch"])
-@pytest.mark.parametrize("velocity", [0.01, 0.3])
-def test_rings_agree_with_the_closed_form_along_a_line(name, velocity):
-    exact = microslip.solve("longitudinal", velocity, 0.6, pressure=name)
-    result = microslip.solve("longitudinal", velocity, 0.6, pressure=name, model="radial")
-    assert (exact.model, result.model) == ("closed-form", "radial")
+@pytest.mark.parametrize(("motion", "velocity", "amplitude", "model"), EXACT)
+def test_closed_forms_agree_with_marches(name, motion, velocity, amplitude, model):
+    settings = {"pressure": name, "tolerance": 2e-3}
+    exact = microslip.solve(motion, velocity, amplitude, pressure=name)
+    result = microslip.solve(motion, velocity, amplitude, model=model, **settings)
+    assert (exact.model, result.model) == ("closed-form", model)
     assert_agree(result, exact)
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize("name", ["power:exponent=1", "punch", "ring"])
-def test_the_steady_bore_is_eqs_17_and_18(name):
-    exact = microslip.solve("continuous-bore", 0.6, pressure=name)
-    result = microslip.solve("continuous-bore", 0.6, pressure=name, model="polar")
-    assert exact.model == "closed-form"
-    assert abs(result.mu_macro - exact.mu_macro) <= result.mu_macro_error + 1e-6
-    assert abs(result.mu_torque - exact.mu_torque) <= result.torque.error + 1e-3
+    if exact.torque is not None and result.torque is not None:
+        assert abs(result.mu_torque - exact.mu_torque) <= result.torque.error + 1e-3
 
 
 # Models against each other
@@ -308,6 +293,7 @@ def test_translation_at_poissons_ratio_0_cannot_tell_how_an_ellipse_lies():
         ("ring:inner=0", "inner = 0: allowed is a share of the outer radius in 0.05..0.95"),
         ("ellipse:ratio=2", "ratio = 2: allowed is a number in 0.05..1"),
         ("ellipse:across=0.5", "across = 0.5: allowed is 0 or 1"),
+        ("file", "file:NAME"),
         (3, "pressure = 3: allowed is one of hertz, ellipse, power"),
     ],
 )
@@ -315,19 +301,6 @@ def test_what_is_no_pressure_is_refused_by_name(name, problem):
     with pytest.raises(ValueError, match="pressure = ") as refused:
         microslip.solve("transverse", 0.1, 0.5, pressure=name)
     assert problem in str(refused.value)
-
-
-@pytest.mark.parametrize(
-    ("model", "name", "problem"),
-    [
-        ("radial", "ellipse", "rings cannot resolve the pressure ellipse"),
-        ("polar", "ellipse", "rings cannot resolve the pressure ellipse"),
-        ("mdr", "ring", "axisymmetric indenters only, not for ring"),
-    ],
-)
-def test_models_that_cannot_take_a_pressure_say_so(model, name, problem):
-    with pytest.raises(ValueError, match=problem):
-        microslip.solve("transverse", 0.1, 0.5, pressure=name, model=model)
 
 
 @pytest.mark.parametrize("name", PRESSURES)
@@ -361,13 +334,3 @@ def test_what_is_no_array_of_numbers_is_refused_by_the_name_of_the_argument(argu
         Pressure.from_array(*arrays)
     assert raised.value.argument == argument
     assert "\n" not in str(raised.value)
-
-
-def test_a_word_that_a_name_has_to_follow_is_no_pressure():
-    with pytest.raises(InputError, match="file:NAME"):
-        pressure_named("file")
-
-
-def test_numbers_of_a_pressure_have_to_be_finite():
-    with pytest.raises(InputError, match="ratio"):
-        Ellipse(ratio=float("nan"))

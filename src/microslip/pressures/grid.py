@@ -1,14 +1,14 @@
-"""Pressures given by values on a regular grid, from a sensor or from another program."""
+"""Integrals of values on a regular grid, from a sensor or from another program."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from typing import NamedTuple
 
 import numpy as np
 
 from microslip.foundation.errors import InputError
-from microslip.pressures.cell_loads import of_loads
 
 AXES = ("forward", "lateral")
 READINGS = ("cells", "samples")
@@ -25,28 +25,19 @@ REGULAR = 1e-3
 grid."""
 
 
-def read_grids(
-    forward: np.ndarray, lateral: np.ndarray, values: np.ndarray, reading: str
-) -> dict[str, Grid]:
-    """Create a Grid from values on a regular grid, and alternative grids from the same values.
-
-    The unit of length a is half the longer side of the smallest rectangle that contains all
-    pressure.  Rotations are about the centre of this rectangle.
-
-    Parameters
-    ----------
-    forward, lateral : array, shapes (n,) and (m,)
-        Increasing coordinates, both in the same unit of length.
-    values : array, shape (n, m)
-        Pressure in any unit, 0 outside the contact.
-    reading : str
-        Meaning of the values, one of READINGS.
+def checked(
+    forward: np.ndarray, lateral: np.ndarray, values: np.ndarray
+) -> tuple[list[np.ndarray], np.ndarray, float]:
+    """Check coordinates (n,) and (m,), and pressures (n, m).
 
     Returns
     -------
-    dict of str to Grid
-        Label -> grid.  The first label is "", for the grid itself.  The second has the same values
-        with the other meaning in READINGS, and the third has half the resolution.
+    points : list of two arrays
+        Coordinates that start at 0, in units of the longer step.  In these units, areas neither
+        overflow nor underflow.
+    values : array, shape (n, m)
+    step : float
+        The longer step.
 
     Raises
     ------
@@ -56,79 +47,46 @@ def read_grids(
     """
     values = np.asarray(values, float)
     axes = [np.asarray(axis, float) for axis in (forward, lateral)]
-    points = [_even(label, axis) for label, axis in zip(AXES, axes, strict=True)]
-    _refuse(axes[0], axes[1], values)
-    peak, (points, step) = float(values.max()), _in_steps(points)
-    grid, other = (
-        _grid(points, values / peak, kind, step, peak)
-        for kind in sorted(READINGS, key=reading.__ne__)
-    )
-    return {
-        "": grid,
-        f"read as {other.reading}": other,
-        "at half its resolution": _coarsened(grid),
-    }
-
-
-def _refuse(forward: np.ndarray, lateral: np.ndarray, values: np.ndarray) -> None:
-    """Raise InputError if a value is negative or not finite, or if all values are 0."""
-    bad = np.argwhere(~(np.isfinite(values) & (values >= 0.0)))
-    if len(bad):
-        i, j = bad[0]
-        place = f"at forward {forward[i]:g}, lateral {lateral[j]:g}"
+    steps = [_step(label, axis) for label, axis in zip(AXES, axes, strict=True)]
+    for i, j in np.argwhere(~(np.isfinite(values) & (values >= 0.0)))[:1]:
+        place = f"at forward {axes[0][i]:g}, lateral {axes[1][j]:g}"
         allowed = f"{place}; allowed: finite numbers, 0 or above"
         raise InputError("pressure", float(values[i, j]), allowed)
     if not values.any():
         raise InputError("pressure", 0.0, "it is 0 everywhere; allowed: a load above 0")
+    longest = max(steps)
+    if not (np.isfinite(longest) and min(steps) > 1e-12 * longest):
+        allowed = "allowed are steps in one unit of length"
+        raise InputError("forward and lateral", tuple(map(float, steps)), allowed)
+    sides = zip(axes, steps, strict=True)
+    points = [np.arange(len(axis)) * (step / longest) for axis, step in sides]
+    return points, values, float(longest)
 
 
-def _even(label: str, axis: np.ndarray) -> np.ndarray:
-    """Replace the coordinates of an axis (n,) by evenly spaced ones, within the tolerance REGULAR.
+def _step(label: str, axis: np.ndarray) -> float:
+    """Step of an axis (n,) that is evenly spaced within the tolerance REGULAR.
 
-    Raises InputError for uneven coordinates; the message shows the pair whose distance deviates
+    Raises InputError for other coordinates; the message shows the pair whose distance deviates
     most.
     """
     worst = int(np.isfinite(axis).argmin()) if len(axis) else 0
     if len(axis) > 1 and np.isfinite(axis).all():
         even, steps = np.linspace(axis[0], axis[-1], len(axis)), np.diff(axis)
         if even[1] > even[0] and np.abs(axis - even).max() <= REGULAR * (even[1] - even[0]):
-            return even
+            return even[1] - even[0]
         usual = np.sort(steps)[(len(steps) - 1) // 2]
         worst = int(np.abs(steps - usual).argmax())
-    raise InputError(
-        label,
-        ", ".join(f"{place:g}" for place in axis[worst : worst + 2]),
-        "not evenly spaced; allowed: two coordinates or more, at equal distances",
-    )
-
-
-def _in_steps(points: Sequence[np.ndarray]) -> tuple[list[np.ndarray], float]:
-    """Return coordinates that start at 0, in units of the longer step, and the length of this step.
-    In these units, areas neither overflow nor underflow.
-
-    Raises InputError if one step is more than 1e12 times the other.
-    """
-    steps = [places[1] - places[0] for places in points]
-    longest = max(steps)
-    if not (np.isfinite(longest) and min(steps) > 1e-12 * longest):
-        raise InputError(
-            "forward and lateral",
-            tuple(map(float, steps)),
-            "allowed are steps in one unit of length",
-        )
-    scaled = [
-        np.arange(len(places)) * (step / longest)
-        for places, step in zip(points, steps, strict=True)
-    ]
-    return scaled, float(longest)
+    pair = ", ".join(f"{place:g}" for place in axis[worst : worst + 2])
+    allowed = "not evenly spaced; allowed: two coordinates or more, at equal distances"
+    raise InputError(label, pair, allowed)
 
 
 @dataclass(frozen=True, eq=False)
-class _Axis:
+class Axis:
     """One side of the smallest rectangle that contains all pressure, and the grid points on it.
 
     points: evenly spaced coordinates, (n,); low, high: ends of the side; step: distance between
-    points.
+    points; reading: one of READINGS.
     """
 
     points: np.ndarray
@@ -136,6 +94,15 @@ class _Axis:
     high: float
     step: float
     reading: str
+
+    @property
+    def middle(self) -> float:
+        return 0.5 * (self.low + self.high)
+
+    @property
+    def half(self) -> float:
+        """Half of the width of the side."""
+        return 0.5 * (self.high - self.low)
 
     def integrals(self, edges: np.ndarray) -> np.ndarray:
         """Integral of the shape function of each point over each interval, (intervals, n)."""
@@ -156,7 +123,7 @@ class _Axis:
         """Return coordinates that divide each step into `parts` equal parts."""
         return np.linspace(self.low, self.high, self.steps * parts + 1)
 
-    def coarsened(self) -> tuple[_Axis, np.ndarray]:
+    def coarsened(self) -> tuple[Axis, np.ndarray]:
         """Return an axis with half as many steps, and the matrix that averages values onto this
         axis."""
         steps = -(-self.steps // 2)
@@ -170,108 +137,42 @@ class _Axis:
         return coarse, self.integrals(edges) / np.diff(edges)[:, None]
 
 
-@dataclass(frozen=True, eq=False)
-class Grid:
-    """Values (n, m) on a grid over the smallest rectangle that contains all pressure.
+class Grid(NamedTuple):
+    """Values (n, m) on a grid over the smallest rectangle that contains all pressure."""
 
-    step: the unit of the axes, expressed in the unit of the coordinates.  peak: the unit of the
-    values, expressed in the unit of the pressure.
-    """
-
-    forward: _Axis
-    lateral: _Axis
+    forward: Axis
+    lateral: Axis
     values: np.ndarray
-    step: float = 1.0
-    peak: float = 1.0
-
-    @property
-    def reading(self) -> str:
-        """Meaning of the values, one of READINGS."""
-        return self.forward.reading
 
     def loads(self, along: np.ndarray, across: np.ndarray) -> np.ndarray:
         """Load of each rectangle between forward edges (n + 1,) and lateral edges (m + 1,)."""
         return self.forward.integrals(along) @ self.values @ self.lateral.integrals(across).T
 
-    @property
-    def middles(self) -> list[float]:
-        """Forward and lateral coordinates of the centre of the rectangle."""
-        return [0.5 * (side.low + side.high) for side in (self.forward, self.lateral)]
-
-    @property
-    def half_widths(self) -> list[float]:
-        """Half of the forward and the lateral width of the rectangle."""
-        return [0.5 * (side.high - side.low) for side in (self.forward, self.lateral)]
-
-    @property
-    def half(self) -> float:
-        """Half the longer side of the rectangle, which is the unit of length a."""
-        return max(self.half_widths)
-
-    def cell_loads(self, cells: int) -> np.ndarray:
-        """Load on each of cells x cells cells of the rectangle; the sum is 1."""
-        edges = np.arange(cells + 1) * 2.0 / cells - 1.0
-        sides = zip(self.middles, self.half_widths, strict=True)
-        return of_loads(self.loads(*(middle + half * edges for middle, half in sides)))
-
-    @property
-    def area(self) -> float:
-        """Area of the cells under pressure, divided by a^2."""
-        cell = self.forward.step * self.lateral.step
-        return np.count_nonzero(self.values) * cell / self.half**2
-
-    def reduced_modulus(self) -> float:
-        """G* in working units.  It equals the largest displacement under full slip for G* = 1."""
-        fine = min(max(FINE, *self.values.shape), FINEST)
-        forward, lateral = (width / self.half for width in self.half_widths)
-        return _largest_displacement(self.cell_loads(fine), forward, lateral)
-
-    def largest(self) -> float:
-        """Largest pressure divided by F_z / a^2."""
-        return float(self.values.max()) * self.half**2 / self.total
-
-    @property
-    def total(self) -> float:
-        """Integral of the values over the rectangle."""
-        return float(self.loads(self.forward.edges(1), self.lateral.edges(1)).sum())
-
-    def mean_distance(self) -> float:
-        """Mean distance from the centre, weighted with the pressure and divided by a.  It is exact
-        for the meaning "cells"."""
-        edges = [side.edges(-(-FINE // side.steps)) for side in (self.forward, self.lateral)]
-        loads = self.loads(*edges)
-        x, y = ((axis - at) / self.half for axis, at in zip(edges, self.middles, strict=True))
-        areas = np.diff(x)[:, None] * np.diff(y)
-        return float(np.sum(loads * _distances(x, y) / areas) / loads.sum())
+    def coarsened(self) -> Grid:
+        """Return a grid with half the resolution."""
+        forward, along = self.forward.coarsened()
+        lateral, across = self.lateral.coarsened()
+        return Grid(forward, lateral, along @ self.values @ across.T)
 
 
-def _grid(
-    points: Sequence[np.ndarray], values: np.ndarray, reading: str, unit: float, peak: float
-) -> Grid:
+def cropped(points: Sequence[np.ndarray], values: np.ndarray, reading: str) -> Grid:
+    """Create a Grid without the zeros around the pressure.  The arguments are those that `checked`
+    returns."""
     axes = []
     for number, places in enumerate(points):
-        loaded = np.flatnonzero(values.any(axis=1 - number))
-        first, last = loaded[0], loaded[-1]
+        first, last = np.flatnonzero(values.any(axis=1 - number))[[0, -1]]
         step = places[1] - places[0]
         if reading == "cells":
             low, high = places[first] - 0.5 * step, places[last] + 0.5 * step
         else:  # the pressure falls to 0 towards the next point, if there is one
             first, last = max(first - 1, 0), min(last + 1, len(places) - 1)
             low, high = places[first], places[last]
-        axes.append(_Axis(places[first : last + 1], low, high, step, reading))
+        axes.append(Axis(places[first : last + 1], low, high, step, reading))
         values = values.take(range(first, last + 1), axis=number)
-    forward, lateral = axes
-    return Grid(forward, lateral, values, unit, peak)
+    return Grid(axes[0], axes[1], values)
 
 
-def _coarsened(grid: Grid) -> Grid:
-    forward, along = grid.forward.coarsened()
-    lateral, across = grid.lateral.coarsened()
-    values = along @ grid.values @ across.T
-    return replace(grid, forward=forward, lateral=lateral, values=values)
-
-
-def _distances(x: np.ndarray, y: np.ndarray) -> np.ndarray:
+def distances(x: np.ndarray, y: np.ndarray) -> np.ndarray:
     """Integrate the distance from the origin over each rectangle of the grid with the edges x and
     y."""
     x, y = x[:, None], y[None, :]
@@ -283,7 +184,7 @@ def _distances(x: np.ndarray, y: np.ndarray) -> np.ndarray:
     return np.diff(np.diff(corner / 6.0, axis=0), axis=1)
 
 
-def _largest_displacement(loads: np.ndarray, forward: float, lateral: float) -> float:
+def largest_displacement(loads: np.ndarray, forward: float, lateral: float) -> float:
     """Largest displacement at the centre of a cell under full slip, for G* = 1.
 
     loads: load of each cell, (n, n), spread evenly over the cell.  forward, lateral: half of the

@@ -26,8 +26,18 @@ import numpy as np
 
 from microslip.foundation import spec
 from microslip.foundation.errors import InputError
-from microslip.pressures.cell_loads import round_loads
-from microslip.pressures.grid import READINGS, Grid, read_grids
+from microslip.pressures.cell_loads import of_loads, round_loads
+from microslip.pressures.grid import (
+    FINE,
+    FINEST,
+    READINGS,
+    Axis,
+    Grid,
+    checked,
+    cropped,
+    distances,
+    largest_displacement,
+)
 
 Units = tuple[float | None, float | None]
 """Unit of the coordinates in m, and unit of the pressure in Pa; None for dimensionless values."""
@@ -64,19 +74,20 @@ class Pressure:
         between these pressures give the error due to the grid.
     """
 
+    summary: ClassVar[Any] = ""
+    G_star: ClassVar[Any] = None
+    torque: ClassVar[Any] = None
+    largest: ClassVar[Any] = None
     mirrored: ClassVar[bool] = True
     hertzian: ClassVar[bool] = False
-
-    @property
-    def area(self) -> float:
-        """Contact area divided by a^2."""
-        return np.pi
-
-    @property
-    def half_widths(self) -> tuple[float, float]:
-        """Half of the forward and the lateral width of the rectangle around the contact, divided by
-        a."""
-        return (1.0, 1.0)
+    area: ClassVar[Any] = np.pi
+    """Contact area divided by a^2."""
+    half_widths: ClassVar[Any] = (1.0, 1.0)
+    """Half of the forward and the lateral width of the rectangle around the contact, divided by
+    a."""
+    cell_loads: ClassVar[Any] = None
+    """cell_loads(cells): load on each of cells x cells cells of the rectangle around the contact,
+    (forward, lateral); the sum is 1."""
 
     # For pressures that depend on the radius alone:
     ring_means: ClassVar[Any] = None
@@ -143,10 +154,6 @@ class Pressure:
         return Measured.on_grid(f"array:sha256={digest},grid={grid}", x, y, values, grid)
 
     @property
-    def summary(self) -> str:
-        return ""
-
-    @property
     def inner(self) -> float:
         return 0.0
 
@@ -161,23 +168,6 @@ class Pressure:
 
     def __str__(self) -> str:
         return self.name
-
-    @property
-    def G_star(self) -> float:
-        raise NotImplementedError
-
-    @property
-    def torque(self) -> float:
-        raise NotImplementedError
-
-    @property
-    def largest(self) -> float:
-        raise NotImplementedError
-
-    def cell_loads(self, cells: int) -> np.ndarray:
-        """Load on each of cells x cells cells of the rectangle around the contact, (forward,
-        lateral); the sum is 1."""
-        raise NotImplementedError
 
     @property
     def is_round(self) -> bool:
@@ -256,20 +246,27 @@ def _numbers(name: str, values: Any) -> np.ndarray:
 class Measured(Pressure):
     """A pressure given by values on a grid, see `Pressure.from_array`.
 
+    The unit of length a is half the longer side of the smallest rectangle that contains all
+    pressure.  Rotations are about the centre of this rectangle.
+
     Attributes
     ----------
     text : str
         Name of the pressure, with a digest of the values.
     grid : grid.Grid
-        The values.
+        The values, divided by the largest one.  The unit of the axes is the longer step.
+    step, peak : float
+        The longer step and the largest value, in the units of the coordinates and the values.
     units : tuple
         Units of the coordinates and of the values, see Units.
     """
 
     text: str
     grid: Grid
-    readings: tuple[Measured, ...] = ()
+    step: float = 1.0
+    peak: float = 1.0
     units: Units = NO_UNITS
+    readings: tuple[Measured, ...] = ()
 
     summary = "a pressure on a grid"
     mirrored = False
@@ -284,12 +281,18 @@ class Measured(Pressure):
         reading: str = "cells",
         units: Units = NO_UNITS,
     ) -> Measured:
-        """Create a pressure with this name and these Units.  The other arguments are those of
-        `grid.read_grids`."""
-        grids = read_grids(forward, lateral, values, reading)
-        grid = grids.pop("")
-        others = [cls(f"{name} ({kind})", one, units=units) for kind, one in grids.items()]
-        return cls(name, grid, tuple(others), units)
+        """Create a pressure with this name.  The readings are the pressures of the same values with
+        the other meaning in `grid.READINGS`, and with half the resolution.
+
+        Raises InputError as `grid.checked` does.
+        """
+        points, values, step = checked(forward, lateral, values)
+        peak = float(values.max())
+        (other,) = set(READINGS) - {reading}
+        grid, second = (cropped(points, values / peak, kind) for kind in (reading, other))
+        others = {f"read as {other}": second, "at half its resolution": grid.coarsened()}
+        more = [cls(f"{name} ({label})", one, step, peak, units) for label, one in others.items()]
+        return cls(name, grid, step, peak, units, tuple(more))
 
     @property
     def name(self) -> str:
@@ -302,27 +305,60 @@ class Measured(Pressure):
     def __hash__(self) -> int:
         return hash(self.text)
 
+    @property
+    def _sides(self) -> tuple[Axis, Axis]:
+        return self.grid.forward, self.grid.lateral
+
+    @property
+    def _half(self) -> float:
+        return max(side.half for side in self._sides)
+
+    @property
+    def half_widths(self) -> tuple[float, float]:
+        forward, lateral = (side.half / self._half for side in self._sides)
+        return forward, lateral
+
+    def cell_loads(self, cells: int) -> np.ndarray:
+        """Compute the load on each square, (cells, cells)."""
+        edges = np.arange(cells + 1) * 2.0 / cells - 1.0
+        return of_loads(self.grid.loads(*(side.middle + side.half * edges for side in self._sides)))
+
     @cached_property
     def G_star(self) -> float:
-        return self.grid.reduced_modulus()
+        fine = min(max(FINE, *self.grid.values.shape), FINEST)
+        return largest_displacement(self.cell_loads(fine), *self.half_widths)
 
     @cached_property
     def torque(self) -> float:
-        return self.grid.mean_distance()
+        """Mean distance from the centre, weighted with the pressure.  It is exact for cells."""
+        edges = [side.edges(-(-FINE // side.steps)) for side in self._sides]
+        loads = self.grid.loads(*edges)
+        pairs = zip(edges, self._sides, strict=True)
+        x, y = ((one - side.middle) / self._half for one, side in pairs)
+        return float(
+            np.sum(loads * distances(x, y) / (np.diff(x)[:, None] * np.diff(y))) / loads.sum()
+        )
 
     @property
     def area(self) -> float:
-        return self.grid.area
+        """Area of the cells under pressure, divided by a^2."""
+        cell = self.grid.forward.step * self.grid.lateral.step
+        return np.count_nonzero(self.grid.values) * cell / self._half**2
+
+    @property
+    def _total(self) -> float:
+        """Integral of the values over the rectangle."""
+        return float(self.grid.loads(*(side.edges(1) for side in self._sides)).sum())
 
     @cached_property
     def largest(self) -> float:
-        return self.grid.largest()
+        return float(self.grid.values.max()) * self._half**2 / self._total
 
     @property
     def size_m(self) -> float | None:
         """Half the longer side of the contact, in m; None if the coordinates have no unit."""
         metre = self.units[0]
-        return None if metre is None else self.grid.half * self.grid.step * metre
+        return None if metre is None else self._half * self.step * metre
 
     @property
     def load_N(self) -> float | None:
@@ -330,13 +366,4 @@ class Measured(Pressure):
         metre, pascal = self.units
         if metre is None or pascal is None:
             return None
-        return self.grid.total * self.grid.peak * pascal * (self.grid.step * metre) ** 2
-
-    def cell_loads(self, cells: int) -> np.ndarray:
-        """Compute the load on each square, (cells, cells)."""
-        return self.grid.cell_loads(cells)
-
-    @property
-    def half_widths(self) -> tuple[float, float]:
-        forward, lateral = (width / self.grid.half for width in self.grid.half_widths)
-        return forward, lateral
+        return self._total * self.peak * pascal * (self.step * metre) ** 2
