@@ -9,20 +9,11 @@ from stubs.new_process import output
 
 from microslip.foundation import canonical
 
+TEXTS = [(1, "1"), (1.0, "1"), (0.1 + 0.2, "0.3"), (-0.0, "0"), (-2.5, "-2.5")]
+TEXTS += [(1.5e-8, "1.5e-8"), (1e22, "1e22"), (1000000, "1000000")]
 
-@pytest.mark.parametrize(
-    ("value", "text"),
-    [
-        (1, "1"),
-        (1.0, "1"),
-        (0.1 + 0.2, "0.3"),
-        (-0.0, "0"),
-        (-2.5, "-2.5"),
-        (1.5e-8, "1.5e-8"),
-        (1e22, "1e22"),
-        (1000000, "1000000"),
-    ],
-)
+
+@pytest.mark.parametrize(("value", "text"), TEXTS)
 def test_numbers_have_one_canonical_text(value, text):
     assert canonical.number(value) == text
 

@@ -211,19 +211,16 @@ def test_without_a_compiler_one_line_refuses(command, tmp_path):
 BESIDE_LINEAR_ALGEBRA = """
 import sys
 from microslip.contact.coulomb import shrink
-assert shrink(4.0, 0.0, 1.0) == 0.25
-print("scipy.linalg" in sys.modules)
-import numba, numpy as np
-print(numba.njit(lambda a: a @ a)(np.full((2, 2), 3.0))[0, 0])
-print(numba.njit(lambda a: np.linalg.det(a))(np.diag([2.0, 3.0])))
-import scipy.linalg.cython_blas
-print(scipy.linalg.cython_blas.__name__, scipy.linalg.inv(np.diag([2.0, 4.0]))[1, 1])
+print(shrink(4.0, 0.0, 1.0), "scipy.linalg" in sys.modules)
+import numba, numpy as np, scipy.linalg
+print(numba.njit(lambda a: np.linalg.det(a @ a))(np.diag([2.0, 3.0])))
+print(scipy.linalg.inv(np.diag([2.0, 4.0]))[1, 1], scipy.linalg.cython_blas.__name__)
 """
 
 
 def test_kernels_do_not_import_linear_algebra():
     message = output(BESIDE_LINEAR_ALGEBRA).split()
-    assert message == ["False", "18.0", "6.0", "scipy.linalg.cython_blas", "0.25"]
+    assert message == ["0.25", "False", "36.0", "0.25", "scipy.linalg.cython_blas"]
 
 
 ANSWERS = """

@@ -72,6 +72,11 @@ def test_the_command_line_takes_a_path(mine, capsys):
     answer = json.loads(capsys.readouterr().out)
     assert answer["motion"] == motion_named(f"{NAME}:share=0.5").name
     assert answer["pressure"] == pressure_named("mine/cone.py").name
+    assert main(["point", "mine/none.py", *place]) == 2
+    assert main(["point", "transverse", *place, "--pressure", "mine/none.py"]) == 2
+    lines = capsys.readouterr().err.splitlines()
+    assert len(lines) == 2 and "MOTION = 'mine/none.py'" in lines[0]
+    assert "--pressure = 'mine/none.py'" in lines[1]
 
 
 def test_the_name_in_results_has_a_digest_in_place_of_the_folder(mine):
@@ -177,15 +182,6 @@ def test_a_file_without_a_clear_motion_is_refused_in_one_line(mine, name, conten
         motion_named(name)
     assert refused.value.argument == "motion"
     assert problem in str(refused.value) and "\n" not in str(refused.value)
-
-
-def test_the_command_line_names_the_argument(mine, capsys):
-    place = ("--velocity", "5", "--amplitude", "1")
-    assert main(["point", "mine/none.py", *place]) == 2
-    assert main(["point", "transverse", *place, "--pressure", "mine/none.py"]) == 2
-    lines = capsys.readouterr().err.splitlines()
-    assert len(lines) == 2 and "MOTION = 'mine/none.py'" in lines[0]
-    assert "--pressure = 'mine/none.py'" in lines[1]
 
 
 def test_a_motion_in_si_units(mine):

@@ -3,7 +3,6 @@
 import ast
 import json
 import re
-import shutil
 from pathlib import Path
 
 import pytest
@@ -100,11 +99,8 @@ def package(tmp_path):
 
 def test_results_depend_on_the_rooms_that_make_numbers(package):
     assert Sources(package).solver == SOLVER
-
-
-def test_compiled_code_depends_on_kernels_and_their_imports(package):
     kernels = {"periodic/run.py", "scene/turns.py", "foundation/compiled.py"}
-    assert Sources(package).kernels == kernels
+    assert Sources(package).kernels == kernels  # for compiled code
 
 
 def test_a_result_of_a_method_depends_on_its_file_and_the_imports_of_this_file(
@@ -163,7 +159,7 @@ def test_a_second_process_parses_only_edited_files(package, monkeypatch):
     assert Sources(package).digest(SOLVER) == after and len(parsed) == 1
 
 
-@pytest.mark.parametrize("damage", [lambda b: b[:-9], lambda b: b"", lambda b: b"\xff" + b])
+@pytest.mark.parametrize("damage", [lambda b: b[:-9], lambda b: b"", lambda b: b"[1, 2]"])
 def test_damaged_parse_results_are_replaced(damage, package):
     first = Sources(package).digest(SOLVER)
     (cache,) = (package / "__pycache__").glob("sources.*.json")
@@ -171,11 +167,6 @@ def test_damaged_parse_results_are_replaced(damage, package):
     cache.write_bytes(damage(whole))
     assert Sources(package).digest(SOLVER) == first
     assert cache.read_bytes() == whole
-
-
-def test_in_a_folder_that_is_not_writable_nothing_is_stored(package):
-    (package / "__pycache__").write_text("in the way")
-    assert Sources(package).digest(SOLVER) == Sources(package).digest(SOLVER)
 
 
 def test_importing_the_package_computes_no_digest():
@@ -214,16 +205,3 @@ def test_all_modules_that_requests_load_count():
     outer = "(foundation|config|sweeps|periodic/methods)/"  # these read and write requests
     sources = source_digest.LOADED
     assert {f for f in loaded if not re.match(outer, f)} <= sources.solver | {"__init__.py"}
-
-
-@pytest.mark.slow
-def test_a_scratch_file_is_not_a_method(tmp_path):
-    """The real package, with temporary files of editors in a folder."""
-    copy = tmp_path / "microslip"
-    shutil.copytree(PACKAGE, copy, ignore=shutil.ignore_patterns("__pycache__"))
-    (copy / "periodic/methods/.#euler.py").symlink_to("nobody@nowhere.1:2")
-    for name in ("euler-checkpoint", "euler copy"):
-        (copy / f"periodic/methods/{name}.py").write_text("raise SystemExit('run')\n")
-    program = "from microslip.periodic import method_names\nprint(*method_names.names())"
-    names = output(program, package=copy)
-    assert "copy" not in names and "checkpoint" not in names

@@ -106,10 +106,7 @@ class _Listener(event.Listener):
         if event.kind == "numba:compile":
             is_first = not self.is_compiling and time.monotonic() > self.ended + SPELL
             if is_first and sys.stderr.isatty():
-                print(
-                    "microslip: compiling the solver, once for each kind of contact",
-                    file=sys.stderr,
-                )
+                print("microslip: compiling the solver, once for each kind", file=sys.stderr)
             self.is_compiling = True
         elif self.depth == 0:
             self._started, self._lock = time.monotonic(), _lock()
@@ -155,8 +152,8 @@ def _list_checksums(folder: Path) -> None:
 
 def _remove_damaged(folder: Path) -> None:
     listed = {}
-    with contextlib.suppress(OSError, ValueError):
-        listed = json.loads((folder / "checksums.json").read_bytes())
+    with contextlib.suppress(OSError, TypeError, ValueError):
+        listed = dict(json.loads((folder / "checksums.json").read_bytes()))
     for name in dict(_checksums(folder).items() - listed.items()):
         (folder / name).unlink(missing_ok=True)
 

@@ -21,8 +21,8 @@ import os
 import re
 import sys
 from collections.abc import Callable, Iterable, Iterator
-from contextlib import contextmanager
-from dataclasses import dataclass, fields, replace
+from contextlib import contextmanager, suppress
+from dataclasses import dataclass, field, fields, replace
 from functools import lru_cache
 from pathlib import Path
 from types import ModuleType
@@ -78,7 +78,7 @@ class NamedFile:
         Decimal mark (a key of DECIMALS) and encoding of a data file.
     """
 
-    path: str
+    path: str = field(compare=False)
     digest: str = ""
     numbers: str = ""
     grid: str = GRID
@@ -168,9 +168,10 @@ def read(
     except (OSError, ValueError) as error:
         reason = getattr(error, "strerror", None) or error
         raise InputError(argument, name, f"{place} cannot be read: {reason}") from None
-    digest = (
-        _digest_of_module(place) if place.suffix == ".py" else hashlib.sha256(content).hexdigest()
-    )
+    digest = hashlib.sha256(content).hexdigest()
+    if place.suffix == ".py":
+        sources, names = _imports_of(place)
+        digest = sources.digest(names)
     digest = digest[:DIGITS]
     if file.digest not in ("", digest):
         raise InputError(argument, name, f"{place} has changed: its sha256 begins with {digest}")
@@ -204,11 +205,9 @@ def _place(name: str, argument: str, file: NamedFile, folders: Iterable[str | os
     # an absolute path is the same in every folder
     places = list(dict.fromkeys(Path(here, folder, file.path) for folder in (*folders, here)))
     for place in places:
-        try:
+        with suppress(OSError, ValueError):  # a name that the system does not accept
             if os.path.lexists(place):
                 return place
-        except (OSError, ValueError):  # a name that the system does not accept
-            pass
     looked = ", ".join(str(place) for place in places)
     hint = f"; allowed after the path: {HINT}" if "," in file.path else ""
     raise InputError(
@@ -232,8 +231,7 @@ class FileReader(Generic[T]):
     """
 
     def __init__(self, argument: str, create: Callable[[NamedFile, bytes], T]):
-        self.argument, self.create = argument, create
-        self._cache: dict[str, T] = {}
+        self.argument, self.create = argument, lru_cache(LARGEST_CACHE)(create)
 
     def __call__(self, name: str) -> T:
         """Return the object for a name such as "file:measured.csv".
@@ -245,35 +243,23 @@ class FileReader(Generic[T]):
             name.
         """
         file, content = read(name, self.argument)
-        if file.name not in self._cache:
-            try:
-                packed = next(
-                    (kind for first, kind in PACKED.items() if content.startswith(first)), ""
-                )
-                if packed:
-                    raise ValueError(f"packed ({packed}); allowed: CSV or netCDF as it is")
-                check_format(DECIMALS[file.decimal], file.encoding)
-                self._cache[file.name] = self.create(file, content)
-            except ValueError as error:
-                problem = str(error).replace("decimal = ','", "decimal=comma after the path")
-                raise InputError(self.argument, name, f"{file.path}: {problem}") from None
-            if len(self._cache) > LARGEST_CACHE:
-                del self._cache[next(iter(self._cache))]
-        return self._cache[file.name]
+        try:
+            for kind in (kind for first, kind in PACKED.items() if content.startswith(first)):
+                raise ValueError(f"packed ({kind}); allowed: CSV or netCDF as it is")
+            check_format(DECIMALS[file.decimal], file.encoding)
+            return self.create(file, content)
+        except ValueError as error:
+            problem = str(error).replace("decimal = ','", "decimal=comma after the path")
+            raise InputError(self.argument, name, f"{file.path}: {problem}") from None
 
 
 # Python files
 
 
-def _sources_of(path: Path) -> tuple[Sources, set[str]]:
-    """The files of a folder, and the names of a file and of the files there that it imports."""
+def _imports_of(path: Path) -> tuple[Sources, set[str]]:
+    """The files of a folder; and the names of a file and of the files there that it imports."""
     sources = Sources(path.parent, "")
     return sources, sources.closure([path.name])
-
-
-def _digest_of_module(path: Path) -> str:
-    sources, names = _sources_of(path)
-    return sources.digest(names)
 
 
 @contextmanager
@@ -283,7 +269,7 @@ def _importing_from(path: Path) -> Iterator[None]:
     Afterwards, sys.modules is as before: files in two folders can have the same name, and an
     edited file is run again.
     """
-    beside = {name.partition("/")[0].removesuffix(".py") for name in _sources_of(path)[1]}
+    beside = {name.partition("/")[0].removesuffix(".py") for name in _imports_of(path)[1]}
 
     def pop() -> dict[str, ModuleType]:
         names = [name for name in sys.modules if name.partition(".")[0] in beside]
@@ -387,7 +373,7 @@ class Family(Generic[T]):
         else:
             name, numbers = spec.split(text, self.argument, names)
             cls = self.classes[name]
-        spec.refuse_unknown(text, self.argument, numbers, [field.name for field in fields(cls)])
+        spec.refuse_unknown(text, self.argument, numbers, [one.name for one in fields(cls)])
         try:
             return _shared_object(cls, *sorted(numbers.items()))
         except InputError as error:  # its text omits default values

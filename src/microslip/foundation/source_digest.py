@@ -130,7 +130,7 @@ class Sources:
 
     @cached_property
     def _results(self) -> dict[str, tuple[str, list[str]]]:
-        with contextlib.suppress(OSError, ValueError):
+        with contextlib.suppress(OSError, TypeError, ValueError):
             return dict(json.loads(self._store.read_bytes()))  # another version may store a list
         return {}
 
