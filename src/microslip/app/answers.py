@@ -23,10 +23,23 @@ MOST_COMPLAINTS = 10
 """Largest number of error messages about contacts without a prediction."""
 MOST_LINES = 8
 """Largest number of lines in a figure."""
+NEEDS = {"output": "--table or a range", "figure": "a range"}
+NEEDS |= dict.fromkeys(("decimal", "encoding"), "--table")
+"""Options of `predict` that need another one."""
+FRICTION = ["mu_apparent", "mu_apparent_error", "friction_force_N", "friction_force_error_N"]
+"""Columns of a friction table, besides its axes."""
 
 
 def point(motion: str, **arguments: Any) -> Answer:
-    """Friction at one point, in dimensionless quantities."""
+    """Macroscopic friction at one (velocity, amplitude), in dimensionless quantities.
+
+    Mean forward friction force divided by mu F_z, with an error estimate.  mu_macro is a ratio: 1
+    if the vibration has no effect, 0 if no friction remains.  The apparent coefficient of friction
+    is mu_apparent = mu mu_macro.  F_z is the load without oscillation (the reference load), u_lim
+    the tangential displacement at which the whole contact slides, a the contact radius, and
+    phi_lk(a/2) the angle at which the stick radius is a/2.  Bore means spin: rotation about the
+    contact normal.
+    """
     import microslip
 
     with progress("microslip point") as step:
@@ -54,29 +67,29 @@ def point_motions() -> dict[str, str]:
     return texts | {"FILE.py": "a class of your own, as in mine/soft_square.py:share=0.5"}
 
 
-def predict(
-    motion: str,
-    table: str | None = None,
-    output: str | None = None,
-    figure: str | None = None,
-    decimal: str | None = None,
-    encoding: str | None = None,
-    **arguments: Any,
-) -> Answer:
-    """Friction of a contact, of each contact in a table, or of each contact in a grid of ranges."""
+def predict(motion: str, table: str | None = None, **arguments: Any) -> Answer:
+    """Friction of a real contact, of each contact in a table, or over ranges, in SI units.
+
+    The answer has error estimates, and warnings where the theory does not apply.  Every quantity
+    has a unit.  mu_macro is a ratio: friction with vibration divided by friction without.
+    mu_apparent is the coefficient of friction with vibration.  For a quantity with a standard
+    uncertainty, such as '0.15 +- 0.05' or '10 N +- 5 %', the answer has intervals and the
+    probability of each outcome.  A quantity can be a range: '0..2 um' has 11 values, '0..2 um, 21'
+    has 21, and '0.1..10 mm/s, 21, log' has equal ratios.  The answer is then a table.  For an
+    oscillating normal load there are two reference loads.  Stiffness, mass and damping are made
+    dimensionless by mu times the load without oscillation, force and mu_macro by mu times the mean
+    load.
+    """
     from microslip.foundation.named_files import speaks_of_file
     from microslip.si.predict import checked_inputs, predict_inputs
     from microslip.si.table import grid_of, is_range, read_cases
 
-    ranges = {name: value for name, value in arguments.items() if is_range(name, value)}
-    for name, value, fits, needed in (
-        ("output", output, table or ranges, "--table or a range"),
-        ("figure", figure, ranges, "a range"),
-        ("decimal", decimal, table, "--table"),
-        ("encoding", encoding, table, "--table"),
-    ):
-        if value is not None and not fits:
-            raise InputError(name, value, f"allowed only with {needed}")
+    files = {name: arguments.pop(name) for name in NEEDS if name in arguments}
+    ranges = [name for name, value in arguments.items() if is_range(name, value)]
+    source = "--table" if table is not None else "a range" if ranges else "nothing"
+    for name, value in files.items():
+        if source not in NEEDS[name]:
+            raise InputError(name, value, f"allowed only with {NEEDS[name]}")
     if speaks_of_file(motion):
         from microslip.si.strokes import read_stroke
 
@@ -84,15 +97,15 @@ def predict(
             complain(f"microslip predict: MOTION = {motion!r}: {hint}")
     if table is not None:
         if ranges:
-            raise InputError(*next(iter(ranges.items())), "a range; allowed without --table")
-        form = {"decimal": decimal or ".", "encoding": encoding or "utf-8"}
+            raise InputError(ranges[0], arguments[ranges[0]], "a range; allowed without --table")
+        form = {name: files[name] for name in ("decimal", "encoding") if name in files}
         return _predictions(read_cases(motion, table, arguments, **form), table)
     if ranges:
         cases = grid_of(motion, arguments)
         sizes = sorted(len(values) for _, _, values in cases.axes.values())
-        if figure is not None and (len(sizes) > 2 or sizes[:-1] > [MOST_LINES]):
-            allowed = "allowed with one range, or with a second one of at most"
-            raise InputError("figure", figure, f"{allowed} {MOST_LINES} values")
+        if "figure" in files and (len(sizes) > 2 or sizes[:-1] > [MOST_LINES]):
+            allowed = f"one range, or with a second one of at most {MOST_LINES} values"
+            raise InputError("figure", files["figure"], f"allowed with {allowed}")
         return _predictions(cases)
     inputs = checked_inputs(motion, **arguments)
     with progress("microslip predict"):
@@ -122,34 +135,28 @@ def _predictions(cases: Cases, table: str | None = None) -> Answer:
         if error.argument not in columns:
             raise
         raise InputError("table", table, _problem(error, cases, columns)) from None
-    problems = {
-        k: _problem(one, cases, columns)
-        for k, one in enumerate(answers)
-        if not hasattr(one, "values")
-    }
-    texts = [
-        f"{cases.names[k]}: {text}" if isinstance(answers[k], InputError) else text
-        for k, text in problems.items()
-    ]
+    problems, texts = {}, []
+    for k, (name, one) in enumerate(zip(cases.names, answers, strict=True)):
+        if not hasattr(one, "values"):
+            problems[k] = _problem(one, cases, columns)
+            texts.append(f"{name}: {problems[k]}" if isinstance(one, InputError) else problems[k])
     more = len(texts) - MOST_COMPLAINTS
     for text in texts[:MOST_COMPLAINTS] + [f"{more} more without a prediction"] * (more > 0):
         complain(f"microslip predict: {text}")
     dataset = dataset_of(cases, [problems.get(k, one) for k, one in enumerate(answers)])
     if table is None:
-        points = product(*(values for _, _, values in cases.axes.values()))
-        places = [dict(zip(cases.axes, one, strict=True)) for one in points]
+        places = list(product(*(values for _, _, values in cases.axes.values())))
     else:
-        starts = zip(*cases.starts.values(), strict=True)
-        places = [dict(zip(cases.starts, one, strict=True)) for one in starts]
+        places = list(zip(*cases.starts.values(), strict=True))
         about = {"long_name": "line of the file"}
         dataset = dataset.assign_coords(line=("case", cases.starts["line"], about))
-    rows = [
-        {**place, "error": problems.get(k), **({} if k in problems else one.to_dict()), **place}
-        for k, (place, one) in enumerate(zip(places, answers, strict=True))
-    ]
+    rows = []
+    for k, one in enumerate(answers):
+        place = dict(zip(cases.axes or cases.starts, places[k], strict=True))
+        plain = {} if k in problems else one.to_dict()
+        rows.append({**place, "error": problems.get(k), **plain, **place})
     return Answer(
-        rows,
-        table_text(cases, answers),
+        *(rows, table_text(cases, answers)),
         all(getattr(one, "converged", False) for one in answers),
         csv=lambda: csv_text(dataset.to_dataframe().reset_index()),
         dataset=dataset,
@@ -186,27 +193,36 @@ def _problem(error: InputError | str, cases: Cases, columns: Collection[str] = (
     return " ".join(f"{name}{value}: {allowed}".split())
 
 
-def fit(
-    motion: str,
-    measured: str,
-    output: str | None = None,
-    figure: str | None = None,
-    **arguments: Any,
-) -> Answer:
-    """Coefficient of friction and u_lim from measured friction."""
+def fit(motion: str, measured: str, **arguments: Any) -> Answer:
+    """Coefficient of friction and u_lim from measured friction.
+
+    The coefficient of friction without vibration, and the displacement u_lim at which the whole
+    contact slides, or the shear modulus, from friction measured under vibration.  Each row of the
+    CSV file is a measurement.  The heading names the columns and their units: friction [N] or mu;
+    some of speed [mm/s], amplitude [um], frequency [kHz], load [N]; and friction_error [N] or
+    mu_error.  An option in place of a column applies to all rows.  Exit codes: 0 both numbers
+    determined; 1 only mu determined, or unreadable lines left out; 2 bad input, or neither number
+    determined.
+    """
     import microslip
 
+    files = {arguments.pop(name, None) for name in ("output", "figure")}
     with progress("microslip fit"):
         result = microslip.fit(motion, measured, **arguments)
     for text in result.left_out:
         complain(f"microslip fit: {with_options(text)}; left out")
     complete = len(result.told) == 2 and not result.left_out
-    dataset = result.to_xarray() if output or figure else None
+    dataset = None if files == {None} else result.to_xarray()
     return Answer(result.to_dict(), str(result), complete, dataset=dataset, figure="fit")
 
 
 def response(path: str, output: str | None = None, **arguments: Any) -> Answer:
-    """Forces of a contact along a path."""
+    """Forces of a contact that follows the path of a file.
+
+    Forces, torque, dissipated energy and stick fraction, with error estimates.  The columns of the
+    file are forward, lateral, angle, and load or indentation, with units as in forward [um].  The
+    load is that of the reference state.
+    """
     import microslip
 
     with progress("microslip response"):
@@ -222,23 +238,24 @@ def response(path: str, output: str | None = None, **arguments: Any) -> Answer:
     )
 
 
-def fold(
-    record: str,
-    output: str | None = None,
-    rows: int = 32,
-    frequency: str | None = None,
-    **form: str,
-) -> Answer:
-    """One period of a motion from a record of many periods."""
+def fold(record: str, output: str = "", rows: int = 32, **arguments: str) -> Answer:
+    """One period of a motion from a long record, such as that of a vibrometer.
+
+    The slow drift is removed, and the periods are averaged.  The standard error covers the scatter
+    between the periods and a slow drift of the frequency.  The columns of the record are time and
+    one or more of forward, lateral, angle, and load or indentation, each with its unit, as in time
+    [s],lateral [um].
+    """
     from microslip.foundation.number_text import number_text
     from microslip.si.fold import fold as fold_record
     from microslip.si.inputs import read_input
     from microslip.si.strokes import read_record
 
-    if output is None:
+    if not output:
         raise InputError("output", None, "needed: a .csv file for the period")
+    frequency = arguments.pop("frequency", None)
     hz = None if frequency is None else read_input("frequency", frequency).si
-    time, columns, units = read_record(record, **form)
+    time, columns, units = read_record(record, **arguments)
     try:
         result = fold_record(time, columns, frequency=hz, rows=rows)
     except InputError as error:
@@ -249,13 +266,8 @@ def fold(
             value = f"{error.value:.9g} {units[error.argument]}"
             problem = f"{error.argument} = {value}: {error.allowed}"
         raise InputError("record", record, problem) from None
-    plain: dict[str, Any] = {
-        "frequency_Hz": result.frequency,
-        "frequency_error_Hz": result.frequency_error,
-        "periods": result.periods,
-        "columns": {},
-        "output": output,
-    }
+    plain: dict[str, Any] = {"periods": result.periods, "columns": {}, "output": output}
+    plain |= {"frequency_Hz": result.frequency, "frequency_error_Hz": result.frequency_error}
     hertz = number_text(result.frequency, result.frequency_error, "Hz")
     lines = [f"frequency    {hertz}", f"periods      {result.periods}"]
     errors = []
@@ -275,7 +287,13 @@ def fold(
 
 
 def iwan(output: str | None = None, **arguments: Any) -> Answer:
-    """Iwan model of a contact."""
+    """An Iwan model of a contact: parallel springs with sliders.
+
+    The stiffness and the limit force of parallel Jenkins elements, each a spring in series with a
+    slider, for a contact that moves along a line.  At nu = 0 the model with many elements is exact
+    for every load path.  At nu > 0 it is compared with the full contact, and the difference is part
+    of the error.
+    """
     import microslip
 
     with progress("microslip export iwan"):
@@ -294,42 +312,36 @@ def iwan(output: str | None = None, **arguments: Any) -> Answer:
 
 
 def table(motion: str, output: str | None = None, **arguments: Any) -> Answer:
-    """Friction over ranges of quantities."""
+    """A table of friction over speed, amplitude, load or other quantities.
+
+    One or more quantities are ranges, such as --speed '0.1..10 mm/s, 21, log': 21 values in equal
+    ratios.  '0..2 um' has 11 values in equal steps.
+    """
     from microslip.si.table import dataset_of, grid_of, interpolation_errors
 
-    if "speed" not in arguments:
-        raise InputError("speed", None, "needed")
-    if "mass" in arguments and "drive_stiffness" not in arguments:
-        raise InputError("mass", arguments["mass"], "allowed only with a drive_stiffness")
     grid = grid_of(motion, arguments)
     answers: list[Prediction] = _solved(grid, need_all=True)
-    points = list(product(*(values for _, _, values in grid.axes.values())))
     for where, one in zip(grid.names, answers, strict=True):
         if not getattr(one, "converged", False):
             reason = _problem(one, grid) if isinstance(one, InputError) else one.reason
             complain(f"microslip export table: not converged at {where}: {reason}; no table")
             return Answer({"converged": False}, "", False)
-    axes = zip(grid.axes.values(), zip(*points, strict=True), strict=True)
-    columns: dict[str, tuple[str, Any]] = {name: (unit or "1", x) for (name, unit, _), x in axes}
-    for name, unit in {"mu_apparent": "1", "friction_force": "N"}.items():
-        values = [one.values[name] for one in answers]
-        columns[name] = unit, [one.value for one in values]
-        columns[f"{name}_error"] = unit, [one.error for one in values]
+    dataset = dataset_of(grid, answers)[FRICTION]
+    frame = dataset.to_dataframe().reset_index()
     axis_names = {key: name for key, (name, _, _) in grid.axes.items()}
-    errors = interpolation_errors(dataset_of(grid, answers).mu_apparent.rename(axis_names))
+    errors = interpolation_errors(dataset.mu_apparent.rename(axis_names))
     texts = [f"{'unknown' if x is None else f'{x:.2g}'} along {n}" for n, x in errors.items()]
-    largest = [max(columns[f"{name}_error"][1]) for name in ("mu_apparent", "friction_force")]
+    largest = frame.mu_apparent_error.max(), frame.friction_force_error_N.max()
     comments = [
         f"friction of a contact, motion {motion}, from microslip predict",
         f"largest errors of the values: {largest[0]:.2g} of mu_apparent, {largest[1]:.2g} N",
         "largest difference of mu_apparent from the linear interpolation of the neighbouring "
         f"values: {', '.join(texts)}",
     ]
-    rows = zip(*(values for _, values in columns.values()), strict=True)
-    return _exported([dict(zip(columns, row, strict=True)) for row in rows], columns, comments)
+    return _exported(frame.to_dict("records"), frame, comments)
 
 
-def _exported(plain: Any, columns: dict[str, tuple[str, Any]], comments: list[str]) -> Answer:
+def _exported(plain: Any, columns: Any, comments: list[str]) -> Answer:
     """The answer for a table with comments, of which six digits are printed."""
     text = csv_text(columns, comments, digits=6).rstrip("\n")
     return Answer(plain, text, True, csv=lambda: csv_text(columns, comments), is_table=True)

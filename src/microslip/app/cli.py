@@ -1,4 +1,12 @@
-"""The command line: `microslip COMMAND ...`."""
+"""How far friction falls when a frictional contact is vibrated.
+
+An elastic sphere on a flat (Hertz contact, Coulomb friction at every point) slides forward while it
+also oscillates or rotates.  point and sweep take dimensionless quantities, predict takes units.
+Bore means spin: rotation about the contact normal.
+
+Exit codes: 0 done, 1 not converged, 2 bad input, 74 the output cannot be written, 130 interrupted,
+141 broken pipe.  sweep returns Snakemake's code.
+"""
 
 from __future__ import annotations
 
@@ -6,21 +14,12 @@ import argparse
 from pathlib import Path
 
 from microslip import __version__
-from microslip.app.commands import COMMANDS, SPIN
+from microslip.app import sweep
+from microslip.app.commands import COMMANDS
 from microslip.app.parser import Parser, option, with_options
 from microslip.app.terminal import complain
 from microslip.foundation.errors import CacheError, InputError, shown
 
-SWEEP = "the workflow: maps, datasets and figures, by Snakemake"
-TEXT = (
-    "How far friction falls when a frictional contact is vibrated: an elastic sphere on a flat "
-    "(Hertz contact, Coulomb friction at every point) slides forward while it also oscillates or "
-    f"rotates.  point and sweep take dimensionless quantities, predict takes units.  {SPIN}"
-)
-CODES = (
-    "Exit codes: 0 done, 1 not converged, 2 bad input, 74 the output cannot be written, 130 "
-    "interrupted, 141 broken pipe.  sweep returns Snakemake's code."
-)
 SOURCES = ("measured", "path", "record", "table")
 """Arguments with the path of a file that is read."""
 
@@ -40,8 +39,6 @@ def main(words: list[str]) -> int:
         Snakemake.
     """
     if words[:1] == ["sweep"]:
-        from microslip.app import sweep
-
         return sweep.main(words[1:])
     name = next((one for one in COMMANDS if words[: one.count(" ") + 1] == one.split()), None)
     if name is None:
@@ -55,9 +52,10 @@ def main(words: list[str]) -> int:
 
 def _without_command(words: list[str]) -> int:
     """Print the list of commands, or refuse the words."""
-    commands = {name: one.summary for name, one in COMMANDS.items()} | {"sweep": SWEEP}
+    functions = {name: one.answer for name, one in COMMANDS.items()} | {"sweep": sweep.main}
+    commands = {name: str(one.__doc__).partition("\n")[0] for name, one in functions.items()}
     usage = "%(prog)s [-h] [--version] COMMAND ..."
-    parser = Parser(prog="microslip", usage=usage, description=TEXT, epilog=CODES)
+    parser = Parser(prog="microslip", usage=usage, description=__doc__)
     parser.add_argument("--version", action="version", version=f"microslip {__version__}")
     if {"-h", "--help"} & set(words):
         parser.print_help_with("commands, each with a --help of its own", commands)
@@ -71,7 +69,7 @@ def _without_command(words: list[str]) -> int:
 def parser_of(name: str) -> Parser:
     """The parser of a command in COMMANDS."""
     command = COMMANDS[name]
-    parser = Parser(prog=f"microslip {name}", description=command.text)
+    parser = Parser(prog=f"microslip {name}", description=command.answer.__doc__)
     parser.add(command.places, place=True)
     for title, options in command.groups().items():
         parser.add(options, parser.add_argument_group(title))

@@ -11,13 +11,12 @@ parses the workflow.
 from __future__ import annotations
 
 import os
-from collections.abc import Iterable
 from functools import cache
 from itertools import count
 from pathlib import Path
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
-from microslip.config.settings import Configuration, Figure
+from microslip.config.settings import Configuration
 from microslip.foundation import source_digest
 from microslip.foundation.canonical import canonical_json, fingerprint
 from microslip.foundation.files import write_atomically
@@ -47,6 +46,8 @@ class Product(NamedTuple):
     ----------
     kind : str
         Key of BUILDERS, or a kind of figure.
+    rule : str
+        Rule that makes it: "dataset", "figure" or "explorer".
     stem : str
         Name of the files without ending: the name of the product and the hash of its content.
     links : dict of str to str
@@ -56,6 +57,7 @@ class Product(NamedTuple):
     """
 
     kind: str
+    rule: str
     stem: str
     links: dict[str, str]
     inputs: tuple[str, ...] = ()
@@ -77,41 +79,38 @@ class Plan:
         self._maker = source_digest.LOADED.digest(["app/products.py"])
         self._maker += source_digest.of_script(script) if script else ""
         self.products: dict[str, Product] = {}
-        for name in configuration.datasets:
-            self.products[name] = self._dataset(name)
-        for name, figure in configuration.figures.items():
-            self.products[name] = self._figure(name, figure)
+        for name in (*configuration.datasets, *configuration.figures):
+            self.products[name] = self._product(name)
         self.batches = cache(self._batches)  # not @cache, since it would keep every plan
 
-    def _stem(self, name: str, kind: str, code: Iterable[str], *parts: object) -> str:
-        digest = source_digest.of_builder(*code), self._maker
-        return f"{name}.{fingerprint(kind, digest, *parts)[: request.CONTENT_NAME]}"
-
-    def _dataset(self, name: str) -> Product:
+    def _product(self, name: str) -> Product:
+        """A product, named by all that it is made of."""
         configuration = self.configuration
-        if (sweep := configuration.sweeps.get(name)) is not None:
+        sweep, figure = configuration.sweeps.get(name), configuration.figures.get(name)
+        kind, rule = name, "dataset"
+        inputs: tuple[str, ...] = ()
+        parts: tuple
+        links = {f"{name}.nc": ".nc", f"summaries/{name}.html": ".html"}
+        if figure is not None:
+            kind, rule, inputs = figure.kind, "figure", figure.datasets
+            links = {f"figures/{name}{ending}": ending for ending in (".png", ".pdf")}
+            parts = [self.products[dataset].stem for dataset in inputs], []
+            if kind == "explorer":
+                rule, links = "explorer", {f"{name}.html": ".html"}
+                parts = parts[0], list(self._batches(name))
+        elif sweep is not None:
             kind = "certified" if sweep.is_certified else "sweep"
-            runs = request.runs_of(configuration, name)
-            common = request.settings_of(sweep)
+            common, runs = request.settings_of(sweep), request.runs_of(configuration, name)
             solver = source_digest.of_request(common)
             code = source_digest.of_builder(*MAP_CODE) if sweep.is_certified else ""
-            parts: tuple = (common, sweep.model_dump(mode="json"), runs, solver, code)
+            parts = common, sweep.model_dump(mode="json"), runs, solver, code
         else:
-            kind = name
-            parts = (list(self._batches(name)), configuration.studies[name].model_dump(mode="json"))
-        links = {f"{name}.nc": ".nc", f"summaries/{name}.html": ".html"}
-        return Product(kind, self._stem(name, kind, BUILDERS[kind], *parts), links)
-
-    def _figure(self, name: str, figure: Figure) -> Product:
-        inputs, is_page = figure.datasets, figure.kind == "explorer"
-        stems = [self.products[dataset].stem for dataset in inputs]
-        code = BUILDERS["explorer"] if is_page else drawing.modules_of(figure.kind)
-        more = list(self._batches(name)) if is_page else []
-        endings = (".html",) if is_page else (".png", ".pdf")
-        folder = "" if is_page else "figures/"
-        links = {f"{folder}{name}{ending}": ending for ending in endings}
-        stem = self._stem(name, figure.kind, code, stems, more)
-        return Product(figure.kind, stem, links, inputs)
+            settings = configuration.studies[name].model_dump(mode="json")
+            parts = list(self._batches(name)), settings
+        files = BUILDERS.get(kind) or drawing.modules_of(kind)
+        digest = source_digest.of_builder(*files), self._maker
+        stem = f"{name}.{fingerprint(kind, digest, *parts)[: request.CONTENT_NAME]}"
+        return Product(kind, rule, stem, links, inputs)
 
     def _batches(self, name: str) -> dict[str, Batch | None]:
         """Batches of a product by their path without ending, in the order of the requests.
@@ -193,35 +192,27 @@ class Results:
             paths.append(f"{folder}/{self._chosen(folder, stem, ('.jsonl',))[0]}.jsonl")
         return paths
 
-    def link(self, names: Iterable[str] | None = None) -> None:
+    def link(self) -> None:
         """Let the plain names of products refer to their files, if these exist."""
-        for name in self.plan.products if names is None else names:
-            for plain, ending in self.plan.products[name].links.items():
-                file = self.folder / "data" / f"{self.stems[name]}{ending}"
-                if file.exists():
-                    content.link(file, self.folder / plain)
+        for plain, (_, path) in self.plain().items():
+            if (self.folder / path).exists():
+                content.link(self.folder / path, self.folder / plain)
 
-    def stems_of(self, kind: str) -> list[str]:
-        """Names without ending of the missing files of all datasets, figures or explorer pages.
+    def stems_of(self, rule: str) -> list[str]:
+        """Names without ending of the missing files that a rule makes."""
+        return [self.stems[n] for n in self.missing if self.plan.products[n].rule == rule]
 
-        kind: "dataset", "figure" or "explorer".
-        """
-        figures = self.plan.configuration.figures
-        kinds = dict.fromkeys(figures, "figure") | {
-            name: "explorer" for name, figure in figures.items() if figure.kind == "explorer"
-        }
-        return [self.stems[n] for n in self.missing if kinds.get(n, "dataset") == kind]
-
-    def batches(self, certified: bool) -> dict[str, Batch | None]:
-        """Batches of all missing products that the folder lacks, by the name of their file without
-        ending; either those of certified maps, or all others."""
-        found = {}
-        for name in self.missing:
-            paths = self.batch_files(name)
-            for path, batch in zip(paths, self.plan.batches(name).values(), strict=True):
-                if (batch is None) == certified and not (self.folder / path).exists():
-                    found[path.rpartition("/")[2].removesuffix(".jsonl")] = batch
-        return found
+    def batches(self, certified: bool) -> list[str]:
+        """Names of the batch files that the folder lacks, without ending, for all missing
+        products; either those of certified maps, or all others."""
+        return [
+            Path(path).stem
+            for name in self.missing
+            for path, batch in zip(
+                self.batch_files(name), self.plan.batches(name).values(), strict=True
+            )
+            if (batch is None) == certified and not (self.folder / path).exists()
+        ]
 
     def order_of_batch(self, folder: str, name: str) -> str:
         """JSON text of a batch for its job, or of the name of a certified map."""

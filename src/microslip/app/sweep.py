@@ -35,59 +35,51 @@ SETS_CORES = re.compile(r"-[cje]|--(cores|jobs|executor|profile|workflow-profile
 KEY_AND_VALUE = re.compile(r"[A-Za-z_][\w-]*\w=")
 PRODUCTS = (".nc", ".html", ".pdf", ".png")
 """File extensions of products, which are no configurations."""
-TEXT = (
-    "Run the workflow in the current folder: maps of friction over velocity and amplitude, as "
-    "datasets in results/ and figures in results/figures/.  Existing results are not computed "
-    "again.  A CONFIGURATION is one of {}, from the folder config, here or in the package.  A "
-    "TARGET is a dataset or a figure of the configuration, such as bore, or a file, such as "
-    "results/bore.nc (all of them)."
-)
-CODES = (
-    "All other options are those of Snakemake, see snakemake --help.  The exit code is that of "
-    "Snakemake, and 2 for bad input.  Default options are in profiles/default.  Examples: "
-    "microslip sweep --cores 2; microslip sweep extended; "
-    "microslip sweep --configfile mine.yaml --config points_per_job=10"
-)
 OPTIONS = {
     "configfile": Option("FILE", "the configuration (config/config.yaml); targets go before it"),
     "cores": Option("N", "number of jobs at the same time, at least 1 (all cores)"),
     "report": Option("FILE", "after a run: a page (.html or .zip) of figures and provenance"),
 }
+"""Options in the help text."""
 
 
 def main(arguments: list[str]) -> int:
-    """Run Snakemake with these arguments in this process.
+    """The workflow, by Snakemake: maps, datasets and figures.
 
-    Returns exit code 2 for bad input.  Otherwise Snakemake raises SystemExit with its exit code.
+    It runs in the current folder and writes datasets to results/, and figures to results/figures/.
+    Existing results are not computed again.  A CONFIGURATION is a name in the folder config, here
+    or in the package; the default is config/config.yaml.  A TARGET is a dataset or a figure of the
+    configuration, such as bore, or a file, such as results/bore.nc; all of them are made without
+    one.  All other options are those of Snakemake, see snakemake --help; default options are in
+    profiles/default.  The exit code is that of Snakemake, and 2 for bad input.  Examples: microslip
+    sweep --cores 2; microslip sweep extended --dry-run; microslip sweep --configfile mine.yaml
+    --config points_per_job=10.
     """
     if {"-h", "--help"} & set(arguments):
         usage = "microslip sweep [CONFIGURATION | TARGET ...] [--dry-run] [options of Snakemake]"
-        text = TEXT.format(", ".join(configurations()))
-        parser = Parser(usage=usage, description=text, epilog=CODES)
+        parser = Parser(usage=usage, description=main.__doc__)
         parser.add(OPTIONS)
-        parser.print_help()
+        paths = {name: os.path.relpath(path) for name, path in configurations().items()}
+        parser.print_help_with("configurations", paths)
         return 0
     with redirect_stdout(sys.__stdout__):  # also for the jobs of Snakemake
         return _run(arguments)
 
 
 def _run(arguments: list[str]) -> int:
-    if hint := extras.missing("snakemake"):
-        complain(f"microslip sweep: {hint}")
-        return 2
     from microslip.config.load import ConfigError
 
     try:
+        if hint := extras.missing("snakemake"):
+            raise ConfigError(hint)
         os.getcwd()
         words = ["--snakefile", str(snakefile()), *_named(arguments)]
         if "SNAKEMAKE_PROFILE" not in os.environ and not any(map(SETS_CORES.match, arguments)):
             words = ["--cores", "all", *words]
         _check(words)
-    except FileNotFoundError as error:
-        complain(f"microslip sweep: the current folder: {error.strerror or error}")
-        return 2
-    except (InputError, ConfigError) as error:
-        complain(f"microslip sweep: {error}")
+    except (InputError, ConfigError, FileNotFoundError) as error:
+        place = "the current folder: " if isinstance(error, FileNotFoundError) else ""
+        complain(f"microslip sweep: {place}{getattr(error, 'strerror', None) or error}")
         return 2
     _spare_cache()
     from snakemake.cli import main as snakemake
