@@ -14,7 +14,7 @@ import os
 from functools import cache
 from itertools import count
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 from microslip.config.settings import Configuration
 from microslip.foundation import source_digest
