@@ -31,7 +31,7 @@ import xarray as xr
 from tqdm import tqdm
 
 import microslip
-from microslip.datasets.cells import cells_of
+from microslip.datasets.interpolation import cells_of
 from microslip.sweeps.map_refinement import surpluses_of
 
 TRUTH = {"transverse": 0.1, "bore": 0.2}

@@ -5,7 +5,7 @@ import pytest
 from stubs import certified_stub
 from stubs.eq6_map import places
 
-from microslip.datasets import certified_map
+from microslip.datasets.interpolation import COORDINATES
 from microslip.foundation.errors import InputError
 from microslip.theory import paper
 
@@ -58,4 +58,4 @@ def test_answers_at_any_poissons_ratio_are_within_their_errors(dataset, poisson)
 def test_a_map_of_another_version_is_refused(dataset):
     text = '{"velocity": [0.01, 10], "amplitude": [0, 3]}'
     with pytest.raises(InputError, match="make it again"):
-        dataset.assign_attrs({certified_map.COORDINATES: text}).microslip.at(0.1, 1.0, poisson=0.1)
+        dataset.assign_attrs({COORDINATES: text}).microslip.at(0.1, 1.0, poisson=0.1)

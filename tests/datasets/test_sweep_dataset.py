@@ -17,7 +17,7 @@ from stubs import sweep_stub
 from stubs.sweep_stub import EFFORT, RUNS, Solver
 
 import microslip
-from microslip.datasets import netcdf, point_variables, sweep_dataset
+from microslip.datasets import netcdf, sweep_dataset
 from microslip.foundation import files
 from microslip.foundation.errors import InputError, SolverError
 from microslip.foundation.files import CacheError
@@ -395,7 +395,7 @@ def test_texts_come_back_whole_and_long_ones_are_cut(tmp_path, monkeypatch, solv
     reason = built("continuous_bore", tmp_path).reason.values.tolist()
     assert reason[1:] == message[1:]
     assert message[0].startswith(reason[0].removesuffix("...")) and reason[0].endswith("\u03b1...")
-    assert len(reason[0]) == point_variables.LONGEST_TEXT
+    assert len(reason[0]) == sweep_dataset.LONGEST_TEXT
 
 
 @pytest.mark.slow

@@ -5,16 +5,16 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from stubs import certified_stub, claims_stub, studies_stub
 from stubs.eq6_map import eq6_map
 from stubs.sweep_stub import Solver
 
 import microslip
 from microslip.config import load
 from microslip.datasets import sweep_dataset
+from microslip.datasets.catalogue import FORMS
+from microslip.datasets.variables import TABLE, rows_of
 from microslip.si.output import Prediction
 from microslip.si.response import UNITS
-from microslip.studies import registry
 from microslip.sweeps import batch, request
 
 PAGE = (Path(__file__).parents[2] / "docs" / "reference" / "fields.md").read_text(encoding="utf-8")
@@ -28,6 +28,7 @@ GRIDS = {
     "bore": {"motion": "bore", "velocity": [0.1, 1], "amplitude": [0.5, 2]},
     "continuous_bore": {"motion": "continuous-bore", "velocity": [0.1, 1]},
 }
+MOTIONS = [grid["motion"] for grid in GRIDS.values()]
 RUNS = {
     "force": {"kind": "history", "sweep": "transverse"},
     "tractions": {"kind": "field", "sweep": "continuous_bore"},
@@ -111,41 +112,12 @@ def written(name):
 
 
 @pytest.mark.slow
-def test_every_variable_of_a_sweep_is_in_the_table_and_no_other(monkeypatch):
+def test_every_variable_of_a_sweep_is_in_the_tables_and_no_other(monkeypatch):
+    """The page shows the tables. Variables of certified maps and studies are made from tables."""
     Solver(monkeypatch)
     names = set().union(*map(written, GRIDS))
     fine = {name for name in names if name.removesuffix("_curve") in names and "_curve" in name}
-    assert (
-        set(section("A sweep (`transverse.nc`, `bore.nc`, `continuous_bore.nc`)")) == names - fine
-    )
-
-
-def test_every_variable_of_a_certified_map_is_in_its_table_and_no_other():
-    axes = {"velocity": [0.1, 1], "amplitude": [0.5, 2], "poisson": [0, 0.3], "error": 0.1}
-    map_ = certified_stub.configured("bore", **axes)
-    data = certified_stub.built(map_, lambda point: certified_stub.record(point, 0.5, 0.0))
-    title = "A certified map (`certified/transverse.nc`, `certified/bore.nc`)"
-    assert set(section(title)) == set(map(str, data.variables))
-
-
-STUDIES = {
-    "accuracy": (
-        "The study of accuracy (`accuracy.nc`)",
-        studies_stub,
-        studies_stub.accuracy_result,
-    ),
-    "stability": (
-        "The study of stability (`stability.nc`)",
-        studies_stub,
-        studies_stub.stability_result,
-    ),
-    "claims": ("The check of the paper (`claims.nc`)", claims_stub, claims_stub.result),
-}
-
-
-@pytest.mark.parametrize("study", STUDIES)
-def test_every_variable_of_a_study_is_in_its_table_and_no_other(study):
-    title, stub, result = STUDIES[study]
-    answer, _ = studies_stub.answered(result)
-    data = registry.undivided(stub.configured(), study, answer)
-    assert set(section(title)) == set(map(str, data.variables))
+    groups = {row["group"] for row in TABLE.values()} - {"force", "certified"}
+    forms = {name for motion in MOTIONS for name in FORMS[motion]}
+    assert names - fine == {*rows_of(*groups), *forms, "velocity", "amplitude"}
+    assert PAGE.count("variables.csv\n:header-rows") == 2 and "catalogue.csv\n" in PAGE

@@ -11,9 +11,8 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from microslip.datasets.cells import cells_of, is_certified
-from microslip.datasets.interpolation import Axis, Grid
-from microslip.datasets.variables import variable
+from microslip.datasets.interpolation import COORDINATES, LOST, Axis, Grid, cells_of
+from microslip.datasets.variables import ANCILLARY, variable
 from microslip.foundation.errors import InputError
 
 AXES = ("mass", "damping", "stiffness", "poisson", "amplitude", "velocity", "force")
@@ -21,8 +20,10 @@ AXES = ("mass", "damping", "stiffness", "poisson", "amplitude", "velocity", "for
 SAME = 1e-12
 """Difference below which two coordinates count as equal."""
 ALLOWED = "allowed is a finite number, or several"
-LOST = "microslip.at needs it, and the dataset has lost it: keep it"
+ANY = "microslip.solve computes any"
 
+Ranges = dict[str, tuple[float, float]]
+"""Smallest and largest value of each axis."""
 Interpolation = Callable[..., tuple[np.ndarray, np.ndarray]]
 """Function of points, one array of shape (n,) for each axis, that returns values and error bounds
 of shape (n,)."""
@@ -68,31 +69,26 @@ class Map:
             Outside the range, `microslip.solve` computes any point.
         """
         requests = {"velocity": velocity, "amplitude": amplitude} | others
-        requests = {name: value for name, value in requests.items() if value is not None}
-        name = "velocity" if "force" in self._dataset.coords else "mu_macro"
+        requests = {one: value for one, value in requests.items() if value is not None}
+        data = self._dataset
+        name = "velocity" if "force" in data.coords else "mu_macro"
         for needed in (name, f"{name}_error"):
-            if needed not in self._dataset.variables:
+            if needed not in data.variables:
                 raise InputError(needed, None, LOST)
-        certified = is_certified(self._dataset)
-        axes, function = (_of_cells if certified else _of_grid)(self._dataset, name)
-        scalars = {n: float(c) for n, c in self._dataset.coords.items() if not c.ndim and n in AXES}
-        for one in requests:
-            if one not in {**axes, **scalars}:
-                allowed = f"allowed are {', '.join([*axes, *scalars])}"
-                raise InputError(one, requests[one], f"no coordinate of the map; {allowed}")
-        for one, number in scalars.items():
-            asked = _coordinate(one, requests.pop(one, number))
-            if asked.chunks is None and np.abs(asked.values - number).max(initial=0.0) > SAME:
-                allowed = f"allowed is {number:g}, the only one of the map; microslip.solve"
-                raise InputError(one, float(asked.values.flat[0]), f"{allowed} computes any")
-        arrays = []
+        axes, function = (_of_cells if COORDINATES in data.attrs else _of_grid)(data, name)
+        numbers = {n: float(c) for n, c in data.coords.items() if not c.ndim and n in AXES}
+        ranges = axes | {one: (number, number) for one, number in numbers.items()}
+        for one, value in requests.items():
+            if one not in ranges:
+                allowed = f"no coordinate of the map; allowed are {', '.join(ranges)}"
+                raise InputError(one, value, allowed)
         for one, (low, high) in axes.items():
             if one not in requests:
                 raise InputError(one, None, f"needed; the map has {low:g} to {high:g}")
-            arrays.append(_coordinate(one, requests[one]))
+        chosen = {one: _coordinate(one, requests[one]) for one in ranges if one in requests}
         value, error = xr.apply_ufunc(
-            partial(_block, axes, function),
-            *arrays,
+            partial(_block, {one: ranges[one] for one in chosen}, len(axes), function),
+            *chosen.values(),
             join="outer",
             dask="parallelized",
             keep_attrs=True,
@@ -101,40 +97,32 @@ class Map:
         )
         if name == "mu_macro":
             value = value.clip(-1.0, 1.0)  # a polynomial can leave the range of friction
-        about = {key: self._dataset[name].attrs.get(key) for key in ("long_name", "units")}
+        about = {key: data[name].attrs.get(key) for key in ("long_name", "units")}
         value.attrs = {key: text for key, text in about.items() if text}
+        value.attrs[ANCILLARY] = f"{name}_error"
         error.attrs = {"long_name": f"bound of the error of {name}", "units": "1"}
         answer = xr.Dataset({name: value, f"{name}_error": error})
-        answer[name].attrs["ancillary_variables"] = f"{name}_error"
         answer = answer.assign_coords(
-            {n: variable((), number, n) for n, number in scalars.items() if n not in answer.coords}
+            {n: variable((), number, n) for n, number in numbers.items() if n not in answer.coords}
         )
-        kept = self._dataset.attrs.keys() & {"motion", "pressure"}
-        return answer.assign_attrs({key: self._dataset.attrs[key] for key in sorted(kept)})
+        kept = data.attrs.keys() & {"motion", "pressure"}
+        return answer.assign_attrs({key: data.attrs[key] for key in sorted(kept)})
 
 
-def _of_cells(
-    dataset: xr.Dataset, name: str
-) -> tuple[dict[str, tuple[float, float]], Interpolation]:
+def _of_cells(dataset: xr.Dataset, name: str) -> tuple[Ranges, Interpolation]:
     """Ranges of the axes of a certified map, and its interpolation."""
-    table = cells_of(dataset)
-    directions = table.coordinates.directions
-    ranges = {axis: tuple(getattr(table.coordinates, axis)) for axis in AXES if axis in directions}
+    cells = cells_of(dataset)
+    directions = cells.coordinates.directions
+    axes = [axis for axis in AXES if axis in directions]
 
     def at(*points: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        place = dict(zip(ranges, points, strict=True))
-        return table.at(*(place[direction] for direction in directions))
+        return cells.at(*(points[axes.index(direction)] for direction in directions))
 
-    return ranges, at
+    return {axis: tuple(getattr(cells.coordinates, axis)) for axis in axes}, at
 
 
-def _of_grid(
-    dataset: xr.Dataset, name: str
-) -> tuple[dict[str, tuple[float, float]], Interpolation]:
+def _of_grid(dataset: xr.Dataset, name: str) -> tuple[Ranges, Interpolation]:
     """Ranges of the axes of a regular map, and its interpolation."""
-    for one in (name, f"{name}_error"):
-        if dataset[one].dtype.kind not in "iuf":
-            raise InputError(one, f"of type {dataset[one].dtype}", "allowed are numbers")
     nodes = dataset[[name, f"{name}_error"]]
     if "converged" in dataset:
         nodes = nodes.where(dataset["converged"] == 1)  # a join fills gaps with NaN
@@ -146,42 +134,45 @@ def _of_grid(
     for dim in dims:
         if dim not in nodes.coords or not nodes.sizes[dim]:
             raise InputError(dim, None, LOST)
-        if nodes[dim].dtype.kind not in "iuf":
-            raise InputError(dim, f"of type {nodes[dim].dtype}", "allowed are numbers")
+    for one in (name, f"{name}_error", *dims):
+        if dataset[one].dtype.kind not in "iuf":
+            raise InputError(one, f"of type {dataset[one].dtype}", "allowed are numbers")
+    for dim in dims:
         wrong = nodes[dim].values[~(np.isfinite(nodes[dim].values) & (nodes[dim].values >= 0.0))]
         if wrong.size:
             raise InputError(dim, float(wrong[0]), "in the dataset; allowed are numbers >= 0")
         if nodes.indexes[dim].has_duplicates:
             raise InputError(dim, "is there twice", "in the dataset; allowed is each value once")
     nodes = nodes.sortby(dims).transpose(*dims)
-    least = float(nodes[f"{name}_error"].min())
-    if least < 0.0:
-        raise InputError(f"{name}_error", least, "in the dataset; allowed is 0 or more")
-    if name == "mu_macro":
-        values = nodes[name].values
-        wrong = values[np.abs(values) > 1.0 + nodes[f"{name}_error"].values + SAME]
-        if wrong.size:
-            raise InputError(name, float(wrong[0]), "in the dataset; allowed is -1 to 1")
+    values, errors = (nodes[one].values.astype(float) for one in (name, f"{name}_error"))
+    if (wrong := errors[errors < 0.0]).size:
+        raise InputError(
+            f"{name}_error", float(wrong.min()), "in the dataset; allowed is 0 or more"
+        )
+    if name == "mu_macro" and (wrong := values[np.abs(values) > 1.0 + errors + SAME]).size:
+        raise InputError(name, float(wrong[0]), "in the dataset; allowed is -1 to 1")
+    axes = [nodes[dim].values.astype(float) for dim in dims]
+    ranges = {dim: (float(axis[0]), float(axis[-1])) for dim, axis in zip(dims, axes, strict=True)}
 
-    def grid(part: xr.Dataset) -> Grid:
-        axes = tuple(Axis(part[dim].values.astype(float)) for dim in dims)
-        return Grid(axes, part[name].values.astype(float), part[f"{name}_error"].values)
+    def grid(rows: slice = slice(None)) -> Grid:
+        """Grid of some of the velocities."""
+        parts = tuple(rows if dim == "velocity" else slice(None) for dim in dims)
+        kept = (Axis(axis[part]) for axis, part in zip(axes, parts, strict=True))
+        return Grid(tuple(kept), values[parts], errors[parts])
 
-    ranges = {dim: (float(nodes[dim][0]), float(nodes[dim][-1])) for dim in dims}
-    if "velocity" not in dims or float(nodes["velocity"][0]) != 0.0 or nodes.sizes["velocity"] < 2:
-        return ranges, grid(nodes).at
+    place = dims.index("velocity") if "velocity" in dims else -1
+    if place < 0 or axes[place][0] != 0.0 or len(axes[place]) < 2:
+        return ranges, grid().at
     # The static limit is not interpolated: between it and the smallest velocity, friction rises
     # with the power 2/3 of the velocity.
-    still, moving = grid(nodes.isel(velocity=[0])), grid(nodes.isel(velocity=slice(1, None)))
-    place, slowest = dims.index("velocity"), float(nodes["velocity"][1])
+    still, moving, slowest = grid(slice(1)), grid(slice(1, None)), axes[place][1]
 
     def at(*points: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         rests = points[place] == 0.0
-        between = ~rests & (points[place] < slowest)
-        if between.any():
+        between = points[place][~rests & (points[place] < slowest)]
+        if between.size:
             allowed = f"allowed is 0, or {slowest:g} to {ranges['velocity'][1]:g}"
-            slow = float(points[place][between][0])
-            raise InputError("velocity", slow, f"{allowed}; microslip.solve computes any")
+            raise InputError("velocity", float(between[0]), f"{allowed}; {ANY}")
         value, error = np.empty(len(rests)), np.empty(len(rests))
         for part, chosen in ((still, rests), (moving, ~rests)):
             value[chosen], error[chosen] = part.at(*(one[chosen] for one in points))
@@ -218,18 +209,20 @@ def _coordinate(name: str, value: Any) -> xr.DataArray:
 
 
 def _block(
-    axes: dict[str, tuple[float, float]], function: Interpolation, *parts: np.ndarray
+    ranges: Ranges, count: int, function: Interpolation, *parts: np.ndarray
 ) -> tuple[np.ndarray, ...]:
-    """Evaluate an interpolation at broadcast coordinates, after a check of their ranges."""
+    """Evaluate an interpolation at broadcast coordinates, after a check of their ranges.
+
+    The first `count` coordinates are those of the axes of the map.
+    """
     arrays = np.broadcast_arrays(*parts)
-    for (name, (low, high)), array in zip(axes.items(), arrays, strict=True):
+    points = []
+    for (name, (low, high)), array in zip(ranges.items(), arrays, strict=True):
         outside = array[~((array >= low - SAME) & (array <= high + SAME))]
         if outside.size:
-            allowed = f"allowed is {low:g} to {high:g}, the range of the map; microslip.solve"
-            raise InputError(name, float(outside.flat[0]), f"{allowed} computes any")
-    points = [
-        np.clip(array.ravel().astype(float), low, high)
-        for array, (low, high) in zip(arrays, axes.values(), strict=True)
-    ]
-    value, error = function(*points)
+            allowed = f"allowed is {low:g} to {high:g}, the range of the map"
+            allowed = allowed if high > low else f"allowed is {low:g}, the only one of the map"
+            raise InputError(name, float(outside.flat[0]), f"{allowed}; {ANY}")
+        points.append(np.clip(array.ravel().astype(float), low, high))
+    value, error = function(*points[:count])
     return value.reshape(arrays[0].shape), error.reshape(arrays[0].shape)

@@ -11,29 +11,19 @@ bytes.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator
 
 import numpy as np
 import xarray as xr
 
-from microslip.config.quantities import MU_MACRO
 from microslip.config.settings import Configuration
 from microslip.datasets import sweep_dataset
-from microslip.datasets.variables import variable
+from microslip.datasets.interpolation import BORDERS, COORDINATES
+from microslip.datasets.variables import described
 from microslip.foundation.canonical import canonical_json
 from microslip.sweeps import map_refinement
 from microslip.sweeps.batch import lookup
-from microslip.sweeps.map_coordinates import Box, MapCoordinates
 from microslip.sweeps.request import solver_names
-
-COORDINATES = "map_coordinates"
-"""Attribute that contains the map's coordinates as JSON."""
-BORDERS = {
-    "velocity": ("cell_left", "cell_right"),
-    "amplitude": ("cell_low", "cell_high"),
-    "poisson": ("cell_poisson_low", "cell_poisson_high"),
-}
-"""For each direction: the variables that contain the lower and upper ends of the cells."""
 
 
 def build(
@@ -72,20 +62,19 @@ def build(
     }
     # Poisson's ratio and velocity are scalars, unless they are directions of the map.
     axes = {"velocity": ((), 0.0), "poisson": ((), sweep.poisson[0])} | axes
-    dataset = xr.Dataset(
-        {
-            "mu_macro": variable("point", values, MU_MACRO.description),
-            "mu_macro_error": variable("point", errors, "estimated error of mu_macro"),
-            **_borders(coordinates, cells.cells),
-            "cell_error": variable("cell", cells.errors, "bound of the error in the cell"),
-            "cell_node": (
-                ("cell", "node"),
-                np.array(cell_nodes, np.int32),
-                {"long_name": "points of the cell, the last direction fastest"},
-            ),
-        },
-        coords=axes,
-    )
+    ends = np.array(cells.cells)  # (cell, lower or upper, direction)
+    values_of = {
+        BORDERS[direction][j]: ends[:, j, i]
+        for i, direction in enumerate(coordinates.directions)
+        for j in range(2)
+    } | {"cell_error": cells.errors}
+    variables = {
+        "mu_macro": described("mu_macro", "point", values),
+        "mu_macro_error": described("mu_macro_error", "point", errors),
+        **{name: described(name, "cell", column) for name, column in values_of.items()},
+        "cell_node": described("cell_node", ("cell", "node"), cell_nodes),
+    }
+    dataset = xr.Dataset(variables, axes)
     sweep_dataset.describe_axes(dataset, sweep)
     motion, pressure = solver_names(sweep)
     about = sweep_dataset.provenance(
@@ -113,20 +102,3 @@ def report(dataset: xr.Dataset, name: str) -> Iterator[str]:
     over = int((errors > dataset.error).sum())
     if over:
         yield f"  {over} of {len(errors)} cells are not within {dataset.error:g}"
-
-
-def coordinates_in(dataset: xr.Dataset) -> MapCoordinates:
-    """Read the coordinates of a map.  Raises KeyError or ValueError if the dataset has no
-    coordinates of this kind."""
-    return MapCoordinates.from_json(dataset.attrs[COORDINATES])
-
-
-def _borders(coordinates: MapCoordinates, cells: Sequence[Box]) -> dict:
-    """Return the variables with the lower and upper ends of the cells, in scaled coordinates."""
-    ends, borders = np.array(cells), {}  # ends: (cell, lower or upper, direction)
-    for i, direction in enumerate(coordinates.directions):
-        text = "Poisson's ratio" if direction == "poisson" else direction
-        for j, verb in enumerate(("begins", "ends")):
-            name = BORDERS[direction][j]
-            borders[name] = variable("cell", ends[:, j, i], f"scaled {text} where the cell {verb}")
-    return borders

@@ -1,21 +1,39 @@
-"""Interpolation on a regular grid by local cubics, with an error estimate.
+"""Interpolation of a map by local polynomials, with an error bound.
 
-Along an axis, values are interpolated by the cubic through the four nearest nodes.  To estimate the
-error, each node is also predicted from its neighbours by a cubic with twice the spacing.  The error
-bound of a cell is the largest difference between prediction and value at the nodes of its cubic.
-The true error is sixteen times smaller for a smooth function and about as large at a kink.
+On a regular grid, values are interpolated along each axis by the cubic through the four nearest
+nodes.  To estimate the error, each node is also predicted from its neighbours by a cubic with twice
+the spacing.  The error bound of a cell is the largest difference between prediction and value at
+the nodes of its cubic.  The true error is sixteen times smaller for a smooth function and about as
+large at a kink.
+
+In a certified map, each cell has its own polynomial and its own error bound.
 """
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import dataclass
 from functools import cached_property
-from itertools import product
 
 import numpy as np
+import xarray as xr
+
+from microslip.foundation.errors import InputError
+from microslip.sweeps.map_coordinates import MapCoordinates
 
 NODES = 4
 """Number of nodes of a local cubic."""
+BLOCK = 2**14
+"""Number of points that are interpolated at once.  It limits the memory."""
+COORDINATES = "map_coordinates"
+"""Attribute of a certified map that contains its coordinates as JSON."""
+BORDERS = {
+    "velocity": ("cell_left", "cell_right"),
+    "amplitude": ("cell_low", "cell_high"),
+    "poisson": ("cell_poisson_low", "cell_poisson_high"),
+}
+"""For each direction: the variables that contain the lower and upper ends of the cells."""
+LOST = "microslip.at needs it, and the dataset has lost it: keep it"
 
 
 @dataclass(frozen=True, eq=False)
@@ -41,10 +59,6 @@ class Axis:
     def scaled(self, points: np.ndarray) -> np.ndarray:
         """Return the points, or their logarithms if the axis is logarithmic."""
         return np.log(points) if self.logarithmic else np.asarray(points, float)
-
-    def holds(self, points: np.ndarray) -> np.ndarray:
-        """Return True for points between the ends of the axis, including the ends."""
-        return (points >= self.values[0]) & (points <= self.values[-1])
 
     def cubics(self, points: np.ndarray) -> tuple[np.ndarray, ...]:
         """Return the weights of the local cubics at points.
@@ -116,6 +130,19 @@ def lagrange(nodes: np.ndarray, points: np.ndarray) -> np.ndarray:
     return weights
 
 
+def polynomial(nodes: np.ndarray, weights: Iterable[np.ndarray]) -> np.ndarray:
+    """Sum values at nodes with weights along each axis.
+
+    Terms are summed one by one, so that rounding at a point does not depend on the other points.
+
+    nodes: shape (k, l, ..., n), or with 1 in place of n.  weights: shapes (n, k), (n, l), ...
+    Returns shape (n,).
+    """
+    for one in weights:
+        nodes = sum(weight * part for weight, part in zip(one.T, nodes, strict=True))
+    return nodes
+
+
 @dataclass(frozen=True, eq=False)
 class Grid:
     """Values and errors at the nodes of a regular grid with one or more axes.
@@ -149,16 +176,90 @@ class Grid:
 
         points: coordinates, one array of shape (n,) for each axis.
         """
+        starts = range(0, max(len(points[0]), 1), BLOCK)
+        parts = [self._at(*(one[k : k + BLOCK] for one in points)) for k in starts]
+        value, error = (np.concatenate(part) for part in zip(*parts, strict=True))
+        return value, error
+
+    def _at(self, *points: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         stencils = [axis.cubics(one) for axis, one in zip(self.axes, points, strict=True)]
-        count = len(points[0])
-        value, error = np.zeros(count), np.zeros(count)
-        misses = np.zeros((len(self.axes), count))
-        for corner in product(*(range(index.shape[1]) for _, _, index, _ in stencils)):
-            parts = [(i[:, k], w[:, k]) for (_, _, i, w), k in zip(stencils, corner, strict=True)]
-            node = tuple(index for index, _ in parts)
-            value += np.prod([weight for _, weight in parts], axis=0) * self.values[node]
-            error = np.maximum(error, self.errors[node])
-            misses = np.maximum(misses, [miss[node] for miss in self._misses])
-        for (_, share, _, _), miss in zip(stencils, misses, strict=True):
-            error = error + 4.0 * share * (1.0 - share) * miss
+        count = len(stencils)
+        near = tuple(  # indices of the nodes, shape (k, l, ..., n)
+            np.expand_dims(index.T, [other for other in range(count) if other != k])
+            for k, (_, _, index, _) in enumerate(stencils)
+        )
+        around = tuple(range(count))
+        value = polynomial(self.values[near], [weights for *_, weights in stencils])
+        error = self.errors[near].max(axis=around)
+        for (_, share, _, _), misses in zip(stencils, self._misses, strict=True):
+            error = error + 4.0 * share * (1.0 - share) * misses[near].max(axis=around)
         return value, np.where(np.isnan(value) | np.isnan(error), np.inf, error)
+
+
+@dataclass(frozen=True, eq=False)
+class Cells:
+    """Friction in the cells of a certified map.
+
+    Attributes
+    ----------
+    coordinates : MapCoordinates
+        Scaled coordinates of the map.
+    borders : numpy.ndarray, shape (k, directions, 2)
+        Lower and upper ends of the cells, in scaled coordinates.
+    nodes : numpy.ndarray, shape (k, 5, 5) or (k, 5, 5, 3)
+        Friction at the nodes of each cell.  The axes are the cells, and the directions of the map.
+    bounds : numpy.ndarray, shape (k,)
+        Error bound for each cell.
+    """
+
+    coordinates: MapCoordinates
+    borders: np.ndarray
+    nodes: np.ndarray
+    bounds: np.ndarray
+
+    def at(self, *points: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Return values and error bounds at points inside the map, shape (n,) each.
+
+        In a cell with an unknown node, the values are NaN and the error bounds are infinite.
+
+        points: coordinates, one array of shape (n,) for each direction.
+        """
+        scaled = self.coordinates.scaled(*points)
+        value, error = np.full(len(scaled), np.nan), np.full(len(scaled), np.inf)
+        for (begin, end), nodes, bound in zip(
+            self.borders.transpose(0, 2, 1), self.nodes, self.bounds, strict=True
+        ):
+            here = np.flatnonzero(((scaled >= begin) & (scaled <= end)).all(axis=1))
+            if len(here):
+                degrees = np.array(nodes.shape) - 1
+                shares = degrees * ((scaled[here] - begin) / (end - begin))
+                weights = (
+                    lagrange(np.arange(degree + 1.0)[None], share)
+                    for degree, share in zip(degrees, shares.T, strict=True)
+                )
+                value[here] = polynomial(nodes[..., None], weights)
+                error[here] = bound
+        return value, np.where(np.isnan(value), np.inf, error)
+
+
+def cells_of(dataset: xr.Dataset) -> Cells:
+    """Read the cells of a certified map.
+
+    Raises InputError with the name of a missing variable.
+    """
+    text = dataset.attrs[COORDINATES]
+    try:
+        coordinates = MapCoordinates.from_json(text)
+    except (KeyError, TypeError, ValueError):
+        allowed = "is of another version; allowed: a certified map of this version: make it again"
+        raise InputError(COORDINATES, text, allowed) from None
+    names = [BORDERS[direction] for direction in coordinates.directions]
+    for name in ("mu_macro", "mu_macro_error", "cell_node", "cell_error", *sum(names, ())):
+        if name not in dataset.variables:
+            raise InputError(name, None, LOST)
+    values, cell_nodes = dataset["mu_macro"].values, dataset["cell_node"].values.astype(int)
+    if cell_nodes.max() >= len(values):
+        raise InputError("point", len(values), "allowed are all points of the dataset")
+    borders = np.stack([[dataset[name].values for name in pair] for pair in names])
+    nodes = values[cell_nodes].reshape(-1, *(n + 1 for n in coordinates.degrees))
+    return Cells(coordinates, borders.transpose(2, 0, 1), nodes, dataset["cell_error"].values)

@@ -21,6 +21,8 @@ AXES: dict[type, tuple[str, ...]] = {
     Prediction: (),
     History: ("phase",),
     Period: ("phase", "point"),
+    Response: ("row",),
+    RealResponse: ("row",),
 }
 """Names of a dataset's axes, keyed by the class of the record."""
 OF_POINTS = ("forward_position", "lateral_position", "area", "bound", "dissipated_energy_density")
@@ -58,43 +60,33 @@ def to_xarray(record: Any) -> xr.Dataset:
     InputError
         If the record has another type.
     """
-    if isinstance(record, Response | RealResponse):
-        columns = {
-            name: ("row", values, {"units": unit})
-            for name, (unit, values) in record.columns.items()
-        }
-        return xr.Dataset(columns, attrs=record.attributes)
-    if isinstance(record, Prediction):
-        return record.to_xarray()
     kind = next((kind for kind in AXES if isinstance(record, kind)), None)
     if kind is None:
-        names = ", ".join(kind.__name__ for kind in (*AXES, Response, RealResponse))
-        raise InputError(
-            "record", record, f"allowed is one of {names}, not {type(record).__name__}"
-        )
+        names = ", ".join(one.__name__ for one in AXES)
+        allowed = f"allowed is one of {names}, not {type(record).__name__}"
+        raise InputError("record", record, allowed)
     axes = AXES[kind]
+    if axes == ("row",):
+        columns = {
+            n: (axes, values, {"units": unit}) for n, (unit, values) in record.columns.items()
+        }
+        return xr.Dataset(columns, attrs=record.attributes)
+    if kind is Prediction:
+        return record.to_xarray()
     variables: dict[str, tuple] = {}
     about = {"record": kind.__name__}
     plain = record.values if kind is History else record.to_dict()
     for name, value in plain.items():
         if isinstance(value, np.ndarray):
-            variables[name] = _axes_of(name, value, axes), value
+            own = axes if value.ndim == 2 else axes[1:] if name in OF_POINTS else axes[:1]
+            variables[name] = own, value
         elif isinstance(value, bool | int | float | np.number):
             variables[name] = (), value
-        elif isinstance(value, str):
-            about[name] = value
-        elif isinstance(value, list | tuple):
-            about[name] = "; ".join(value)
         elif isinstance(value, Mapping):
             about[name] = "; ".join(f"{key}: {text}" for key, text in value.items())
+        elif isinstance(value, str | list | tuple):
+            about[name] = value if isinstance(value, str) else "; ".join(value)
     return xr.Dataset(variables, attrs=about)
-
-
-def _axes_of(name: str, value: np.ndarray, axes: tuple[str, ...]) -> tuple[str, ...]:
-    """Return the axis names of the array in a field."""
-    if value.ndim == 2:
-        return axes
-    return (axes[1],) if name in OF_POINTS and len(axes) == 2 else (axes[0],)
 
 
 def table(dataset: xr.Dataset) -> pd.DataFrame:

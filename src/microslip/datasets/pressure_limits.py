@@ -34,63 +34,59 @@ def formulas_under(motion: str, name: str) -> dict:
     forms = {key: form for key, form in of_sphere.items() if form.any_pressure}
     if STATIC not in of_sphere:
         return forms
-    exact = of_sphere[STATIC]
     if pressure.is_indenter:
         zone, static = _of_indenter(motion, pressure)
-        exact = replace(exact, function=_each(static))
     elif pressure.hertzian and motion != "bore":
         # An elliptic stick zone carries the same fraction of the load.
-        zone = paper.static_transverse
-        exact = replace(exact, function=_each(exact.function))
+        zone, static = paper.static_transverse, of_sphere[STATIC].function
     else:
         return forms
-    whole = replace(ZONE, function=_each(zone))
-    return forms | {whole.name: whole, STATIC: exact}
+    exact = {ZONE.name: (ZONE, zone), STATIC: (of_sphere[STATIC], static)}
+    return forms | {key: replace(form, function=_each(f)) for key, (form, f) in exact.items()}
 
 
 def _of_indenter(motion: str, pressure: Pressure) -> tuple[Callable, Callable]:
     """Return two functions of the amplitude: the fraction of the load inside the stick zone, and
     the exact static friction."""
+
+    def turned(function: Callable) -> Callable:
+        return lambda amplitude: function(pressure, float(hertz.bore_angle(amplitude)))
+
     if motion == "bore":
+        radius = turned(indenters.torsion_stick_radius)
+        static = turned(indenters.static_bore)
+    else:
+        radius, static = pressure.stick_radius, partial(indenters.static_transverse, pressure)
 
-        def stick_radius(amplitude: float) -> float:
-            return indenters.torsion_stick_radius(pressure, float(hertz.bore_angle(amplitude)))
+    def zone(amplitude: float) -> float:
+        stick = radius(amplitude) or 0.0
+        return float(pressure.load(stick, 1.0)) if stick > 0.0 else 0.0
 
-        return (
-            lambda a: _load_inside(pressure, stick_radius(a)),
-            lambda a: indenters.static_bore(pressure, float(hertz.bore_angle(a))),
-        )
-    return (
-        lambda a: _load_inside(pressure, pressure.stick_radius(a) or 0.0),
-        partial(indenters.static_transverse, pressure),
-    )
+    return zone, static
 
 
 def _along(curve: Callable, of_sphere: dict[str, ClosedForm]) -> dict[str, ClosedForm]:
     whole = replace(
         of_sphere["mu_closed_form"],
-        function=lambda velocity, amplitude: masing.longitudinal(velocity, amplitude, curve),
+        function=partial(masing.longitudinal, curve=curve),
         description="mu_macro in closed form at Poisson's ratio 0 (first loading with Masing's "
         "memory)",
     )
-    static = replace(of_sphere[STATIC], function=lambda a: 1.0 - curve(a))
-    return {whole.name: whole, STATIC: static}
+    return {
+        whole.name: whole,
+        STATIC: replace(of_sphere[STATIC], function=lambda a: 1.0 - curve(a)),
+    }
 
 
 def _each(function: Callable[[float], float]) -> Callable:
     return np.vectorize(lambda value: float(function(float(value))), otypes=[float])
 
 
-def _load_inside(pressure: Pressure, radius: float) -> float:
-    return float(pressure.load(radius, 1.0)) if radius > 0.0 else 0.0
-
-
 def _steady(pressure: Pressure, of_sphere: dict[str, ClosedForm]) -> dict[str, ClosedForm]:
     """Return the closed forms of the steady bore, with Eqs 17 and 18 instead of Eqs 21 and 22."""
-    forms = {}
-    for part, (name, form) in enumerate(of_sphere.items()):
-        equation, what = (("Eq 17", "mu_macro"), ("Eq 18", "mu_torque"))[part]
-        forms[name] = replace(
+    equations = ("Eq 17", "mu_macro"), ("Eq 18", "mu_torque")
+    return {
+        name: replace(
             form,
             function=lambda velocity, part=part: axisymmetric.bore_of(pressure.bound, velocity)[
                 part
@@ -99,4 +95,7 @@ def _steady(pressure: Pressure, of_sphere: dict[str, ClosedForm]) -> dict[str, C
             long_name=f"steady {what} ({equation})",
             description=f"steady {what} as an integral over the pressure ({equation})",
         )
-    return forms
+        for part, ((name, form), (equation, what)) in enumerate(
+            zip(of_sphere.items(), equations, strict=True)
+        )
+    }

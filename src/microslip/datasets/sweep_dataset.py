@@ -9,6 +9,7 @@ depend on the time, the computer or the number of jobs.
 import math
 from collections.abc import Iterable, Iterator, Sequence
 from itertools import islice
+from typing import Any
 
 import numpy as np
 import xarray as xr
@@ -16,9 +17,9 @@ import xarray as xr
 import microslip
 from microslip.config.quantities import AMPLITUDE, DRIVES, VELOCITY
 from microslip.config.settings import Configuration, Sweep
-from microslip.datasets import netcdf, point_variables, theory_limits
+from microslip.datasets import netcdf, theory_limits
 from microslip.datasets.catalogue import FORMS
-from microslip.datasets.variables import variable
+from microslip.datasets.variables import TABLE, TYPES, described, rows_of
 from microslip.foundation import named_files, source_digest
 from microslip.foundation.canonical import canonical_json
 from microslip.scene.by_name import motion_named
@@ -61,7 +62,7 @@ def build(
             about[f"{role}_file"] = file
     axes = {dim: sweep.axes[dim] for dim in sweep.dims}
     points = islice(rest, math.prod(map(len, axes.values())))
-    of_points, versions = point_variables.variables(sweep, axes, points)
+    of_points, versions = _variables(sweep, axes, points)
     histories = list(rest)
     if len(histories) != len(runs_of(configuration, name)):
         raise ValueError(f"{name}: {len(histories)} single runs")
@@ -85,6 +86,11 @@ GROUPS = {
     "transients": "Forces on the way to steady motion, the data of Figure 5",
 }
 """Titles of the groups in a sweep's file.  Each motion has only some of the groups."""
+ENTRIES = {"history": "periods", "transients": "travel"}
+"""Entry that identifies the requests of a group of single runs."""
+MISSING: dict[type, Any] = {float: np.nan, bool: False, np.int32: 0, str: ""}
+LONGEST_TEXT = 256
+"""Maximum number of characters in a text.  A longer text is truncated and ends with dots."""
 
 
 def _root(sweep: Sweep, of_points: dict) -> xr.Dataset:
@@ -98,15 +104,74 @@ def _root(sweep: Sweep, of_points: dict) -> xr.Dataset:
     return dataset
 
 
-def _parts(sweep: Sweep, histories: Sequence[dict]) -> dict[str, xr.Dataset]:
+def _variables(
+    sweep: Sweep, axes: dict[str, tuple[float, ...]], points: Iterable[dict]
+) -> tuple[dict, set[str]]:
+    """Build the variables of all points, which have the axes of the sweep.
+
+    One record is in memory at a time.  Returns the variables, and the versions of the libraries
+    that computed the records, as JSON.  Raises ValueError if the number of records differs from the
+    number of points.
+    """
+    groups = [] if sweep.velocity else ["force"]
+    table = rows_of(*groups, "points", "oscillation" if sweep.amplitude else "steady")
+    columns: dict[str, np.ndarray] = {}
+    shape = tuple(len(values) for values in axes.values())
+    for name, row in table.items():
+        kind = TYPES[row["kind"]]
+        columns[name] = np.full(shape, MISSING[kind], object if kind is str else kind)
+    versions, count, size = set(), 0, math.prod(shape)
+    for count, record in enumerate(points, 1):
+        if count > size:
+            break
+        versions.add(canonical_json(record["versions"]))
+        for name, column in columns.items():
+            if (value := record["result"].get(name)) is not None:
+                column.flat[count - 1] = _shortened(value) if isinstance(value, str) else value
+    if count != size:
+        raise ValueError(f"{count} results for {size} points")
+    if len(axes.get("poisson", ())) > 1:  # changes from the smallest ratio, with summed errors
+        for name, row in rows_of("change").items():
+            sign = 1.0 if name.endswith("_error") else -1.0
+            columns[name] = columns[row["source"]] + sign * columns[row["source"]][0]
+    return {name: described(name, tuple(axes), columns[name]) for name in columns}, versions
+
+
+def _shortened(text: str) -> str:
+    return text if len(text) <= LONGEST_TEXT else f"{text[: LONGEST_TEXT - 3]}..."
+
+
+def _parts(sweep: Sweep, runs: Sequence[dict]) -> dict[str, xr.Dataset]:
     """Return the dataset of each group of a sweep, keyed by the names in GROUPS."""
-    variables = theory_limits.curves(sweep) | _single_runs(sweep, histories)
+    variables = theory_limits.curves(sweep)
+    failed = any(record["result"].get("crashed") for record in runs)
+    for group, own in ({} if failed else _by_group(runs)).items():  # `report` lists failed runs
+        variables[group] = {name: _of_runs(name, own) for name in rows_of(group)}
     about = {"motion": solver_names(sweep)[0]}
     return {
         name: xr.Dataset(variables[name], attrs={"title": title} | about)
         for name, title in GROUPS.items()
         if name in variables
     }
+
+
+def _by_group(runs: Sequence[dict]) -> dict[str, list[dict]]:
+    """Return the single runs of each group: entries of requests, results and closed forms."""
+    groups: dict[str, list[dict]] = {}
+    for record in runs:
+        request = record["request"]
+        group = next((name for name, key in ENTRIES.items() if key in request), request["kind"])
+        forms = FORMS["continuous-bore"].values() if group == "transients" else ()
+        steady = {form.name: form.function(float(request["velocity"])) for form in forms}
+        groups.setdefault(group, []).append(record["result"] | request | steady)
+    return groups
+
+
+def _of_runs(name: str, runs: list[dict]) -> tuple:
+    """Return a variable of single runs.  Without a dimension `start`, only the first run counts."""
+    dims, source = TABLE[name]["dims"].split(), TABLE[name]["source"]
+    values = [run[source] for run in runs] if "start" in dims else runs[0][source]
+    return described(name, dims, values)
 
 
 def provenance(title: str, settings: dict, versions: set, **more: object) -> dict:
@@ -171,80 +236,3 @@ def describe_axes(dataset: xr.Dataset, sweep: Sweep) -> None:
         about |= {"formula": quantity.unit, "description": quantity.description}
         dataset[name].attrs = about
     dataset["poisson"].attrs = {"long_name": "Poisson's ratio", "units": "1"}
-
-
-# Single runs, the data of Figures 1, 3 and 5
-
-
-def _single_runs(sweep: Sweep, records: Sequence[dict]) -> dict[str, dict]:
-    """For each group of single runs, by name: return a dict of variables."""
-    if not records or any(record["result"].get("crashed") for record in records):
-        return {}  # `report` lists failed runs
-    fields = [record for record in records if record["request"]["kind"] == "field"]
-    transients = [record for record in records if "travel" in record["request"]]
-    histories = [record for record in records if "periods" in record["request"]]
-    groups = {"history": _force_history(histories[0])} if histories else {}
-    groups |= {"field": _traction_field(fields[0])} if fields else {}
-    return groups | ({"transients": _transients(transients)} if transients else {})
-
-
-def _force_history(record: dict) -> dict[str, tuple]:
-    result, request = record["result"], record["request"]
-    step, friction = "history_step", "friction force divided by mu F_z"
-    return {
-        "history_phase": variable(step, result["phase"], "phase of the oscillation", units="rad"),
-        "history_force_forward": variable(step, result["force_forward"], f"forward {friction}"),
-        "history_force_lateral": variable(step, result["force_lateral"], f"lateral {friction}"),
-        "history_velocity": variable((), request["velocity"], "forward velocity of the history"),
-        "history_amplitude": variable((), request["amplitude"], "amplitude of the history"),
-    }
-
-
-FIELD = {
-    "lateral_position": "lateral position divided by a",
-    "forward_position": "forward position divided by a",
-    "traction_lateral": "lateral traction divided by mu F_z/a^2",
-    "traction_forward": "forward traction divided by mu F_z/a^2",
-    "bound": "friction bound divided by mu F_z/a^2",
-}
-
-
-def _traction_field(record: dict) -> dict[str, tuple]:
-    result, velocity = record["result"], record["request"]["velocity"]
-    centre = "lateral centre of rotation divided by a"
-    variables = {f"field_{name}": variable("cell", result[name], FIELD[name]) for name in FIELD}
-    return variables | {
-        "field_velocity": variable((), velocity, "forward velocity of the traction field"),
-        "field_centre_lateral": variable((), result["centre_lateral"], centre),
-    }
-
-
-def _transients(records: Sequence[dict]) -> dict[str, tuple]:
-    velocity = float(records[0]["request"]["velocity"])
-    starts = [record["request"]["start"] for record in records]
-    force, torque = (
-        "forward friction force divided by mu F_z",
-        point_variables.DESCRIPTIONS["mu_torque"],
-    )
-
-    def runs(name: str, text: str, **about: str) -> tuple:
-        values = [record["result"][name] for record in records]
-        return variable(("start", "transient_step"), values, text, float, "1", **about)
-
-    def steady(form: str, text: str, description: str) -> tuple:
-        value = FORMS["continuous-bore"][form].function(velocity)
-        return variable((), value, f"steady {text}", description=f"steady {description}")
-
-    return {
-        "start": ("start", starts, {"long_name": "initial state of the transient"}),
-        "transient_displacement": runs("displacement_forward", "forward travel divided by u_lim"),
-        "transient_force_forward": runs("force_forward", force),
-        "transient_torque": runs("torque", point_variables.TORQUE, description=torque),
-        "transient_velocity": variable((), velocity, "forward velocity of the transients"),
-        "transient_force_theory": steady(
-            "mu_forward_theory", "forward force (Eq 21)", f"{force} (Eq 21)"
-        ),
-        "transient_torque_theory": steady(
-            "mu_torque_theory", "torque (Eq 22)", f"{torque} (Eq 22)"
-        ),
-    }

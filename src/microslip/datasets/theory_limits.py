@@ -9,7 +9,7 @@ import numpy as np
 from microslip.config.settings import Sweep
 from microslip.datasets import catalogue
 from microslip.datasets.catalogue import ClosedForm
-from microslip.datasets.variables import variable
+from microslip.datasets.variables import described, variable
 from microslip.sweeps.request import solver_names
 
 CURVE_POINTS = 241
@@ -28,35 +28,29 @@ def formulas(motion: str, pressure: str = "hertz") -> dict:
 
 
 def _forms(sweep: Sweep) -> dict[str, ClosedForm]:
-    """Return the closed forms for a sweep.  With a drive, only the forms that depend on amplitude
-    alone are returned."""
+    """Return the closed forms of friction for a sweep.  With a drive, only the forms that depend on
+    amplitude alone are returned."""
     forms = formulas(*solver_names(sweep))
     if sweep.drives:
         forms = {name: form for name, form in forms.items() if form.arguments == ("amplitude",)}
     return forms
 
 
-def _drift_forms(sweep: Sweep) -> dict[str, ClosedForm]:
-    """Return the closed forms of the drift velocity, for a sweep over forces."""
-    motion, pressure = solver_names(sweep)
-    form = catalogue.DRIFT_FORMS.get(motion)
-    is_map = [*sweep.drives] == ["force"] and len(sweep.force) > 1
-    if form is None or not is_map or not (form.any_pressure or pressure == "hertz"):
-        return {}
-    return {form.name: form}
-
-
 def variables(sweep: Sweep) -> dict:
     """Evaluate the closed forms at the points of a sweep: name -> (dims, values, attributes)."""
-    limits = {}
-    for name, form in (_forms(sweep) | _drift_forms(sweep)).items():
+    motion, pressure = solver_names(sweep)
+    forms, limits = [*_forms(sweep).values()], {}
+    drift = catalogue.DRIFT_FORMS.get(motion)
+    if drift and [*sweep.drives] == ["force"] and len(sweep.force) > 1:
+        forms += [drift] if drift.any_pressure or pressure == "hertz" else []
+    for form in forms:
         axes = [np.array(sweep.axes[dim]) for dim in form.arguments]
         # In meshgrid and in the datasets, the first argument is the last dimension.
         values = form.function(*np.meshgrid(*axes))
         dims = tuple(dim for dim in form.arguments[::-1] if dim in sweep.dims)
         values = np.reshape(values, [len(sweep.axes[dim]) for dim in dims])
         about: dict = {"description": form.description} if form.description else {}
-        limits[name] = variable(dims, values, form.long_name, **about)
+        limits[form.name] = variable(dims, values, form.long_name, **about)
     return limits
 
 
@@ -73,8 +67,7 @@ def curves(sweep: Sweep) -> dict:
         along, fine = f"{first}_curve", _fine(first, axes[0])
         values = form.function(fine, *(axis[-1] for axis in axes[1:]))
         at = f", at amplitude {axes[1][-1]:g}" if others else ""
-        group = groups.setdefault(f"{along}s", {})
-        group[along] = variable((along,), fine, f"fine {first} axis of the limits")
+        group = groups.setdefault(f"{along}s", {along: described(along, (along,), fine)})
         text = f"{form.description or form.long_name}{at}"
         group[f"{name}_curve"] = variable((along,), values, form.long_name, description=text)
     return groups

@@ -1,8 +1,20 @@
-"""Dataset variables with the attributes of the CF conventions."""
+"""Dataset variables with the attributes of the CF conventions.
+
+The table variables.csv describes every variable of a sweep's dataset, except for the closed forms,
+which catalogue.csv describes.  Its columns are:
+
+- group: part of the dataset, or kind of sweep, that has the variable,
+- name, dims, kind, units: name, dimensions (of variables outside the map), type and unit,
+- source: entry of a run that the values are taken from, or variable that a change refers to,
+- long_name, description: a text that is short enough for the axis of a plot, and a longer one,
+- flag_meanings: meanings of 0 and 1, if these are not "no" and "yes".
+"""
 
 from __future__ import annotations
 
+import csv
 from collections.abc import Hashable, Sequence
+from pathlib import Path
 
 import numpy as np
 import xarray as xr
@@ -11,17 +23,30 @@ from numpy.typing import ArrayLike
 ANCILLARY = "ancillary_variables"
 """Attribute of a variable.  It contains the name of a second variable, which is the error of the
 first."""
+TYPES: dict[str, type] = {"float": float, "int": np.int32, "bool": bool, "str": str}
+"""Types of values by their names in tables."""
 
 
-def attributes(kind: type, long_name: str, units: str = "1") -> dict:
-    """Return the attributes of a variable of type `kind`."""
-    if kind is str:
-        return {"long_name": long_name}
-    if kind is bool:
-        # Booleans are stored as bytes, which xarray reads as bool.
-        values = np.array([0, 1], np.int8)
-        return {"long_name": long_name, "flag_values": values, "flag_meanings": "no yes"}
-    return {"long_name": long_name, "units": units}
+def rows(path: Path) -> list[dict[str, str]]:
+    """Read the rows of a CSV table as dicts."""
+    with open(path, newline="", encoding="utf-8") as file:
+        return list(csv.DictReader(file))
+
+
+TABLE = {row["name"]: row for row in rows(Path(__file__).with_suffix(".csv"))}
+"""Rows of variables.csv by the name of the variable."""
+
+
+def rows_of(*groups: str) -> dict[str, dict[str, str]]:
+    """Return the rows of variables.csv that belong to some groups, by name, in their order."""
+    return {name: row for group in groups for name, row in TABLE.items() if row["group"] == group}
+
+
+def described(name: str, dims: str | Sequence[Hashable], values: ArrayLike) -> tuple:
+    """Return a variable of variables.csv as a tuple for xarray.Dataset."""
+    row = TABLE[name]
+    texts = {key: row[key] for key in ("flag_meanings", "description") if row[key]}
+    return variable(dims, values, row["long_name"], TYPES[row["kind"]], row["units"], **texts)
 
 
 def variable(
@@ -34,10 +59,14 @@ def variable(
 ) -> tuple:
     """Return a variable as a tuple for xarray.Dataset.
 
-    kind: type of the values; more: additional attributes.
+    kind: type of the values; units: unit of numbers; more: additional attributes.
     """
-    values = np.array(values).astype(object if kind is str else kind)
-    return dims, values, attributes(kind, long_name, units) | more
+    about: dict = {"long_name": long_name}
+    if kind is bool:  # stored as bytes, which xarray reads as bool
+        about |= {"flag_values": np.array([0, 1], np.int8), "flag_meanings": "no yes"}
+    elif kind is not str and units:
+        about["units"] = units
+    return dims, np.array(values).astype(object if kind is str else kind), about | more
 
 
 def flags(
@@ -45,14 +74,9 @@ def flags(
 ) -> tuple:
     """Return a variable for xarray.Dataset, as a tuple.  Its values are codes, which are indices of
     `meanings`."""
-    return dims, np.asarray(codes).astype(np.int8), flag_attributes(long_name, meanings)
-
-
-def flag_attributes(long_name: str, meanings: Sequence[str]) -> dict:
-    """Return the attributes of a variable that contains codes.  Codes are indices of `meanings`."""
-    numbers = np.arange(len(meanings), dtype=np.int8)
     words = " ".join(name.replace(" ", "_") for name in meanings)
-    return {"long_name": long_name, "flag_values": numbers, "flag_meanings": words}
+    about = {"flag_values": np.arange(len(meanings), dtype=np.int8), "flag_meanings": words}
+    return dims, np.asarray(codes).astype(np.int8), {"long_name": long_name} | about
 
 
 def link_errors(dataset: xr.Dataset) -> xr.Dataset:

@@ -97,10 +97,14 @@ class Sources:
     def builder(self, *files: str) -> set[str]:
         """Paths of the modules that make a product, besides the physics and the foundation.
 
+        A table that has the name of a module, such as variables.csv, belongs to the module.
+
         files: modules and folders of the package.
         """
         starts = {n for n in self.names for f in files if n == f or n.startswith(f"{f}/")}
-        return self.closure(starts, lambda n: not (is_physics(n) or n.startswith("foundation/")))
+        code = self.closure(starts, lambda n: not (is_physics(n) or n.startswith("foundation/")))
+        tables = {f"{name.removesuffix('.py')}.csv" for name in code}
+        return code | tables & {*self.names}
 
     def _imports(self, modules: Iterable[str]) -> list[str]:
         """Paths of the modules with these names, and of the packages that contain them."""
