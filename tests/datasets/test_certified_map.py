@@ -10,7 +10,7 @@ from stubs.eq6_map import places
 
 from microslip.datasets import certified_map, netcdf
 from microslip.foundation.errors import InputError
-from microslip.theory import masing, paper
+from microslip.theory import paper
 
 ERROR = 1e-2
 
@@ -103,27 +103,3 @@ def test_in_chunks_a_bad_question_is_refused_when_it_is_looked_at(dataset):
 def test_what_a_map_has_lost_is_named(dataset, name):
     with pytest.raises(InputError, match=f"{name} = None: microslip.at needs it"):
         dataset.drop_vars(name).microslip.at(0.1, 1.0)
-
-
-def test_a_map_without_all_its_points_is_refused(dataset):
-    with pytest.raises(InputError, match="all points"):
-        dataset.isel(point=slice(0, 20)).microslip.at(0.1, 1.0)
-
-
-@pytest.mark.long
-def test_of_other_motions_the_map_answers_and_nothing_beyond():
-    """Longitudinal friction has a closed form, with a kink where the whole contact slides."""
-    axes = {"velocity": [0.01, 1], "amplitude": [0.1, 0.9], "error": 0.03}
-    map_ = certified_stub.configured("longitudinal", **axes)
-
-    def answered(request):
-        place = float(request["velocity"]), float(request["amplitude"])
-        return certified_stub.record(request, float(masing.longitudinal(*place)), error=0.0)
-
-    data = certified_stub.built(map_, answered)
-    answer = data.microslip.at([0.02, 0.2, 0.9], [0.15, 0.5, 0.85])
-    truth = masing.longitudinal(*np.meshgrid(answer.velocity, answer.amplitude))
-    assert (abs(answer.mu_macro - truth) <= answer.mu_macro_error + 1e-9).all()
-    assert float(answer.mu_macro_error.max()) <= 0.03
-    with pytest.raises(ValueError, match=r"velocity = 2.0: allowed is 0.01 to 1"):
-        data.microslip.at(2.0, 0.5)

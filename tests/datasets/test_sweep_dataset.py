@@ -71,13 +71,6 @@ def test_points_lie_where_their_coordinates_say(tmp_path, solver):
         assert float(data.poisson) == 0
 
 
-def test_a_continuous_bore_has_one_dimension_and_a_torque(tmp_path, solver):
-    with on_disk("continuous_bore", tmp_path) as data:
-        assert data.mu_macro.dims == data.mu_torque.dims == ("velocity",)
-        assert data.mu_torque.values == pytest.approx(1 / (1 + data.velocity.values))
-        assert float(data.mu_macro.interp(velocity=0.5)) > 0
-
-
 def test_a_list_of_poissons_ratios_is_a_dimension(tmp_path, solver):
     with on_disk("transverse", tmp_path, NU) as data:
         assert data.mu_macro.dims == ("poisson", "amplitude", "velocity")
@@ -225,15 +218,6 @@ def test_a_dataset_is_replaced_whole_or_not_at_all(tmp_path, monkeypatch, solver
     assert {p.name for p in tmp_path.iterdir() if p.is_file()} == {"bore.nc"}
 
 
-def test_a_dataset_of_many_points_can_be_opened(tmp_path):
-    """A file with fewer bytes than values is taken for a damaged one."""
-    axes = {"velocity": np.geomspace(0.01, 1, 70).tolist(), "amplitude": np.arange(70).tolist()}
-    configuration, path = sweep_stub.configured({"transverse": axes}), tmp_path / "transverse.nc"
-    record = {"versions": {}, "result": {"reason": "no periodic state"}}
-    netcdf.write(path, *sweep_dataset.build(configuration, "transverse", [record] * 4900))
-    assert microslip.open_map(path).reason.shape == (70, 70)
-
-
 VERBS = {
     "transpose": lambda data: data.transpose(),
     "stack": lambda data: data.stack(point=("velocity", "amplitude")),
@@ -263,21 +247,6 @@ def test_an_opened_map_supports_the_verbs_of_xarray(chunks, tmp_path, monkeypatc
                     xr.testing.assert_identical(copy.load(), data.load())
 
 
-def test_variables_of_a_map_have_types_of_cf_1_8_and_no_texts(tmp_path, solver):
-    write("transverse", tmp_path / "transverse.nc")
-    with netCDF4.Dataset(tmp_path / "transverse.nc") as raw:
-        kinds = {name: variable.dtype for name, variable in raw.variables.items()}
-    assert set(map(str, kinds.values())) <= {"int8", "int16", "int32", "float32", "float64"}
-
-
-def test_only_codes_have_texts(tmp_path, solver):
-    with (
-        on_disk("bore", tmp_path) as data,
-        pytest.raises(InputError, match="codes = 'mu_macro': allowed is a variable with"),
-    ):
-        microslip.texts(data.mu_macro)
-
-
 def test_codes_of_texts_are_equal_in_all_files_and_texts_are_stored_exactly(tmp_path):
     """Files can therefore be joined; the texts of many points have more than 64 kB."""
     texts = [f"point {k} of \N{GREEK SMALL LETTER NU} {'_' * (k % 3)}x" for k in range(3000)]
@@ -305,40 +274,7 @@ def test_a_single_run_that_fails_is_left_out_and_listed(tmp_path, monkeypatch, s
         assert "transient_torque" not in data and "field_bound" not in data
 
 
-@pytest.mark.slow
-def test_a_sweep_at_an_imposed_resolution_counts_what_misses_its_tolerance(tmp_path):
-    """Without a tolerance all points converge, and the attribute `tolerance` is NaN."""
-    axes = {"velocity": [0.1, 0.3], "amplitude": [1], "cells": 8, "steps": 16}
-    for tolerance, count in ((1e-3, "2 not"), (None, "all")):
-        grids = {"transverse": {**axes, "tolerance": tolerance}}
-        with on_disk("transverse", tmp_path / str(tolerance), grids) as data:
-            summed = next(sweep_dataset.report(data, "transverse"))
-            assert summed == f"transverse: 2 points, {count} converged"
-            assert (data.mu_macro_error > 1e-3).all()
-            assert np.isnan(data.tolerance) == (tolerance is None)
-            if tolerance:
-                reasons = microslip.texts(data.reason).values
-                assert all("at the imposed resolution" in reason for reason in reasons.flat)
-
-
 # Tables, plots and joins in plain xarray
-
-
-@pytest.mark.parametrize("name", GRIDS)
-def test_every_part_of_a_file_is_a_table_of_its_own(name, tmp_path, solver):
-    """A table has a row for each point and a column for each variable."""
-    path = tmp_path / f"{name}.nc"
-    write(name, path)
-    with xr.open_dataset(path) as data:
-        assert len(data.to_dataframe()) == data.mu_macro.size
-        assert set(data.dims) == set(data.mu_macro.dims)
-    groups = netcdf.group_names(path)
-    curves = {"velocity_curves"} | ({"amplitude_curves"} if name != "continuous_bore" else set())
-    assert curves <= set(groups)
-    for group in groups:
-        with xr.open_dataset(path, group=group) as part:
-            assert len(part.to_dataframe()) == max(v.size for v in part.values())
-            assert part.motion == data.motion
 
 
 def test_groups_are_opened_by_name(tmp_path, solver):
@@ -350,20 +286,6 @@ def test_groups_are_opened_by_name(tmp_path, solver):
     reference = "velocity_curves, amplitude_curves, history"
     with pytest.raises(InputError, match=f"group = 'field': allowed is one of {reference}"):
         microslip.open_map("transverse", tmp_path, group="field")
-
-
-@pytest.mark.slow
-def test_files_of_parts_of_an_axis_are_one_dataset(tmp_path, solver):
-    axes = {"amplitude": [0, 2]}
-    for name, velocity in (("slow", [0.1, 1]), ("fast", [10, 100])):
-        write("bore", tmp_path / f"{name}.nc", {"bore": axes | {"velocity": velocity}})
-    paths = [tmp_path / "fast.nc", tmp_path / "slow.nc"]
-    with xr.open_mfdataset(paths, data_vars="minimal", compat="no_conflicts") as both:
-        assert both.velocity.values.tolist() == [0.1, 1, 10, 100]
-        assert both.mu_static.dims == ("amplitude",)
-        assert both.converged.dtype == bool
-        assert float(both.mu_macro.sel(velocity=100, amplitude=2)) == pytest.approx(100 / 103)
-        assert both.motion == "bore"
 
 
 @pytest.mark.long

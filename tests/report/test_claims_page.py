@@ -4,7 +4,6 @@ import html
 import inspect
 import re
 import shlex
-from unittest.mock import Mock
 
 import pytest
 from stubs.claims_stub import answered, configured
@@ -84,19 +83,6 @@ def test_the_command_of_a_point_requests_that_point(request_, monkeypatch):
     for name in ("motion", "model", "cells", "steps"):
         assert call.arguments[name] == request_[name]
     assert call.arguments["pressure"] == request_.get("pressure", HERTZ)
-
-
-@pytest.mark.parametrize("kind", ["history", "field", "patches", "run"])
-def test_another_command_computes_the_request(kind, monkeypatch, capsys):
-    request_ = next(r for r in requests() if r["kind"] == kind)
-    results = {"force_forward": [0.1, 0.2], "least_stick": 0.2, "mu_macro": 0.2}
-    compute = Mock(return_value=results)
-    monkeypatch.setattr("microslip.sweeps.evaluate.computed", compute)
-    python, dash, code = shlex.split(command(request_))
-    assert (python, dash) == ("python", "-c")
-    exec(code, {})
-    compute.assert_called_once_with(request_)
-    assert capsys.readouterr().out == f"{results if kind == 'field' else 0.2}\n"
 
 
 def test_text_of_a_dataset_is_escaped(data):

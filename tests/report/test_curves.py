@@ -60,11 +60,6 @@ def test_under_a_force_the_speed_is_drawn():
     assert "speed" in panel.get_ylabel() and panel.get_xlabel() == "force (N)"
 
 
-def test_one_range_needs_no_legend():
-    upper, lower = drawing.draw("curve", {"curve": curves().isel(load_N=1)}).axes
-    assert upper.get_legend() is None and len(artists(lower, "computed")) == 1
-
-
 def test_rows_model_and_residuals_have_the_values_of_the_dataset():
     dataset = fitted()
     upper, lower = drawing.draw("fit", {"fit": dataset}).axes
@@ -81,23 +76,6 @@ def test_rows_model_and_residuals_have_the_values_of_the_dataset():
     assert [len(axes.patches) for axes in (upper, lower)] == [0, 1]  # the band
     for number in (r"0.3 \pm 0.01$", r"300 \pm 30$ nm"):
         assert number in upper.get_legend().get_title().get_text()
-
-
-def test_parameters_without_errors_are_not_in_the_title():
-    dataset = fitted(errors=False).drop_vars(["u_lim_m"])
-    upper, _ = drawing.draw("fit", {"fit": dataset}).axes
-    assert "lim" not in upper.get_legend().get_title().get_text()
-
-
-def test_rows_with_more_conditions_than_line_styles_are_one_series():
-    dataset = fitted(20)
-    dataset["amplitude_si"] = "row", np.repeat(np.arange(1.0, 11.0), 2)
-    dataset["speed_m_s"] = "row", np.linspace(0.0, 1.0, 20)
-    upper, lower = drawing.draw("fit", {"fit": dataset}).axes
-    (dashes,) = artists(upper, "fitted")  # rows of different conditions are not connected
-    assert dashes.get_linestyle() == "None" and dashes.get_marker() == "_"
-    assert dashes.get_ydata() == pytest.approx(dataset.fitted.values)
-    assert lower.get_xscale() == "linear"
 
 
 def test_maps_of_drift_show_threshold_rest_and_the_rigid_contact():

@@ -8,9 +8,7 @@ import pytest
 from stubs import explorer_stub as stub
 from stubs.in_node import needs_node, page_says
 from stubs.unpacked_period import unpacked
-from stubs.workflow_project import ROOT
 
-from microslip.config import load
 from microslip.datasets.catalogue import FORMS
 from microslip.report.explorer import explorer, page, payload
 
@@ -161,18 +159,6 @@ def test_unconverged_points_missing_periods_and_hidden_limits(made):
     assert (hidden, drawn) == (False, True)
 
 
-@pytest.mark.long
-def test_the_page_of_the_shipped_configuration_has_every_period_and_stays_small(tmp_path):
-    """A table of friction for real contacts would take 0.3 MB more."""
-    configuration = load.load(ROOT / "config" / "explorer.yaml")
-    datasets, records = stub.made_up(tmp_path, configuration)
-    for name in explorer.MAPS:
-        grid = configuration.sweeps[name]
-        assert len(records[name]) == np.count_nonzero(grid.amplitude) * len(grid.velocity)
-    page.write(tmp_path / "explorer.html", datasets, records)
-    assert (tmp_path / "explorer.html").stat().st_size < 13e6
-
-
 def test_a_finer_map_has_periods_for_some_points_of_both_axes():
     axes = {"velocity": {"log": [0.001, 10, 101]}, "amplitude": [0, *range(1, 51)]}
     requests = stub.period_requests(stub.configured(**axes), "bore")
@@ -198,9 +184,3 @@ def test_text_in_a_dataset_cannot_end_the_script(made):
     content = json.loads(json.dumps(made[2]))
     content["made"]["bore"].append(["title", "</script><script>alert(1)"])
     assert page.page(content).count("</script>") == page.page(made[2]).count("</script>")
-
-
-def test_the_log_names_periods_that_did_not_converge(made):
-    lines = list(explorer.report(made[1]))
-    assert lines[0] == "explorer: transverse: 6 periods, 1 not converged"
-    assert "  not converged: amplitude 1.2, velocity 0.02: none to be found" in lines

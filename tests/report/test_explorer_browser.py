@@ -157,17 +157,6 @@ def test_a_phone_shows_one_column_and_scrolls_in_one_direction(phone):
         assert left >= -0.5 and right <= 400.5
 
 
-def test_a_finger_finds_every_control_of_the_phone(phone):
-    selectors = ("button", "input[type=range]", "#limits label", "summary")
-    for selector in selectors:
-        boxes = [box for box in phone.evaluate(BOXES, selector) if box[1] > box[0]]
-        assert boxes
-        for left, right, top, bottom in boxes:
-            assert bottom - top >= 44 and right - left >= 44, selector
-    size = "(id) => parseFloat(getComputedStyle(document.querySelector(id)).fontSize)"
-    assert all(phone.evaluate(size, id) >= 16 for id in ("button", "#value", "#limits label"))
-
-
 @pytest.mark.long
 def test_a_finger_scrolls_the_phone_and_zooms_no_chart(phone):
     for chart in CHARTS:
@@ -195,25 +184,3 @@ def test_the_form_opens_in_view_and_fits_a_phone(phone):
         assert boxes
         for left, right, top, bottom in boxes:
             assert bottom - top >= 44 and left >= 0 and right <= 375, selector
-
-
-@pytest.mark.long
-def test_turning_the_phone_lays_it_out_again(phone):
-    phone.set_viewport_size({"width": 1000, "height": 600})
-    phone.wait_for_timeout(300)
-    assert phone.evaluate("document.documentElement.scrollWidth") <= 1000
-    assert phone.evaluate("element('along-velocity')._fullLayout.dragmode") == "zoom"
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize("width", [800, 1280])
-def test_buttons_of_the_charts_cover_no_data(page, width):
-    page.set_viewport_size({"width": width, "height": 800})
-    page.wait_for_timeout(300)
-    for chart in CHARTS:
-        page.locator(f"#{chart}").hover()
-        (bar,) = page.evaluate(BOXES, f"#{chart} .modebar-group")
-        (area,) = page.evaluate(BOXES, f"#{chart} .bglayer .bg, #{chart} .nsewdrag")[:1]
-        assert bar[3] <= area[2], chart  # the buttons end above the plot area
-        for _left, right, top, bottom in page.evaluate(BOXES, f"#{chart} .legendtext"):
-            assert right <= bar[0] or bottom <= bar[2] or top >= bar[3], chart

@@ -150,29 +150,6 @@ def test_its_panels_have_letters_and_its_axes_quantities_with_units(name):
         assert has_unit or re.search(r"\$[^$]*/[^$]*\$|tilde|motion$", label), label
 
 
-@pytest.mark.parametrize("points", [1, 3])
-def test_any_number_of_points_has_room_for_panels_and_legends(points):
-    (accuracy,) = FIGURES["accuracy_vs_cost"][1].values()
-    names = accuracy["point"].values[:points]
-    data = accuracy.isel(trial=np.isin(accuracy["trial_point"], names)).sel(point=names)
-    figure = drawing.draw("accuracy_vs_work", {"accuracy": data})
-    frames = [axes.get_window_extent() for axes in figure.axes if axes.axison]
-    legends = [legend.get_window_extent() for legend in figure.findobj(Legend)]
-    assert len(frames) == points and len(legends) == 2
-    for index, box in enumerate(legends):
-        assert not any(box.overlaps(other) for other in [*frames, *legends[index + 1 :]])
-
-
-@pytest.mark.long
-@pytest.mark.filterwarnings("ignore:Glyph")
-def test_unknown_characters_and_long_words_fit_the_page(tmp_path):
-    maps = {"a": stub.spanning("\u4e2d\u6587"), "b": stub.spanning("x" * 100)}
-    figure = drawing.draw("map", maps)
-    drawing.save(figure, tmp_path / "maps.pdf")
-    figure.draw_without_rendering()
-    assert figure.get_tightbbox().x1 <= figure.get_size_inches()[0] + 0.02
-
-
 @pytest.mark.parametrize(
     ("low", "high"), [(0.1, 0.13), (0.05, 0.2), (0.02, 0.6), (1e-3, 10), (2e-5, 3e-5), (1e-6, 1e6)]
 )

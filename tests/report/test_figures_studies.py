@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 import xarray as xr
-from matplotlib.colors import to_hex, to_rgb
+from matplotlib.colors import to_hex
 from matplotlib.legend import Legend
 from matplotlib.text import Text
 from stubs import figures_stub as stub
@@ -72,15 +72,6 @@ def test_every_trial_and_the_front_are_drawn_and_no_failure_is_hidden(name, cost
     (beyond,) = artists(first, "beyond")
     (before,) = artists(panels_of(name, accuracy)[0][0], "beyond")
     assert len(beyond.get_xdata()) == len(before.get_xdata()) + 2
-
-
-def test_the_error_of_the_reference_is_hatched_where_it_is_known(accuracy):
-    data = accuracy.copy(deep=True)
-    data["reference_error"][:2] = [np.nan, 1e-2]
-    (first, _), (second, _), *_ = panels_of("accuracy_vs_cost", data)
-    assert not artists(first, "reference")
-    (band,) = artists(second, "reference")
-    assert band.get_hatch() and band.get_y() + band.get_height() == pytest.approx(1e-2)
 
 
 def test_a_profile_shows_the_share_of_points_within_a_ratio_of_the_best(accuracy):
@@ -169,12 +160,3 @@ def test_the_atlas_shows_every_outcome(stability):
     (legend,) = figure.legends
     names = [text.get_text().partition(":")[0] for text in legend.get_texts()]
     assert names == ["converged", "slow", "wrong", "diverged", "blank"]
-
-
-def test_the_fills_of_the_atlas_differ_in_grey():
-    weights = (0.299, 0.587, 0.114)
-    shades = [np.dot(weights, to_rgb(fill)) for _, fill, *_ in atlas.OUTCOMES.values()]
-    assert shades[0] < 0.95  # darker than the white of a method that does not apply
-    assert all(a - b > 0.1 for a, b in zip(shades, shades[1:], strict=False))
-    for shade, (_, _, _, ink, _) in zip(shades, atlas.OUTCOMES.values(), strict=True):
-        assert abs(np.dot(weights, to_rgb(ink)) - shade) > 0.4

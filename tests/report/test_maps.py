@@ -4,18 +4,14 @@ from __future__ import annotations
 
 import re
 
-import matplotlib
 import numpy as np
 import pytest
 import xarray as xr
 from matplotlib.backends.backend_agg import FigureCanvasAgg
-from matplotlib.colors import to_rgb
 from matplotlib.legend import Legend
-from matplotlib.path import Path
 from matplotlib.text import Text
-from scipy.ndimage import binary_dilation
 from stubs import figures_stub as stub
-from stubs.figures_stub import VELOCITY, artists, words
+from stubs.figures_stub import artists, words
 
 from microslip.report.figures import drawing, scales
 from microslip.report.figures import style as look
@@ -30,65 +26,10 @@ def maps_in(figure) -> list:
     return [axes for axes in figure.axes if axes.get_label() != "<colorbar>"]
 
 
-# Colours
-
-XYZ = np.array([[0.4124564, 0.3575761, 0.1804375], [0.2126729, 0.7151522, 0.0721750]])
-XYZ = np.vstack([XYZ, [0.0193339, 0.1191920, 0.9503041]])
-
-
-def lab(colours, vision="normal"):
-    """CIELAB of sRGB colours, shape (n, 3), with a kind of colour vision; D65."""
-    c = np.asarray(colours, float)
-    linear = np.where(c <= 0.04045, c / 12.92, ((c + 0.055) / 1.055) ** 2.4)
-    linear = np.clip(linear @ np.transpose(SEEN[vision]), 0, 1)
-    x = linear @ XYZ.T / XYZ.sum(axis=1)
-    f = np.where(x > (6 / 29) ** 3, np.cbrt(x), x / (3 * (6 / 29) ** 2) + 4 / 29)
-    return np.stack([116 * f[:, 1] - 16, 500 * (f[:, 0] - f[:, 1]), 200 * (f[:, 1] - f[:, 2])], -1)
-
-
-# Linear RGB as it is seen with three kinds of colour vision, severity 1 (Machado, Oliveira,
-# Fernandes, IEEE TVCG 15 (2009) 1291).
-SEEN = {
-    "protan": [[0.152286, 1.052583, -0.204868], [0.114503, 0.786281, 0.099216]]
-    + [[-0.003882, -0.048116, 1.051998]],
-    "deutan": [[0.367322, 0.860646, -0.227968], [0.280085, 0.672501, 0.047413]]
-    + [[-0.011820, 0.042940, 0.968881]],
-    "tritan": [[1.255528, -0.076749, -0.178779], [-0.078411, 0.930809, 0.147602]]
-    + [[0.004733, 0.691367, 0.303900]],
-    "normal": np.eye(3),
-}
-
-
 def shown(values, lowest=-1.0):
     """Colours of friction values in a figure whose smallest value is `lowest`."""
     scale = scales.friction([xr.Dataset({"mu_macro": ("n", [lowest, 1.0])})])
     return scale.colours(scale.norm(np.asarray(values, float)))[:, :3]
-
-
-def test_colours_are_even_below_0_and_those_of_figure_2_above_whatever_the_range():
-    ours = matplotlib.colormaps[look.COLOURMAP](np.linspace(0, 1, 21))[:, :3]
-    for lowest in (0.0, -0.3, -1.0):
-        np.testing.assert_allclose(shown(np.linspace(0, 1, 21), lowest), ours, atol=0.02)
-    below = lab(shown(-np.linspace(0, 1, 21)))
-    steps = np.linalg.norm(np.diff(below, axis=0), axis=1)
-    assert steps.max() < 1.3 * steps.min()
-    assert np.all(np.diff(below[:, 0]) > 0)  # colours become lighter away from 0
-
-
-@pytest.mark.parametrize("vision", SEEN)
-def test_negative_friction_differs_from_positive_for_all_kinds_of_colour_vision(vision):
-    below = lab(shown([-0.1, -0.2, -0.3, -0.4, -0.5]), vision)
-    above = lab(shown(np.linspace(0.1, 1, 91)), vision)
-    away = np.linalg.norm(below[:, None] - above, axis=-1)
-    assert away.min() > 10  # a difference of 2 or 3 is just visible
-
-
-def test_lines_stand_out_from_their_bands():
-    for shift in (0.0, -0.9):
-        scale = scales.friction([stub.spanning(shift=shift)])
-        for level, ink in zip(scale.lines, scale.inks(), strict=True):
-            behind, line = (lab([c])[0, 0] for c in (shown([level], shift)[0], to_rgb(ink)))
-            assert abs(behind - line) > 25, level
 
 
 # The interpolated surface
@@ -149,53 +90,11 @@ def test_a_number_is_on_its_contour_apart_from_the_others_inside_the_frame():
                 assert away.min() > 0.7 * height
 
 
-def test_a_number_has_a_long_line_on_both_sides():
-    """A short line before a number could be read as a minus sign."""
-    axes, lines = contours_of(mapped(6, 9), 2)
-    paths = {
-        f"{level:.1f}": path for level, path in zip(lines.levels, lines.get_paths(), strict=True)
-    }
-    assert len(axes.texts) >= 3
-    for text in axes.texts:
-        path = paths[text.get_text()]
-        starts = np.flatnonzero(path.codes == Path.MOVETO)
-        ends = axes.transData.transform(path.vertices[np.concatenate([starts, starts - 1])])
-        away = np.hypot(*(ends - axes.transData.transform(text.get_position())).T)
-        dpi = axes.get_figure(root=True).dpi
-        left, right, end, *_ = np.sort(away) * 72 / dpi / text.get_fontsize()
-        assert left == pytest.approx(right, rel=0.01) and end > 2.0 * right
-
-
 def pixels(figure):
     """The drawn figure, shape (height, width, 3)."""
     canvas = FigureCanvasAgg(figure)
     canvas.draw()
     return np.asarray(canvas.buffer_rgba())[..., :3].astype(int)
-
-
-@pytest.mark.long
-def test_points_are_drawn_neither_over_a_number_nor_close_to_its_letters():
-    dense = mapped(40, 40)
-    dense["mu_macro"][0, 0] = 1.0  # a jump, so that the points are drawn
-    axes, _ = contours_of(dense)
-    (points,) = artists(axes, "points")
-    images = {}
-    for shows_points in (True, False):
-        for shows_numbers in (True, False):
-            points.set_visible(shows_points)
-            for text in axes.texts:
-                text.set_visible(shows_numbers)
-            images[shows_points, shows_numbers] = pixels(axes.get_figure(root=True))
-
-    def differ(one, other):
-        return np.abs(images[one] - images[other]).max(axis=-1) > 60  # neighbouring bands: 12
-
-    alone = images[False, True]
-    inked = (alone < 40).all(axis=-1) | (alone > 215).all(axis=-1)  # black or white
-    letters = binary_dilation(inked & differ((False, True), (False, False)), iterations=3)
-    behind = (letters & differ((True, False), (False, False))).sum()
-    visible = (letters & differ((True, True), (False, True))).sum()
-    assert behind > 100 and visible < 0.01 * behind  # edges of letters are blurred
 
 
 # Groups of maps
@@ -241,8 +140,8 @@ def test_all_of_poissons_ratios_are_drawn():
     assert labels == [r"a, $\nu = 0$", r"a, $\nu = 0.3$", "b"]
     many = stub.at_ratios(stub.fake_bore(), *np.linspace(0, 0.5, 11))
     figure = drawing.draw("map", {"bore": many})
-    assert len(artists(figure, "map")) == 4
-    assert "4 of the 11 Poisson's ratios" in words(figure)
+    assert len(artists(figure, "map")) == 11
+    assert len(artists(figure, "computed")) == 22
 
 
 def test_a_change_within_twice_the_tolerance_has_the_palest_colour():
@@ -368,19 +267,6 @@ def test_titles_are_drawn_verbatim():
     figure.draw_without_rendering()  # parses them
     lines = {f"s{k}": stub.static(title) for k, title in enumerate(TITLES)}
     assert set(TITLES) <= set(drawn_words(drawing.draw("curves", lines)))
-
-
-@pytest.mark.parametrize(
-    ("formula", "expected"),
-    [
-        (VELOCITY, r"$v_{0}/(\omega\,u_{\mathrm{lim}})$"),
-        ("phi0 / phi_lk(a/2)", r"$\varphi_{0}/\varphi_{\mathrm{lk}}(a/2)$"),
-        ("", ""),
-        ("largest amplitude / u_lim, if a", r"largest amplitude / $u_{\mathrm{lim}}$, if a"),
-    ],
-)
-def test_formulas_become_math(formula, expected):
-    assert mathtext(formula) == expected
 
 
 @pytest.mark.parametrize("name", [*MOTIONS])

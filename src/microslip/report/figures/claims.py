@@ -79,7 +79,7 @@ def _friction(axes: Axes, dataset: xr.Dataset, motion: str) -> None:
     label = rf"the paper's run, $\tilde{{v}} = {look.number(paper)}$"
     ink = {"mfc": "none", "mec": look.VERMILLION, "mew": 1.1, "zorder": 6, "clip_on": False}
     axes.plot(at, dataset[f"{motion}_paper"].values, "s", ms=6.5, label=label, gid="paper", **ink)
-    axes.set_xlim(0.0, amplitude[-1])
+    axes.set_xlim(0.0, max(amplitude[-1], at.max()))
 
 
 def _shares(axes: Axes, dataset: xr.Dataset, motion: str, symbol: str) -> None:

@@ -51,8 +51,8 @@ COLUMNS = {1: 1, 2: 2, 4: 2}
 """Number of columns for 1, 2 and 4 maps. Any other number of maps is drawn in 3 columns."""
 HEIGHT = {1: 3.6, 2: 2.6, 3: 2.0, 4: 1.75}
 """Height of a row in inches, by the number of columns."""
-MOST_RATIOS = 4
-"""Maximum number of Poisson's ratios of a dataset in a figure."""
+ORDER = (0, 5, 7, 6, 1, 2, 3, 4)
+"""Order of the colours in cuts: neighbours differ even if their markers cover each other."""
 FINE = 193
 """Number of coordinates along each axis of a certified map that is drawn."""
 
@@ -94,24 +94,11 @@ def draw(*datasets: xr.Dataset) -> Figure:
         page, side = figure.subfigures(2, 1, height_ratios=(height, 2.7), squeeze=False).flat
     _fill(page, panels.grid(page, len(drawn), across), drawn, across, aligned)
     if has_cuts:
-        parts = _some(at_each_poisson(datasets[0]))
+        parts = at_each_poisson(datasets[0])
         left, top = panels.grid(side, 2, 1 if len(drawn) == 1 else 2)
         _cut(left, parts, "amplitude", parts[0]["velocity"][0])
         _cut(top, parts, "velocity", parts[0]["amplitude"][-1])
-    notes = [
-        f"{MOST_RATIOS} of the {dataset.sizes['poisson']} Poisson's ratios in the dataset"
-        for dataset in datasets
-        if "cell_error" not in dataset and dataset.sizes.get("poisson", 1) > MOST_RATIOS
-    ]
-    if notes:
-        figure.suptitle(notes[0], x=0.01, ha="left", fontsize=look.HEADING)
     return figure
-
-
-def _some(parts: list[xr.Dataset]) -> list[xr.Dataset]:
-    """Select at most MOST_RATIOS datasets, evenly spaced."""
-    chosen = np.linspace(0, len(parts) - 1, MOST_RATIOS).round().astype(int)
-    return [parts[k] for k in np.unique(chosen)]
 
 
 def _panels(dataset: xr.Dataset, titled: bool) -> list[Panel]:
@@ -122,9 +109,9 @@ def _panels(dataset: xr.Dataset, titled: bool) -> list[Panel]:
     if "force" in dataset.dims:
         return [
             Panel(one, "velocity", _joined(title or look.axis(look.quantity(one, "velocity")), one))
-            for one in _some(at_each_poisson(dataset))
+            for one in at_each_poisson(dataset)
         ]
-    parts = _some(at_each_poisson(dataset))
+    parts = at_each_poisson(dataset)
     first, *others = parts
     titles = [
         _joined(title, first) if others or float(first["poisson"]) else title,
@@ -374,9 +361,13 @@ def _cut(axes: Axes, parts: Sequence[xr.Dataset], dim: str, at: xr.DataArray) ->
         ink: look.Ink = {"clip_on": False}
         ratio = f", {look.ratio(part)}" if len(parts) > 1 else ""
         if len(parts) > 1:
-            color, marker, _ = look.LINES[(0, 5, 7, 6)[index]]
+            color, marker, _ = look.LINES[ORDER[index % len(ORDER)]]
             # Later markers are smaller and in front, so that all markers at one place can be seen.
-            ink |= {"color": color, "marker": marker, "ms": 3.2 + 1.3 * (len(parts) - 1 - index)}
+            ink |= {
+                "color": color,
+                "marker": marker,
+                "ms": 3.2 + min(1.3, 3.9 / len(parts)) * (len(parts) - 1 - index),
+            }
         points = moving(part) if dim == "velocity" else part
         points = points.sel({other: at})
         names = ("mu_macro", "mu_macro_error", "converged")
