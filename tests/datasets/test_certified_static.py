@@ -25,15 +25,6 @@ def built(**settings):
     return certified_stub.built(map_, record)
 
 
-def test_only_points_at_velocity_0_are_asked():
-    map_ = certified_stub.configured("transverse", **STATIC)
-    requests = certified_stub.first_requests(map_)
-    # two patches meet at the amplitude 1, from which the whole contact slides
-    assert len(requests) == 9
-    assert {request["velocity"] for request in requests} == {"0"}
-    assert "1" in {request["amplitude"] for request in requests}
-
-
 def test_the_closed_form_is_met_to_within_the_errors(tmp_path):
     path = tmp_path / "certified_transverse.nc"
     netcdf.write(path, built())

@@ -42,22 +42,6 @@ def test_trials_are_rows_with_their_errors(accuracy):
     assert (rows_of(accuracy, point="steady").trial_steps.values == 0).all()
 
 
-def test_the_dataset_names_every_computer_that_it_was_timed_on():
-    def timed(request):
-        result = accuracy_result(request)
-        if "seconds" in result:
-            host = "a" if request["kind"] == "choice" else "b"
-            result["machine"] = {"cpu": "AMD EPYC 7B13", "host": host, "threads": 1}
-        return result
-
-    data = registry.undivided(configured(), "accuracy", answered(timed)[0])
-    timed_trials = np.isfinite(data.seconds.values)
-    machines = data.trial_machine.values[timed_trials]
-    assert "b" in data.machine_host.values[machines]
-    assert data.machine_cpu.values.tolist() == ["AMD EPYC 7B13"] * 2
-    assert data.machine_threads.values.tolist() == [1, 1]
-
-
 def test_the_choice_that_follows_a_tolerance_claims_an_error(accuracy):
     auto = rows_of(accuracy, point="mid", model="auto")
     assert set(auto.trial_method.values) == {"shipped"}
@@ -121,16 +105,6 @@ def test_maps_hold_the_cheapest_model_that_is_good_enough(accuracy):
     assert tight.transverse_cheapest_seconds.values == pytest.approx(16e-3)
     assert (tight.bore_cheapest_cells.values <= 16).all()
     assert accuracy.bore_cheapest.sizes["bore_amplitude"] == 2
-
-
-def test_where_no_model_is_good_enough_the_map_is_empty():
-    def result(request):
-        answer = accuracy_result(request)
-        return answer | {"mu_macro": 0.9} if request["kind"] == "trial" else answer
-
-    data = registry.undivided(configured(), "accuracy", answered(result)[0])
-    assert (data.bore_cheapest == "").all()
-    assert np.isnan(data.bore_cheapest_seconds).all()
 
 
 # Outcomes of probes
@@ -215,14 +189,3 @@ def test_reports_count(accuracy, atlas):
         "projected-gradient: 9 converged, 0 slow, 0 wrong, 0 diverged",
         "euler: 0 converged, 5 slow, 0 wrong, 0 diverged",
     ]
-
-
-def test_the_digest_of_results_follows_what_was_asked():
-    def digest(**changes):
-        configuration = configured(stability=changes)
-        return registry.undivided(
-            configuration, "stability", answered(stability_result)[0]
-        ).results_digest
-
-    assert digest() == digest()
-    assert digest() != digest(methods=["shipped", "projected-gradient"])

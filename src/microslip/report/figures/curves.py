@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 from itertools import product
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 import xarray as xr
@@ -203,7 +203,8 @@ def _panel(
     if notes:
         at = ", ".join(f"${look.number(one)}$" for one in sorted(notes))
         text = f"lines: limit for velocity to 0; markers: velocity {at}"
-        room = axes.get_figure(root=True).get_size_inches()[0] / (1.0 if alone else 1.5) - 0.7
+        figure: Any = axes.get_figure(root=True)
+        room = figure.get_size_inches()[0] / (1.0 if alone else 1.5) - 0.7
         text = look.wrapped(text, room, look.HEADING)
         axes.set_title(text, loc="left", fontsize=look.HEADING)
     return handles
