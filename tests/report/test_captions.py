@@ -13,7 +13,7 @@ import pytest
 from PIL import Image
 from stubs import figures_stub
 
-from microslip.config.settings import KINDS
+from microslip.config.kinds import KINDS
 from microslip.report.figures import drawing
 
 ROOT = Path(__file__).parents[2]

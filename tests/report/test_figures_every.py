@@ -15,7 +15,7 @@ from matplotlib.text import Text
 from stubs import certified_stub, fit_stub
 from stubs import figures_stub as stub
 
-from microslip.config.settings import KINDS
+from microslip.config.kinds import KINDS
 from microslip.report.figures import drawing, panels
 from microslip.report.figures import style as look
 
@@ -64,10 +64,6 @@ def arguments() -> dict[str, tuple[str, dict]]:
 
 
 FIGURES = arguments()
-
-
-def test_the_kinds_of_figures_are_those_of_the_configuration():
-    assert {*KINDS} - {"explorer"} == {*drawing.DRAWN} - {"fit", "curve"}
 
 
 SOME = ("history", "transients", "drives", "certified static", "lines", "coarse", "coarse motion")

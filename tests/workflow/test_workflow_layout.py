@@ -6,7 +6,7 @@ from types import SimpleNamespace
 import pytest
 import yaml
 
-from microslip.config.settings import KINDS
+from microslip.config.kinds import KINDS
 from microslip.report import dataset_page
 
 ROOT = Path(__file__).parents[2]

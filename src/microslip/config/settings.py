@@ -9,11 +9,12 @@ import re
 from collections.abc import Callable
 from dataclasses import dataclass
 from itertools import pairwise
-from typing import Annotated, Any, NamedTuple, Self
+from typing import Annotated, Any, Self
 
 from pydantic import BaseModel, ConfigDict, GetCoreSchemaHandler, model_validator
 from pydantic_core import CoreSchema, core_schema
 
+from microslip.config.kinds import KINDS
 from microslip.foundation.arguments import LARGEST
 from microslip.foundation.canonical import number
 from microslip.foundation.errors import InputError
@@ -416,40 +417,6 @@ class Sweep(Settings):
 
 
 # Figures
-
-
-class Kind(NamedTuple):
-    """A kind of figure.
-
-    Attributes
-    ----------
-    study : str
-        Study whose dataset is drawn; empty for figures of sweeps.
-    run : dict
-        Default settings of the single run that is drawn; empty if sweeps or studies are drawn.
-    motion : str
-        Motion that the sweep must have; empty if every motion is allowed.
-    """
-
-    study: str = ""
-    run: dict[str, Any] = {}
-    motion: str = ""
-
-
-_SIZES = {"cells": None, "steps": None}
-KINDS = {
-    "history": Kind(run={"velocity": 0.1, "amplitude": 1.0, "periods": 4, **_SIZES}),
-    "map": Kind(),
-    "field": Kind(run={"velocity": 0.5, "cells": None}, motion="continuous-bore"),
-    "curves": Kind(),
-    "transients": Kind(run={"velocity": 0.8, "travel": 5.0, **_SIZES}, motion="continuous-bore"),
-    "explorer": Kind(),
-    **{f"accuracy_{kind}": Kind("accuracy") for kind in ("profile", "vs_cost", "vs_work")},
-    "model_map": Kind("accuracy"),
-    "stability_atlas": Kind("stability"),
-    **{f"claims_{kind}": Kind("claims") for kind in ("static", "patches")},
-}
-"""Kinds of figures by name."""
 
 
 def _names(value: Any) -> tuple[str, ...]:

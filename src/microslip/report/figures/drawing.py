@@ -21,33 +21,17 @@ from contextlib import suppress
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from microslip.config.kinds import KINDS
 from microslip.foundation.files import writing_beside
 
 if TYPE_CHECKING:
     import xarray as xr
     from matplotlib.figure import Figure
 
-DRAWN = {
-    "history": "runs.history",
-    "map": "maps.draw",
-    "field": "field.draw",
-    "curves": "curves.draw",
-    "transients": "runs.transients",
-    "accuracy_profile": "accuracy.profile",
-    "accuracy_vs_cost": "accuracy.versus_cost",
-    "accuracy_vs_work": "accuracy.versus_work",
-    "model_map": "accuracy.model_map",
-    "stability_atlas": "atlas.draw",
-    "claims_static": "claims.static",
-    "claims_patches": "claims.patches",
-    "fit": "predictions.fit",
-    "curve": "predictions.curve",
-}
-"""Module and function that draw each kind of figure.
-
-The kinds fit and curve are drawn by commands, from their own results. All other kinds except
-explorer are those of config.settings.KINDS.
-"""
+DRAWN = {kind: one.draw for kind, one in KINDS.items() if one.draw}
+DRAWN |= {"fit": "predictions.fit", "curve": "predictions.curve"}
+"""Module and function that draw each kind of figure.  Commands draw the kinds fit and curve, from
+their own results."""
 FORMATS: dict[str, tuple[dict[str, None], str]] = {
     "png": ({"Software": None}, "Description"),
     "pdf": ({"Creator": None, "Producer": None, "CreationDate": None}, "Subject"),

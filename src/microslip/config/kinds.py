@@ -1,0 +1,47 @@
+"""Kinds of figures."""
+
+from __future__ import annotations
+
+from typing import Any, NamedTuple
+
+
+class Kind(NamedTuple):
+    """A kind of figure.
+
+    Attributes
+    ----------
+    draw : str
+        Module of microslip.report.figures and its function that draws the figure; empty for a page.
+    study : str
+        Study whose dataset is drawn; empty for figures of sweeps.
+    run : dict
+        Default settings of the single run that is drawn; empty if sweeps or studies are drawn.
+    motion : str
+        Motion that the sweep must have; empty if every motion is allowed.
+    """
+
+    draw: str
+    study: str = ""
+    run: dict[str, Any] = {}
+    motion: str = ""
+
+
+_SIZES = {"cells": None, "steps": None}
+_FIRST = {"velocity": 0.1, "amplitude": 1.0, "periods": 4, **_SIZES}
+_APPROACH = {"velocity": 0.8, "travel": 5.0, **_SIZES}
+KINDS = {
+    "history": Kind("runs.history", run=_FIRST),
+    "map": Kind("maps.draw"),
+    "field": Kind("field.draw", "", {"velocity": 0.5, "cells": None}, "continuous-bore"),
+    "curves": Kind("curves.draw"),
+    "transients": Kind("runs.transients", "", _APPROACH, "continuous-bore"),
+    "explorer": Kind(""),
+    "accuracy_profile": Kind("accuracy.profile", "accuracy"),
+    "accuracy_vs_cost": Kind("accuracy.versus_cost", "accuracy"),
+    "accuracy_vs_work": Kind("accuracy.versus_work", "accuracy"),
+    "model_map": Kind("accuracy.model_map", "accuracy"),
+    "stability_atlas": Kind("atlas.draw", "stability"),
+    "claims_static": Kind("claims.static", "claims"),
+    "claims_patches": Kind("claims.patches", "claims"),
+}
+"""Kinds of figures by name."""
