@@ -68,6 +68,12 @@ class Refusal(ValueError):
         self.key = key
 
 
+def refuse(is_bad: bool, message: str, key: str = "") -> None:
+    """Raise Refusal with a message if a condition is true."""
+    if is_bad:
+        raise Refusal(message, key)
+
+
 # Types of values
 
 
@@ -290,6 +296,10 @@ Methods = Annotated[
 ]
 
 
+def _refuse_crowd(points: int, most: int, key: str = "") -> None:
+    refuse(points > most, f"{points} points are not allowed; allowed: at most {most}", key)
+
+
 class Settings(BaseModel):
     """Settings by key.  Unknown keys are refused."""
 
@@ -391,29 +401,22 @@ class Sweep(Settings):
         if self.tolerance is None and (free or self.is_certified):
             imposed = "a number" + (f", or {' and '.join(free)} imposed" if free else "")
             raise Refusal(f"null is not allowed; allowed: {imposed}", "tolerance")
-        points = math.prod(map(len, self.axes.values()))
-        if points > MOST_POINTS:
-            raise Refusal(f"{points} points are not allowed; allowed: at most {MOST_POINTS}")
-        if self.is_certified:
-            self._refuse_uncertifiable()
+        _refuse_crowd(math.prod(map(len, self.axes.values())), MOST_POINTS)
+        if self.error is not None and self.tolerance is not None:
+            self._refuse_uncertifiable(self.error, self.tolerance)
         return self
 
-    def _refuse_uncertifiable(self) -> None:
-        assert self.error is not None and self.tolerance is not None
-        if self.tolerance >= self.error or self.tolerance > LOOSEST_POINTS:
-            bound = f"less than the error, {self.error:g}, and at most {LOOSEST_POINTS:g}"
-            raise Refusal(f"{self.tolerance:g} is not allowed; allowed: {bound}", "tolerance")
-        imposed = [
-            name for name in ("cells", "steps", "method", *self.drives) if getattr(self, name)
-        ]
-        if imposed:
-            raise Refusal(
-                f"is not allowed with {', '.join(imposed)}; allowed: a tolerance", "error"
-            )
+    def _refuse_uncertifiable(self, error: float, tolerance: float) -> None:
+        bound = f"less than the error, {error:g}, and at most {LOOSEST_POINTS:g}"
+        message = f"{tolerance:g} is not allowed; allowed: {bound}"
+        refuse(tolerance >= error or tolerance > LOOSEST_POINTS, message, "tolerance")
+        names = ("cells", "steps", "method", *self.drives)
+        imposed = ", ".join(name for name in names if getattr(self, name))
+        refuse(imposed != "", f"is not allowed with {imposed}; allowed: a tolerance", "error")
         static = len(self.amplitude) > 1 and 0.0 in self.velocity
-        if not (self.spans_a_map or static):
-            ranges = "two amplitudes and two velocities above 0, or two amplitudes and velocity 0"
-            raise Refusal(f"is not allowed for these axes; allowed: {ranges}", "error")
+        ranges = "two amplitudes and two velocities above 0, or two amplitudes and velocity 0"
+        message = f"is not allowed for these axes; allowed: {ranges}"
+        refuse(not (self.spans_a_map or static), message, "error")
 
 
 # Figures
@@ -520,10 +523,8 @@ class _Grid(Settings):
     @model_validator(mode="after")
     def _refuse_crowd(self) -> Self:
         for motion, amplitudes in self.amplitude.items():
-            points = len(self.velocity) * len(amplitudes)
-            if points > MOST_MAP_POINTS:
-                message = f"{points} points are not allowed; allowed: at most {MOST_MAP_POINTS}"
-                raise Refusal(message, f"velocity x amplitude_{motion}")
+            points, key = len(self.velocity) * len(amplitudes), f"velocity x amplitude_{motion}"
+            _refuse_crowd(points, MOST_MAP_POINTS, key)
         return self
 
 
@@ -536,10 +537,9 @@ class ModelMap(_Grid):
     @model_validator(mode="after")
     def _refuse_a_line(self) -> Self:
         for name in ("velocity", "amplitude_transverse", "amplitude_bore"):
-            values = getattr(self, name)
-            if len(values) < 2:
-                message = f"{list(values)} is not allowed; allowed: two numbers or more"
-                raise Refusal(message, name)
+            values = list(getattr(self, name))
+            message = f"{values} is not allowed; allowed: two numbers or more"
+            refuse(len(values) < 2, message, name)
         return self
 
 
@@ -632,10 +632,9 @@ class Claims(_Grid):
     def _refuse_mismatch(self) -> Self:
         for motion, values in self.amplitude.items():
             largest = STATIC_AMPLITUDES[motion]
-            if values[0] > largest:
-                allowed = f"at least one number up to {largest:g}, where there is static friction"
-                message = f"{list(values)} is not allowed; allowed: {allowed}"
-                raise Refusal(message, f"amplitude_{motion}")
+            allowed = f"at least one number up to {largest:g}, where there is static friction"
+            message = f"{list(values)} is not allowed; allowed: {allowed}"
+            refuse(values[0] > largest, message, f"amplitude_{motion}")
         return self
 
 
@@ -676,44 +675,38 @@ class Configuration(Settings):
         taken = {*RULES, "accuracy", "stability", "claims"}
         for key, names in (("sweeps", self.sweeps), ("figures", self.figures)):
             for name in names:
-                if name in taken:
-                    message = "another result or rule has this name; allowed: a new one"
-                    raise Refusal(message, f"{key}.{name}")
+                message = "another result or rule has this name; allowed: a new one"
+                refuse(name in taken, message, f"{key}.{name}")
             taken |= names.keys()
-        if not self.datasets:
-            allowed = "sweeps, accuracy, stability or claims"
-            raise Refusal(f"nothing is not allowed; required: {allowed}", "sweeps")
+        message = "nothing is not allowed; required: sweeps, accuracy, stability or claims"
+        refuse(not self.datasets, message, "sweeps")
         runs: set[tuple[str, ...]] = set()
         for name, figure in self.figures.items():
             self._refuse_figure(f"figures.{name}", figure)
-            if figure.run and (figure.kind, figure.sweep[0]) in runs:
-                message = f"{figure.sweep[0]} has another figure of this kind; allowed: one"
-                raise Refusal(message, f"figures.{name}.kind")
-            runs.add((figure.kind, *figure.sweep[:1]))
+            one = figure.kind, *figure.sweep[:1]
+            message = f"{one[-1]} has another figure of this kind; allowed: one"
+            refuse(bool(figure.run) and one in runs, message, f"figures.{name}.kind")
+            runs.add(one)
         return self
 
     def _refuse_figure(self, key: str, figure: Figure) -> None:
         kind = KINDS[figure.kind]
-        if kind.study and kind.study not in self.studies:
-            message = f"{figure.kind} needs the key {kind.study}, which is missing"
-            raise Refusal(f"{message}; allowed: a kind of another key", f"{key}.kind")
+        message = f"{figure.kind} needs the key {kind.study}, which is missing"
+        missing = kind.study not in ("", *self.studies)
+        refuse(missing, f"{message}; allowed: a kind of another key", f"{key}.kind")
+        key = f"{key}.sweep"
         for name in figure.sweep:
-            if name not in self.sweeps:
-                hint, allowed = near_miss(name, self.sweeps), ", ".join(self.sweeps) or "none"
-                raise Refusal(
-                    f"{short_json(name)} is no sweep; {hint}allowed: {allowed}", f"{key}.sweep"
-                )
+            hint, allowed = near_miss(name, self.sweeps), ", ".join(self.sweeps) or "none"
+            message = f"{short_json(name)} is no sweep; {hint}allowed: {allowed}"
+            refuse(name not in self.sweeps, message, key)
             motion = self.sweeps[name].motion
-            if kind.motion and motion != kind.motion:
-                message = f"{name} has the motion {motion}; allowed: {kind.motion}"
-                raise Refusal(message, f"{key}.sweep")
+            message = f"{name} has the motion {motion}; allowed: {kind.motion}"
+            refuse(kind.motion not in ("", motion), message, key)
         if figure.kind == "explorer":
             grids = [self.sweeps[name] for name in figure.sweep]
             grids = [sweep for sweep in grids if not sweep.is_certified]
             points = sum(math.prod(map(len, sweep.axes.values())) for sweep in grids)
-            if points > MOST_ON_PAGE:
-                message = f"{points} points are not allowed; allowed: at most {MOST_ON_PAGE}"
-                raise Refusal(message, f"{key}.sweep")
-            if not any(sweep.spans_a_map and sweep.motion in STATIC_AMPLITUDES for sweep in grids):
-                allowed = "transverse or bore with two amplitudes and two velocities above 0"
-                raise Refusal(f"has no map; required: {allowed}", f"{key}.sweep")
+            _refuse_crowd(points, MOST_ON_PAGE, key)
+            maps = [s for s in grids if s.spans_a_map and s.motion in STATIC_AMPLITUDES]
+            allowed = "transverse or bore with two amplitudes and two velocities above 0"
+            refuse(not maps, f"has no map; required: {allowed}", key)
