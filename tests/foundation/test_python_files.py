@@ -126,7 +126,9 @@ def test_a_configuration_finds_the_file_and_a_job_uses_it(mine, tmp_path, monkey
     sweep = {"motion": "side_ways.py:share=0.5", "pressure": "cone.py", **axes}
     (mine / "own.yaml").write_text(json.dumps({"sweeps": {"own": sweep}}))
     configuration = load.load(mine / "own.yaml")
-    (point,) = request.points_of(configuration.sweeps["own"]).requests
+    batch = request.points_of(configuration.sweeps["own"])
+    assert batch.folder == "side_ways"
+    (point,) = batch.requests
     assert point["motion"] == motion_named("mine/side_ways.py:share=0.5").name
     placed = load.with_paths({"sweeps": {"own": sweep}}, [mine])
     monkeypatch.chdir("/")

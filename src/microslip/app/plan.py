@@ -121,7 +121,7 @@ class Plan:
         configuration = self.configuration
         if (sweep := configuration.sweeps.get(name)) is not None:
             if sweep.is_certified:
-                folder = request.solver_names(sweep)[0].partition(":")[0]
+                folder = request.folder_of(request.solver_names(sweep)[0])
                 return {f"{folder}/{self.products[name].stem.partition('.')[2]}": None}
             blocks = request.divide(request.points_of(sweep), configuration.points_per_job)
             runs = request.runs_of(configuration, name)

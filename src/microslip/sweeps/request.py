@@ -6,6 +6,7 @@ solver's code, so that it is never outdated and never computed twice.
 
 from __future__ import annotations
 
+import re
 from collections.abc import Sequence
 from functools import cache
 from itertools import pairwise, product
@@ -61,7 +62,12 @@ class Batch(NamedTuple):
     @property
     def folder(self) -> str:
         """Name of the folder of the batch: the motion, without parameters."""
-        return str(self.rows[0].get("motion", "none")).partition(":")[0]
+        return folder_of(self.rows[0].get("motion", "none"))
+
+
+def folder_of(motion: str) -> str:
+    """Name of the folder for batches of a motion: the motion or its file, without parameters."""
+    return re.sub(r"[^\w-]", "_", motion.partition(":")[0].removesuffix(".py"))
 
 
 def solver_names(sweep: Sweep) -> tuple[str, str]:
