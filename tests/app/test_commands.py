@@ -242,7 +242,7 @@ def test_the_response_is_printed_or_written(tmp_path):
     [
         ("forward [um]\n0\nabc\n", ("line 3", "abc")),
         ("forward [um],load [N]\n0,1\n1,\n", ("line 3", "load")),
-        ("forward [N]\n0\n1\n", ("line 2", "forward")),
+        ("forward [N]\n0\n1\n", ("forward [N]: the unit is N",)),
         ("speed\n0\n1\n", ("'speed'", "as in forward [um]")),
         ("forward [um],load [N]\n0,1\n1,-2\n", ("load = -2 N (-0.2 times 10 N)", ">= 0")),
         ("forward [um]\n0\n", ("2 rows",)),

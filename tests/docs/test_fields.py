@@ -13,8 +13,8 @@ from microslip.config import load
 from microslip.datasets import sweep_dataset
 from microslip.datasets.catalogue import FORMS
 from microslip.datasets.variables import TABLE, rows_of
+from microslip.scene.from_file import UNITS
 from microslip.si.output import Prediction
-from microslip.si.response import UNITS
 from microslip.sweeps import batch, request
 
 PAGE = (Path(__file__).parents[2] / "docs" / "reference" / "fields.md").read_text(encoding="utf-8")

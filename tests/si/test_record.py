@@ -103,7 +103,6 @@ def test_a_record_becomes_friction_in_two_commands(tmp_path, capsys):
     [
         ({"time": np.delete(np.arange(1001.0), 500)}, "not equally spaced"),
         ({"frequency": 0.002}, "frequency = 0.002: the record of 999 s has"),
-        ({"columns": {"lateral": np.zeros(1000)}}, "constant; allowed is an oscillation"),
         ({"columns": {"lateral": np.zeros(9)}}, "allowed are as many numbers as times: 1000"),
         ({"rows": 63}, "rows = 63: allowed is an even number"),
         ({"columns": {}}, "allowed is one column or more"),
@@ -165,15 +164,67 @@ def test_a_record_of_few_periods_is_refused_with_plain_numbers(periods):
     assert "np.float64" not in str(refused.value)
 
 
-@pytest.mark.parametrize("decimals", [6, 7])
-def test_rounded_times_are_equally_spaced_but_jitter_is_not(decimals):
-    time = np.arange(5000) / 48_000.0
-    lateral = np.sin(2.0 * np.pi * 200.0 * time)
-    result = microslip.fold(np.round(time, decimals), {"lateral": lateral})
-    assert result.frequency == pytest.approx(200.0, rel=1e-3)
-    jitter = 8e-6 * np.random.default_rng(3).uniform(-1.0, 1.0, len(time))
-    with pytest.raises(InputError, match="not equally spaced"):
-        microslip.fold(np.round(time + jitter, decimals), {"lateral": lateral})
+def sine(seconds=0.5):
+    """Times, s, and a noisy sine of amplitude 1."""
+    time = np.arange(round(seconds * RATE)) / RATE
+    noise = NOISE * np.random.default_rng(1).standard_normal(len(time))
+    return time, np.sin(2.0 * np.pi * FREQUENCY * time) + noise
+
+
+@pytest.mark.parametrize("offset, decimals", [(0.0, 4), (10.0, 4), (0.0, 5), (1.0, 3)])
+def test_times_within_half_a_unit_of_the_last_digit_are_equally_spaced(offset, decimals):
+    """The step, and so the frequency, is known to about the last digit over the duration."""
+    time, lateral = sine()
+    result = microslip.fold(np.round(offset + time, decimals), {"lateral": lateral})
+    error = result.frequency_error + FREQUENCY * 10.0**-decimals / time[-1]
+    assert abs(result.frequency - FREQUENCY) < 5.0 * error
+    assert result.peak_to_peak("lateral")[0] == pytest.approx(2.0, abs=0.05)
+
+
+def test_times_with_six_significant_digits_after_an_offset_are_equally_spaced():
+    time, lateral = sine()
+    rounded = np.array([float(f"{10.0 + one:.6g}") for one in time])
+    assert microslip.fold(rounded, {"lateral": lateral}).frequency == pytest.approx(207.3, abs=0.1)
+
+
+@pytest.mark.parametrize("decimals", [5, 8])
+def test_a_missing_sample_is_refused(decimals):
+    time, lateral = sine()
+    keep = np.arange(len(time)) != 12_000
+    with pytest.raises(microslip.InputError) as caught:
+        microslip.fold(np.round(time, decimals)[keep], {"lateral": lateral[keep]})
+    assert caught.value.argument == "time"
+
+
+@pytest.mark.parametrize("value", [0.1, 1e6, -3.7e-9])
+def test_a_constant_channel_does_not_oscillate(value):
+    time, lateral = sine()
+    with pytest.raises(microslip.InputError, match="constant"):
+        microslip.fold(time, {"lateral": np.full_like(lateral, value)})
+
+
+@pytest.mark.parametrize("part", [slice(None, 12_500), slice(12_500, None)])
+def test_a_motion_of_half_the_record_is_not_periodic_throughout(part):
+    time, lateral = sine()
+    lateral[part] = 0.02 * np.random.default_rng(2).standard_normal(12_500)
+    with pytest.raises(microslip.InputError, match="not periodic throughout") as caught:
+        microslip.fold(time, {"lateral": lateral})
+    assert caught.value.argument == "time"
+
+
+@pytest.mark.parametrize("mark", [-9999.0, 32767.0])
+def test_a_value_that_marks_missing_samples_is_named(mark):
+    time, lateral = sine()
+    lateral[::400] = mark
+    with pytest.raises(microslip.InputError, match="63 rows") as caught:
+        microslip.fold(time, {"lateral": lateral})
+    assert (caught.value.argument, caught.value.value) == ("lateral", mark)
+
+
+def test_a_saturated_signal_and_a_square_wave_have_no_such_value():
+    time, lateral = sine()
+    microslip.fold(time, {"lateral": np.clip(lateral, -0.8, 0.8)})
+    microslip.fold(time, {"lateral": np.sign(np.sin(2.0 * np.pi * FREQUENCY * time))})
 
 
 NOISE_ROWS = "\n".join(

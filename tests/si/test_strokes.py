@@ -1,5 +1,9 @@
 """Predictions for motions from files with units: the answers of named motions."""
 
+import pickle
+import subprocess
+import sys
+
 import numpy as np
 import pytest
 import xarray as xr
@@ -77,7 +81,7 @@ def test_a_record_with_too_many_rows_is_refused_with_a_hint_to_fold(tmp_path):
 
 def test_a_map_of_a_motion_from_a_file_is_refused(tmp_path):
     name = file_of(tmp_path / "stroke.csv", lateral_um=0.2 * SINE)
-    with pytest.raises(InputError, match="map = .*not allowed for a motion from a file"):
+    with pytest.raises(InputError, match="map = .*without a motion from a file"):
         microslip.predict(name, **SHAKEN, map=xr.Dataset(attrs={"motion": "transverse"}))
 
 
@@ -145,3 +149,18 @@ def test_bad_units_are_refused_in_one_line(tmp_path, heading, problem):
     name = f"file:{tmp_path / 'stroke.csv'}"
     with pytest.raises(InputError, match=problem):
         microslip.predict(name, **SHAKEN)
+
+
+def test_a_prediction_of_a_file_prints_without_the_file(tmp_path):
+    path = tmp_path / "stroke.csv"
+    path.write_text("time [ms],lateral [um]\n0,0\n0.25,1\n0.5,0\n0.75,-1\n")
+    body = {"material": "steel", "radius": "5 mm", "load": "10 N", "mu": 0.3, "speed": "1 mm/s"}
+    result = microslip.predict(f"file:{path}", **body, tolerance=0.1)
+    text = str(result)
+    path.write_text("time [ms],lateral [um]\n0,0\n0.25,2\n0.5,0\n0.75,-2\n")
+    assert str(result) == text
+    path.unlink()
+    (tmp_path / "result").write_bytes(pickle.dumps(result))
+    code = "import pickle, sys; print(pickle.load(open(sys.argv[1], 'rb')))"
+    words = [sys.executable, "-c", code, str(tmp_path / "result")]
+    assert subprocess.run(words, capture_output=True, text=True).stdout == text + "\n"

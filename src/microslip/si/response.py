@@ -12,87 +12,65 @@ from __future__ import annotations
 import math
 import os
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
-from functools import lru_cache
+from dataclasses import dataclass, field
 from importlib import import_module
 from typing import Any
 
 import numpy as np
 
-from microslip.answer.along import Response, response
-from microslip.foundation import spec
+from microslip.answer.along import response
 from microslip.foundation.csv_table import LABELS, table_of
 from microslip.foundation.errors import InputError, shown
+from microslip.scene.from_file import UNITS
 from microslip.si.contact import Contact, contact_of
 from microslip.si.inputs import Input, read_inputs, read_quantity
-from microslip.si.strokes import UNITS, scales
+from microslip.si.strokes import factors, scales
+
+COLUMNS = {
+    **{"force_forward": "N", "force_lateral": "N", "torque": "N m"},
+    **{"force_error": "N", "torque_error": "N m"},
+    **{"dissipated_energy": "J", "dissipated_energy_error": "J", "stick_fraction": "1"},
+}
+"""SI units of the columns of `microslip.response`."""
+SUFFIXES = {"N": "_N", "N m": "_N_m", "J": "_J", "1": ""}
+"""End of the name of an attribute, by unit."""
 
 
 @dataclass(frozen=True, eq=False)
 class RealResponse:
     """Forces of a real contact along a path, in SI units.  Each row is a point of the path.
 
+    The columns of COLUMNS, with the unit in the name (force_forward_N), and the names in
+    `attributes` are attributes of the response, too.
+
     Attributes
     ----------
     path : dict of str to np.ndarray
         Columns of the path in SI units, by name.
-    force_forward_N, force_lateral_N, torque_N_m : np.ndarray, shape (rows,)
-        Forces and torque.  They are positive in the direction of the displacement that they
-        resist.
-    force_error_N, torque_error_N_m : np.ndarray, shape (rows,)
-        Larger error estimate of the two forces, and error estimate of the torque.
-    dissipated_energy_J, dissipated_energy_error_J : np.ndarray, shape (rows,)
-        Energy dissipated by friction since the first row, and its error estimate.
-    stick_fraction : np.ndarray, shape (rows,)
-        Fraction of the area in contact that sticks; see microslip.Response.
-    u_lim_m, contact_radius_m, load_N, mu : float
-        Displacement at which the whole contact slides (m), contact radius (m), load of the
-        reference state (N), and coefficient of friction.
-    tolerance : float
-        Largest accepted error of a force, relative to mu times the load.
+    columns : dict of str to tuple
+        Unit and values of every column, by name: those of the path, and those of
+        `microslip.response` in SI units.
+    attributes : dict
+        Attributes of the dataset: u_lim_m, the displacement at which the whole contact slides (m);
+        contact_radius_m; load_N, the load of the reference state; mu; tolerance, the largest
+        accepted error of a force, relative to mu times the load; reason, why the response is not
+        converged; converged, 0 or 1.
     converged : bool
         Whether every error is within the tolerance.
-    reason : str
-        Why the response is not converged; empty if it is.
     """
 
     path: dict[str, np.ndarray]
-    force_forward_N: np.ndarray
-    force_lateral_N: np.ndarray
-    torque_N_m: np.ndarray
-    force_error_N: np.ndarray
-    torque_error_N_m: np.ndarray
-    dissipated_energy_J: np.ndarray
-    dissipated_energy_error_J: np.ndarray
-    stick_fraction: np.ndarray
-    u_lim_m: float
-    contact_radius_m: float
-    load_N: float
-    mu: float
-    tolerance: float
+    columns: dict[str, tuple[str, np.ndarray]] = field(repr=False)
+    attributes: dict[str, Any]
     converged: bool
-    reason: str
 
-    @property
-    def columns(self) -> dict[str, tuple[str, np.ndarray]]:
-        """Unit and values of every column, by name."""
-        path = {name: (UNITS[name], values) for name, values in self.path.items()}
-        return path | {
-            "force_forward": ("N", self.force_forward_N),
-            "force_lateral": ("N", self.force_lateral_N),
-            "torque": ("N m", self.torque_N_m),
-            "force_error": ("N", self.force_error_N),
-            "torque_error": ("N m", self.torque_error_N_m),
-            "dissipated_energy": ("J", self.dissipated_energy_J),
-            "dissipated_energy_error": ("J", self.dissipated_energy_error_J),
-            "stick_fraction": ("1", self.stick_fraction),
-        }
-
-    @property
-    def attributes(self) -> dict[str, object]:
-        """Attributes of the dataset."""
-        names = ("u_lim_m", "contact_radius_m", "load_N", "mu", "tolerance", "reason")
-        return {name: getattr(self, name) for name in names} | {"converged": int(self.converged)}
+    def __getattr__(self, name: str) -> Any:
+        for column, unit in COLUMNS.items():
+            if name == f"{column}{SUFFIXES[unit]}":
+                return self.columns[column][1]
+        if name in self.__dict__.get("attributes", {}):
+            return self.attributes[name]
+        raise AttributeError(name)
 
     def to_xarray(self) -> Any:
         """The columns as an xarray.Dataset over `row`, with units."""
@@ -140,37 +118,32 @@ def predict_response(
         If an argument or a column is invalid.  The message names it.
     """
     real = only_contact(contact)
-    columns = read_path(path, UNITS, decimal=decimal, encoding=encoding)
-    answer = response_to(
-        path,
-        columns,
-        scales(real, columns),
-        pressure=real.pressure,
-        poisson=real.poisson,
-        tolerance=tolerance,
-        progress=progress,
-    )
+    columns = read_path(path, decimal=decimal, encoding=encoding)
+    units = scales(real, columns)
+    body: Any = {"pressure": real.pressure, "poisson": real.poisson}
+    try:
+        over: Any = {name: one / units[name] for name, one in columns.items()}
+        answer = response(**over, **body, tolerance=tolerance, progress=progress)
+    except InputError as error:
+        name, value = error.argument, error.value
+        if name not in UNITS:
+            raise
+        text = shown(value)
+        if isinstance(value, float):
+            si, unit = units[name], UNITS[name]
+            text = f"{value * si:.6g} {unit} ({value:.6g} times {si:.6g} {unit})"
+        raise InputError("path", _name(path), f"{name} = {text}: {error.allowed}") from None
     force = real.mu * real.load
     torque = force * real.contact_radius * answer.problem.pressure.torque
-    energy = force * real.u_lim
-    return RealResponse(
-        path=columns,
-        force_forward_N=force * answer.force_forward,
-        force_lateral_N=force * answer.force_lateral,
-        torque_N_m=torque * answer.torque,
-        force_error_N=force * answer.force_error[:, :2].max(axis=1),
-        torque_error_N_m=torque * answer.force_error[:, 2],
-        dissipated_energy_J=energy * answer.dissipated_energy,
-        dissipated_energy_error_J=energy * answer.dissipated_energy_error,
-        stick_fraction=answer.stick_fraction,
-        u_lim_m=real.u_lim,
-        contact_radius_m=real.contact_radius,
-        load_N=real.load,
-        mu=real.mu,
-        tolerance=answer.tolerance,
-        converged=answer.converged,
-        reason=answer.reason,
-    )
+    sizes = {"N": force, "N m": torque, "J": force * real.u_lim, "1": 1.0}
+    forces = {n: (COLUMNS[n], sizes[COLUMNS[n]] * x) for n, (_, x) in answer.columns.items()}
+    attributes = {
+        **{"u_lim_m": real.u_lim, "contact_radius_m": real.contact_radius},
+        **{"load_N": real.load, "mu": real.mu, "tolerance": answer.tolerance},
+        **{"reason": answer.reason, "converged": int(answer.converged)},
+    }
+    places = {name: (UNITS[name], one) for name, one in columns.items()}
+    return RealResponse(columns, places | forces, attributes, answer.converged)
 
 
 def only_contact(contact: Mapping[str, object]) -> Contact:
@@ -178,92 +151,46 @@ def only_contact(contact: Mapping[str, object]) -> Contact:
     return contact_of(read_inputs(None, **contact))
 
 
-def response_to(
-    path: Any, columns: dict[str, np.ndarray], scales: Mapping[str, float], **settings: Any
-) -> Response:
-    """Call `microslip.response` with the columns of a table, each divided by its scale in SI units.
-    Error messages refer to the table as `path`, and show SI values.
-
-    scales: empty for a dimensionless table.
-    """
-    over: dict[str, Any] = {n: one / scales.get(n, 1.0) for n, one in columns.items()}
-    try:
-        return response(**over, **settings)
-    except InputError as error:
-        name, value = error.argument, error.value
-        if name not in UNITS:
-            raise
-        text = shown(value)
-        if name in scales and isinstance(value, float):
-            si, unit = scales[name], UNITS[name]
-            text = f"{value * si:.6g} {unit} ({value:.6g} times {si:.6g} {unit})"
-        raise InputError("path", named(path), f"{name} = {text}: {error.allowed}") from None
-
-
-def read_path(
-    path: Any, units: dict[str, str], *, decimal: str = ".", encoding: str = "utf-8"
-) -> dict[str, np.ndarray]:
+def read_path(path: Any, **form: str) -> dict[str, np.ndarray]:
     """Columns of a path in SI units.
 
-    Parameters
-    ----------
-    path : path of a CSV file, mapping or pandas DataFrame
-        The table.
-    units : dict of str
-        SI units of the allowed columns.  The unit of pure numbers is "".
-    decimal, encoding : str
-        Decimal mark and encoding of a file.
-
-    Raises
-    ------
-    InputError
-        If a column or a line cannot be read.  Lines cannot be skipped, since a path has no gaps.
+    form: decimal mark and encoding of a file.  Raises InputError if a column or a line cannot be
+    read.  Lines cannot be skipped, since a path has no gaps.
     """
-    form: dict = {"decimal": decimal, "encoding": encoding, "need_units": any(units.values())}
-    table = table_of("path", path, units, **form)
-    if table.errors:
-        raise InputError("path", named(path), next(iter(table.errors.values())))
-    columns = {}
-    for name, cells in table.columns.items():
-        if name in LABELS:
-            continue
-        if name not in units:
-            raise InputError(
-                "path", named(path), f"a column {name!r}; allowed are {', '.join(units)}"
+    table = table_of("path", path, UNITS, need_units=True, **form)
+    names = [name for name in table.cells if name not in LABELS]
+    columns: dict[str, Any] = {}
+    try:
+        for problem in table.errors.values():
+            raise ValueError(problem)
+        if not names or not set(names) <= UNITS.keys():
+            raise ValueError(
+                f"columns {', '.join(names)!r}; allowed are some of {', '.join(UNITS)}"
             )
-        where = table.lines or range(1, len(cells) + 1)
-        try:
-            numbers = [_number(*one, name, units[name]) for one in zip(where, cells, strict=True)]
-        except ValueError as error:
-            raise InputError("path", named(path), str(error)) from None
-        columns[name] = np.array(numbers)
-    if not columns:
-        raise InputError("path", named(path), f"allowed are some of {', '.join(units)}")
-    return {"forward": np.zeros(len(cells))} | columns
+        sizes = factors({name: table.units[name] for name in names})
+        for name in names:
+            unit = UNITS[name] if table.units[name] is None else ""
+            numbers = []
+            for k, cell in enumerate(table.cells[name]):
+                where = table.lines[k] if table.lines else k + 1
+                numbers.append(sizes[name] * _number(where, name, cell, unit))
+            columns[name] = np.array(numbers)
+    except ValueError as error:
+        if isinstance(error, InputError):
+            raise
+        raise InputError("path", _name(path), str(error)) from None
+    return {"forward": np.zeros(len(numbers))} | columns
 
 
-def named(source: Any) -> str | list:
+def _name(source: Any) -> str | list:
     """Name of a table for messages: the path, or the names of the columns."""
     return str(source) if isinstance(source, str | os.PathLike) else list(source)
 
 
-def _number(where: int, cell: object, name: str, unit: str) -> float:
-    """The value of a cell in the SI unit.  Raises ValueError with the line number."""
+def _number(where: int, name: str, cell: object, unit: str) -> float:
+    """The value of a cell in a unit.  Raises ValueError with the line number."""
     try:
-        if isinstance(cell, str):
-            number, space, written = cell.partition(" ")
-            if space and not unit:
-                allowed = "allowed with a contact: --mu, --load, --radius and --material"
-                raise ValueError(f"line {where}: {name} is in {written}; {allowed}")
-            if space:
-                return spec.read(name, number) * _factor(name, written, unit)
         return read_quantity(name, cell, Input("", unit, "", -math.inf, exact=True)).si
     except InputError as error:
         problem = "empty" if cell is None else f"{cell!r}: {error.allowed}"
         raise ValueError(f"line {where}: {name} is {problem}") from None
-
-
-@lru_cache
-def _factor(name: str, written: str, unit: str) -> float:
-    """A unit divided by the SI unit."""
-    return read_quantity(name, f"1 {written}", Input("", unit, "")).si

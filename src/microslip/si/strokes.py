@@ -10,6 +10,7 @@ The format is that of scene/from_file.py, with a unit in each heading.
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
@@ -105,12 +106,13 @@ def scales(contact: Any, columns: dict[str, np.ndarray]) -> dict[str, float]:
     }
 
 
-def factors(units: dict[str, str | None]) -> dict[str, float]:
-    """The unit of each column divided by the SI unit.  Raises ValueError for a wrong unit."""
+def factors(units: Mapping[str, str | None]) -> dict[str, float]:
+    """The unit of each column divided by the SI unit, 1 without a unit.  Raises ValueError for a
+    wrong unit."""
     result = {}
     for name, unit in units.items():
         try:
-            result[name] = read(f"1 {unit}", UNITS.get(name, "s")).si
+            result[name] = 1.0 if unit is None else read(f"1 {unit}", UNITS.get(name, "s")).si
         except ValueError as error:
             raise ValueError(f"{name} [{unit}]: {error}") from None
     return result
@@ -142,16 +144,15 @@ def read_record(
     The columns are in the units of the file.  `microslip.fold` checks the times.  Raises InputError
     if the file cannot be read, or has no time.
     """
-    check_format(decimal, encoding)
+    form = {"decimal": decimal, "encoding": encoding}
+    check_format(**form)
 
     def parse(content: bytes) -> tuple[dict[str, np.ndarray], dict[str, str]]:
-        form = {"decimal": decimal, "encoding": encoding}
         table, columns = read_samples(content, need_units=True, **form)
         if "time" not in columns:
             raise ValueError("no column time; allowed is one, as in time [s]")
-        return columns | {"time": columns["time"] * factors(table.units)["time"]}, {
-            n: one or "" for n, one in table.units.items()
-        }
+        columns["time"] *= factors(table.units)["time"]
+        return columns, {name: unit or "" for name, unit in table.units.items()} | {"time": "s"}
 
     columns, units = parsed_file("record", path, parse)
-    return columns.pop("time"), columns, units | {"time": "s"}
+    return columns.pop("time"), columns, units

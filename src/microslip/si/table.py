@@ -29,7 +29,11 @@ MOST_CASES = 100_000
 VALUES = 11
 """Default number of values of a range."""
 NUMBER = r"[+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?"
-RANGE = re.compile(rf"({NUMBER})\s*\.\.\s*({NUMBER})\s*(.*)", re.A)
+OPTION = r"(?:\s*,\s*(\d+))?"
+RANGE = re.compile(
+    rf"(?!.*\.\.\.)({NUMBER})\s*\.\.\s*({NUMBER})\s*([^,.]*?){OPTION}(\s*,\s*log)?{OPTION}\s*", re.A
+)
+"""Pattern of a range: both ends, the unit, and the number of values before or after `log`."""
 RANGES = (
     "allowed is a range from a smaller to a larger number, such as '0..0.5 um' (11 values), "
     f"'0..2 um, 21' (21 values; from 2 to {MOST_CASES} are allowed) or '0.1..10 mm/s, 21, log' (21 "
@@ -190,16 +194,11 @@ def is_range(name: str, value: object) -> bool:
 
 def values_of(name: str, text: str) -> list[str]:
     """The values of a range as texts with the unit of the range.  Raises InputError."""
-    ends, *options = (part.strip() for part in text.split(","))
-    first, _, last = ends.partition("..")
-    match = None if last.startswith(".") or ".." in last else RANGE.fullmatch(ends)
-    log, counts = options.count("log"), [one for one in options if one != "log"]
-    good = (
-        match and log <= 1 and len(counts) <= 1 and all(re.fullmatch("[0-9]+", x) for x in counts)
-    )
-    if match is None or not good:
+    match = RANGE.fullmatch(text.strip())
+    counts = [] if match is None else [int(one) for one in (match[4], match[6]) if one]
+    if match is None or len(counts) > 1:
         raise InputError(name, text, RANGES)
-    low, high, count = float(match[1]), float(match[2]), int(counts[0]) if counts else VALUES
+    low, high, count, log = float(match[1]), float(match[2]), (counts or [VALUES])[0], match[5]
     if not (low < high < math.inf and 2 <= count <= MOST_CASES) or log and low <= 0.0:
         raise InputError(name, text, RANGES)
     values = (np.geomspace if log else np.linspace)(low, high, count)
@@ -220,7 +219,9 @@ def grid_of(motion: str, given: Mapping[str, Any]) -> Cases:
         if isinstance(values, str) or np.ndim(values) != 1:
             continue
         unit = kind.amplitude_unit if name == "amplitude" else INPUTS[name].unit or ""
-        si = [_si(name, value, kind) for value in values]
+        # A value out of range has a prediction with an error.
+        free = INPUTS[name]._replace(unit=unit, low=-math.inf, high=math.inf)
+        si = [read_quantity(name, value, free).si for value in values]
         axes[input_column(name, unit)] = name, unit, si
         texts[name] = list(values)
         del shared[name]
@@ -237,14 +238,6 @@ def grid_of(motion: str, given: Mapping[str, Any]) -> Cases:
         for one in zip(*starts.values(), strict=True)
     ]
     return Cases(motion, columns, shared, names, starts, {}, axes)
-
-
-def _si(name: str, value: Any, kind: Any) -> float:
-    """Value of an axis in its SI unit.  A value out of range has a prediction with an error."""
-    unit = kind.amplitude_unit if name == "amplitude" else INPUTS[name].unit
-    return read_quantity(
-        name, value, INPUTS[name]._replace(unit=unit, low=-math.inf, high=math.inf)
-    ).si
 
 
 def _short(text: Any) -> str:
@@ -272,15 +265,16 @@ def predictions(cases: Cases, *, need_all: bool = False) -> Iterator[Prediction 
             )
         except InputError as error:
             checked.append(error)
-    wrong = {case: one for case, one in enumerate(checked) if not isinstance(one, Inputs)}
-    if len(wrong) == len(checked) or need_all and wrong:
-        same = len(wrong) == len(checked) and len({str(one) for one in wrong.values()}) == 1
-        for case, one in wrong.items():
-            if isinstance(one, InputError):
-                if same and one.argument not in cases.columns:
-                    raise one
-                place = f"{'at' if cases.axes else 'in'} {cases.names[case]}"
-                raise InputError(one.argument, one.value, f"{place}: {one.allowed}")
+    wrong = [k for k, one in enumerate(checked) if not isinstance(one, Inputs)]
+    first = next((k for k in wrong if isinstance(checked[k], InputError)), None)
+    if first is not None and (need_all or len(wrong) == len(checked)):
+        problem = checked[first]
+        assert isinstance(problem, InputError)
+        same = len(wrong) == len(checked) and len({str(checked[k]) for k in wrong}) == 1
+        if same and problem.argument not in cases.columns:
+            raise problem
+        place = f"{'at' if cases.axes else 'in'} {cases.names[first]}"
+        raise InputError(problem.argument, problem.value, f"{place}: {problem.allowed}")
     return map(_prediction, checked)
 
 
@@ -313,35 +307,31 @@ def dataset_of(cases: Cases, answers: Answers) -> xr.Dataset:
                 for key, unit, text, _ in one.numbers()
             }
             attributes |= {name: {} for name in row if name not in attributes}
-    variables: dict[str, Any] = {}
-
-    def add(name: str, values: list[Any], about: dict[str, str]) -> None:
-        array = np.array(values).reshape(tuple(sizes.values()))
-        variables[name] = tuple(sizes), array, about
-
-    for name in names:
-        values = [row.get(name) for row in rows]
+    columns: dict[str, list[Any]] = {}
+    for name in [one for one in names if one not in sizes]:
+        values = columns[name] = [row.get(name) for row in rows]
         if name in (*TEXTS, *REASONS):
-            add(name, ["" if one is None else one for one in values], {})
-        elif name in ("warnings", "not_checked", "remarks"):
-            add(name, ["; ".join(one or ()) for one in values], {})
-        elif name == "converged":
-            add(name, values, {})
-        elif name not in sizes:
-            numbers = [math.nan if one is None else float(one) for one in values]
-            add(name, numbers, attributes.get(name, {}))
-    for name, values in cases.columns.items():
-        if not cases.axes:
-            texts = ["" if one is None else str(one) for one in values]
-            add(name if name in LABELS else f"case_{name}", texts, {})
+            columns[name] = [one or "" for one in values]
+        elif any(isinstance(one, list) for one in values):
+            columns[name] = ["; ".join(one or ()) for one in values]
+        elif name != "converged":
+            columns[name] = [math.nan if one is None else float(one) for one in values]
+    for name, values in cases.columns.items() if not cases.axes else ():
+        texts = ["" if one is None else str(one) for one in values]
+        columns[name if name in LABELS else f"case_{name}"] = texts
     errors = ["" if isinstance(one, Prediction) else str(one) for one in answers]
-    add("error", errors, {"long_name": "error message of the case"})
+    columns["error"], attributes["error"] = errors, {"long_name": "error message of the case"}
     coordinates: dict[str, Any] = {
         key: (key, values, {"long_name": name.replace("_", " "), "units": unit or "1"})
         for key, (name, unit, values) in cases.axes.items()
     }
     if not cases.axes:
         coordinates["case"] = np.arange(len(answers))
+    shape = tuple(sizes.values())
+    variables = {
+        name: (tuple(sizes), np.array(values).reshape(shape), attributes.get(name, {}))
+        for name, values in columns.items()
+    }
     return xr.Dataset(variables, coordinates, {"motion": str(cases.motion)})
 
 
@@ -361,7 +351,7 @@ def table_text(cases: Cases, answers: Answers) -> str:
             cells.append((heading, partial(_cell, value, place)))
 
     for name, title in PRINTED.items():
-        add(title, partial(_number, name))
+        add(title, partial(_output, name))
     for name in dict.fromkeys(one.search for one in predicted if one.search not in (None, "speed")):
         unit = next(one.input_units[name] for one in predicted if one.search == name)
         add(f"{name} {unit}", partial(_result, name))
@@ -388,7 +378,7 @@ def table_text(cases: Cases, answers: Answers) -> str:
     return "\n".join(lines)
 
 
-def _number(name: str, one: Prediction) -> Value | None:
+def _output(name: str, one: Prediction) -> Value | None:
     """An output, or the speed as an input."""
     return one.values.get(name) or (one.input_values.get(name) if name == "speed" else None)
 
