@@ -14,7 +14,7 @@ _WHERE = {
     "solve": "microslip.answer.point",
     "Result": "microslip.answer.answer",
     "Estimate": "microslip.answer.answer",
-    "Effort": "microslip.periodic.effort",
+    "Effort": "microslip.periodic.budget",
     "Problem": "microslip.scene.problem",
     "Motion": "microslip.scene.motion",
     "Transverse": "microslip.scene.named",

@@ -24,15 +24,15 @@ QUARTER = 256
 """Number of steps in the first loading of an oscillation on a line."""
 
 
-def energy_of_slip(contact, path, periodic):
+def energy_of_slip(contact, path, march):
     """Friction bound times slip in a period, summed over all points and steps."""
     stages = path.stages.shape[1]
     bounds = contact.bound[None] if path.depth is None else contact.bounds_along(path)[:, None]
     bounds = bounds if len(bounds) == 1 else bounds[::stages]
-    tractions = np.moveaxis(project(np.moveaxis(periodic.fields[::stages], 1, 0), bounds), 1, 0)
+    tractions = np.moveaxis(project(np.moveaxis(march.fields[::stages], 1, 0), bounds), 1, 0)
     places = path.positions.copy()
-    if len(periodic.body):
-        places[:, FORWARD] += periodic.body[:, 0]
+    if len(march.body):
+        places[:, FORWARD] += march.body[:, 0]
     rigid = np.array([rigid_displacement(contact, place) for place in places])
     elastic = np.array([contact.displacement(one) for one in tractions])
     slip = np.diff(rigid - elastic, axis=0)

@@ -15,8 +15,7 @@ from microslip.answer.refine import (
     SMALLEST_SHARE,
 )
 from microslip.answer.request import RUN_SHARE
-from microslip.periodic.budget import Spent
-from microslip.periodic.effort import Effort
+from microslip.periodic.budget import Effort, Spent
 from microslip.periodic.run import Run
 
 EXACT, EXACT_TORQUE = 0.4, 0.7

@@ -11,7 +11,7 @@ from stubs.agreement import assert_agree
 import microslip
 from microslip.answer import request
 from microslip.periodic import simulate
-from microslip.periodic.effort import Effort
+from microslip.periodic.budget import Effort
 
 
 @dataclass(frozen=True)

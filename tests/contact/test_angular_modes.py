@@ -5,9 +5,7 @@ import pytest
 
 from microslip.contact.influence import ring_influence
 from microslip.contact.modes import PolarContact
-from microslip.contact.operators import multiply
 from microslip.contact.rings import make_rings
-from microslip.contact.splitting import PENALTIES, best_penalty
 
 CASES = [
     (4, 2, True, 0.0, None),
@@ -71,19 +69,6 @@ def plain_displacement(state, cells, angles, rotates, nu, focus):
     return np.stack([u.imag, u.real])
 
 
-def operator_of(contact, number=0):
-    """An operator of a contact as a function of states (2, M, N)."""
-
-    def apply(state):
-        field, (sectors, waves, rows) = contact.pack(state), contact.operators[0].shape
-        image = np.empty_like(field)
-        scratch = np.empty((2, sectors * waves, 2 * field.shape[1] // (sectors * rows)))
-        multiply(contact.operators, number, field, image, scratch)
-        return contact.unpack(image)
-
-    return apply
-
-
 @pytest.fixture
 def rng():
     return np.random.default_rng(12)
@@ -103,18 +88,3 @@ def test_operator_is_the_plain_sum_over_modes(cells, angles, rotates, nu, focus,
         assert result == pytest.approx(other, abs=1e-12)
     near, _ = ring_modes(cells, angles, nu, focus)
     assert contact.compliance == pytest.approx(np.diag(near(0)), rel=1e-12)
-
-
-@cases
-def test_resolvents_undo_the_shifted_operator(cells, angles, rotates, nu, focus, rng):
-    contact = PolarContact(cells, angles, rotates, nu, focus)
-    apply = operator_of(contact)
-    for number, factor in enumerate(PENALTIES, start=1):
-        inverse, shift = (
-            operator_of(contact, number),
-            factor * best_penalty(contact.compliance, cells),
-        )
-        state = rng.normal(size=(2, angles, cells))
-        assert inverse(apply(state) + shift * state) == pytest.approx(state, abs=1e-10)
-        back = inverse(state)
-        assert apply(back) + shift * back == pytest.approx(state, abs=1e-10)

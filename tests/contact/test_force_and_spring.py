@@ -73,6 +73,21 @@ def test_a_pulled_march_is_the_plain_one(name, body, integrator):
     )
 
 
+@pytest.mark.parametrize("body", ["a soft spring", "a force and a mass", "a force"])
+def test_the_error_of_a_driven_march_is_proportional_to_the_tolerance_of_its_steps(body):
+    """A step of a soft drive can be solved with different displacements: the residual of a step
+    counts the force, and nearly full slip changes the force little."""
+    contact, path = RadialContact.resolved(12, 0.7), contact_and_path("rings")[1]
+    drive, start = Body(*BODIES[body]), 0.5 * forward_slip(contact)
+    exact, *others = (
+        contact.march(path, start, tolerance, body=drive, start=START).body[:, 0]
+        for tolerance in (1e-13, 1e-9, 1e-7, 1e-5)
+    )
+    errors = np.array([np.abs(other - exact).max() for other in others])
+    assert (errors < 200.0 * np.array([1e-9, 1e-7, 1e-5])).all()
+    assert (errors[:-1] < 0.1 * errors[1:]).all()
+
+
 @pytest.mark.parametrize("name", CONTACTS)
 def test_the_force_on_a_contact_without_mass_is_the_one_that_pulls(name):
     contact, path = contact_and_path(name)

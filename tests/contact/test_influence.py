@@ -9,9 +9,7 @@ import pytest
 from microslip.contact.contact import forces
 from microslip.contact.influence import coupling_kernels, ring_influence, toroidal_kernels
 from microslip.contact.modes import PolarContact
-from microslip.contact.ring_contact import RadialContact
 from microslip.contact.rings import make_rings
-from microslip.contact.squares import CartesianContact
 from microslip.theory import hertz
 
 RADII = [(0.3, 0.9), (0.9, 0.3), (0.5, 0.52), (0.52, 0.5), (0.7, 0.7001), (0.999, 1e-3), (0.4, 0.5)]
@@ -138,40 +136,9 @@ def test_ring_influence_is_reciprocal_and_positive_definite(focus):
 # The whole operator of the contacts
 
 
-def dense(contact):
-    """Matrix of the influence operator on flattened states, shape (size, size)."""
-    shape = (2, *np.broadcast_shapes(contact.bound.shape, contact.forward_position.shape))
-    size = int(np.prod(shape))
-    images = [contact.displacement(unit.reshape(shape)).ravel() for unit in np.eye(size)]
-    return np.stack(images, axis=1)
-
-
-def weights(contact):
-    shape = (2, *np.broadcast_shapes(contact.bound.shape, contact.forward_position.shape))
-    return np.broadcast_to(contact.weight, shape).ravel()
-
-
 @pytest.fixture
 def rng():
     return np.random.default_rng(20201109)
-
-
-CONTACTS = {
-    "radial": lambda nu: RadialContact.resolved(10, 0.7),
-    "polar, translation": lambda nu: PolarContact(6, 6, False, nu, 0.7),
-    "polar, fewest angles": lambda nu: PolarContact(5, 2, False, nu),
-    "polar, rotation": lambda nu: PolarContact(6, 6, True, nu, 0.3),
-    "cartesian": lambda nu: CartesianContact(7, nu),
-}
-
-
-@pytest.mark.parametrize("nu", [0.0, 0.3, 0.5])
-@pytest.mark.parametrize("name", CONTACTS)
-def test_operator_is_reciprocal_and_positive_definite(name, nu):
-    contact = CONTACTS[name](nu)
-    energy = weights(contact)[:, None] * dense(contact)
-    assert energy == pytest.approx(energy.T, abs=1e-12 * np.abs(energy).max())
-    assert np.linalg.eigvalsh(energy).min() > 0
 
 
 def smooth_traction(coefficients, z):

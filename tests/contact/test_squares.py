@@ -6,13 +6,10 @@ import pytest
 from reference_march import solved_stage
 from scipy.integrate import dblquad
 
-from microslip.contact.contact import forward_slip
 from microslip.contact.convolution import convolve, influence, square_convolution, workspace
 from microslip.contact.coulomb import coulomb_residual, project
 from microslip.contact.descent import PATIENCE
-from microslip.contact.path import EULER, SDIRK2, half_period_phases, make_path
 from microslip.contact.squares import CartesianContact, DescentSolver
-from microslip.scene.named import Bore, Transverse
 from microslip.theory.hertz import G_STAR
 
 NUS = [0.0, 0.4]
@@ -21,20 +18,6 @@ NUS = [0.0, 0.4]
 @pytest.fixture
 def rng():
     return np.random.default_rng(20201109)
-
-
-def path_of(motion, steps, velocity=0.1, amplitude=1.0, nu=0.0, integrator=SDIRK2):
-    """Path of half a period."""
-
-    def displacement(phase):
-        return motion.displacement(phase, velocity, amplitude, nu)
-
-    return make_path(displacement, half_period_phases(steps), integrator)
-
-
-def force_between(contact, one, other):
-    """Sum of the distances between tractions, a force over mu F_z."""
-    return np.sum(contact.weight * np.hypot(*(one - other)))
 
 
 # The convolution
@@ -158,19 +141,3 @@ def test_steps_are_solved_down_to_rounding(size, nu, rng):
 
 
 # Marches
-
-
-@pytest.mark.parametrize("integrator", [EULER, SDIRK2], ids=lambda method: method.name)
-@pytest.mark.parametrize("motion", [Transverse(), Bore()], ids=lambda motion: motion.name)
-def test_first_guesses_change_the_effort_but_not_the_march(motion, integrator, rng):
-    contact, tolerance = CartesianContact(8), 1e-11
-    path = path_of(motion, 12, integrator=integrator)
-    first = contact.march(path, forward_slip(contact), 1e-3)
-    near = project(forward_slip(contact) + 1e-3 * rng.normal(size=(2, 8, 8)), contact.bound)
-    plain = contact.march(path, near, tolerance)
-    guided = contact.march(path, near, tolerance, previous=first)
-    assert force_between(contact, guided.state, plain.state) < 1e3 * tolerance
-    assert guided.forces == pytest.approx(plain.forces, abs=1e3 * tolerance)
-    assert guided.residual <= guided.solves * tolerance
-    again = contact.march(path, near, tolerance, previous=plain)
-    assert again.iterations < 0.2 * plain.iterations

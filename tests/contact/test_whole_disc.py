@@ -8,55 +8,10 @@ from microslip.contact.path import SDIRK2, make_path
 
 RINGS, ANGLES = 5, 6
 RATIOS = [0.0, 0.3, 0.5]
-SIGNS = np.array([1.0, -1.0])[:, None, None]
-
-
-@pytest.fixture
-def rng():
-    return np.random.default_rng(7)
 
 
 def whole(nu, focus=None):
     return PolarContact(RINGS, ANGLES, True, nu, focus, whole=True)
-
-
-def turned(field, places):
-    """Rotate a field about the centre by a number of angular points."""
-    forward, lateral = np.roll(field, places, axis=1)
-    angle = places * np.pi / ANGLES
-    return np.stack(
-        [
-            np.cos(angle) * forward + np.sin(angle) * lateral,
-            np.cos(angle) * lateral - np.sin(angle) * forward,
-        ]
-    )
-
-
-def smooth(contact, rng):
-    """Random tractions without the shortest waves, whose cosine vanishes at the points."""
-    theta = (np.arange(2 * ANGLES) + 0.5)[:, None] * np.pi / ANGLES
-    waves = [wave(m * theta) for m in range(ANGLES - 1) for wave in (np.cos, np.sin)]
-    return sum(rng.normal(size=(2, 1, RINGS)) * wave for wave in waves)
-
-
-@pytest.mark.parametrize("nu", RATIOS)
-def test_the_operator_knows_no_direction(nu, rng):
-    """The displacement under rotated tractions is the rotated displacement."""
-    contact = whole(nu)
-    field = smooth(contact, rng)
-    for places in (1, 2, 5):
-        one = contact.displacement(turned(field, places))
-        assert one == pytest.approx(turned(contact.displacement(field), places), abs=1e-12)
-
-
-@pytest.mark.parametrize("nu", RATIOS)
-def test_what_a_mirror_leaves_is_half_of_the_disc(nu, rng):
-    half, disc = PolarContact(RINGS, ANGLES, True, nu), whole(nu)
-    tractions = rng.normal(size=(2, ANGLES, RINGS))
-    both = np.concatenate([tractions, tractions[:, ::-1] * SIGNS], axis=1)
-    result = disc.displacement(both)
-    assert result[:, :ANGLES] == pytest.approx(half.displacement(tractions), abs=1e-14)
-    assert np.array_equal(disc.mirrored(both)[:, :ANGLES], half.mirrored(tractions))
 
 
 @pytest.mark.parametrize("nu", RATIOS)

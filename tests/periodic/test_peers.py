@@ -4,17 +4,13 @@ import os
 import sys
 from importlib.util import find_spec
 
-import numpy as np
 import pytest
 from stubs.studies_stub import configured
 
 import microslip
 from microslip.answer import point as trial
-from microslip.contact.path import EULER, make_path
-from microslip.contact.squares import CartesianContact
 from microslip.foundation import canonical
 from microslip.periodic import method_names
-from microslip.periodic.methods import aspher
 from microslip.studies import accuracy, requests
 
 os.environ.setdefault("OMP_NUM_THREADS", "1")  # read when the package is first imported
@@ -82,28 +78,6 @@ def test_rotation_is_refused(within):
 
 
 # With the package
-
-
-def straight(distance, steps):
-    def displacement(phase):
-        return distance * phase, 0.0 * phase, 0.0 * phase
-
-    return make_path(displacement, np.linspace(0.0, 1.0, steps + 1), EULER)
-
-
-@needs_it
-def test_one_direction_is_cattaneo_and_mindlin():
-    """F/(mu F_z) = 1 - (1 - u/u_lim)^(3/2), and the force of our squares."""
-    cells, path = 24, straight(1.2, 12)
-    solver = aspher.Solver(cells, 0.0)
-    assert solver.bound.sum() * solver.size**2 == pytest.approx(1.0, abs=1e-6)
-    result, residuals = np.transpose([solver.step(*to) for to in path.positions[1:, :2]])
-    ours = CartesianContact(cells).march(path, np.zeros((2, cells, cells)), 1e-9).forces[1:, 0]
-    assert solver.failed == 0
-    assert residuals.max() < 1e-3
-    left = np.maximum(1.0 - path.positions[1:, 0], 0.0)
-    assert result == pytest.approx(1.0 - left**1.5, abs=2e-3)
-    assert result == pytest.approx(ours, abs=3e-3)
 
 
 def trial_at(method, velocity, amplitude, steps, tolerance):

@@ -3,7 +3,6 @@
 import numpy as np
 import pytest
 
-import microslip
 from microslip.contact.registry import MODELS
 from microslip.periodic.static_limit import lens_corner, limit_on_a_line
 from microslip.scene.named import Bore, Transverse
@@ -74,19 +73,3 @@ def test_pointwise_form_converges_to_the_closed_form_transverse(amplitude):
 def test_pointwise_form_agrees_with_the_closed_form_bore(amplitude, poisson):
     result = numerical_limit(Bore(), amplitude, "polar", 32, 16, poisson)
     assert result == pytest.approx(float(paper.static_limit_bore(amplitude)), abs=3e-4)
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize(
-    ("motion", "amplitude", "poisson"),
-    [("transverse", 0.5, 0.0), ("transverse", 0.5, 0.3), ("bore", 1.0, 0.0)],
-)
-def test_slow_marches_approach_the_limit(motion, amplitude, poisson):
-    limit = microslip.solve(motion, 0.0, amplitude, poisson=poisson, tolerance=1e-3)
-    velocities = [1e-3, 1e-4, 1e-5]
-    slow = [microslip.solve(motion, v, amplitude, poisson=poisson) for v in velocities]
-    excess = np.array([answer.mu_macro for answer in slow]) - limit.mu_macro
-    assert all(answer.converged for answer in slow)
-    assert np.all(np.diff(excess) < 0.0)
-    last = limit.mu_macro_error + slow[-1].mu_macro_error
-    assert -last < excess[-1] < 2e-3 + last

@@ -5,8 +5,6 @@ import pytest
 from stubs.agreement import assert_agree
 
 import microslip
-from microslip.periodic.discretise import Resolution
-from microslip.periodic.simulate import simulate
 from microslip.scene.by_name import motion_named
 from microslip.scene.problem import Problem
 
@@ -24,22 +22,6 @@ def test_the_motion_is_its_own_mirror_image_half_a_period_later():
     now, later = motion.displacement(phase), motion.displacement(phase + np.pi)
     for one, other, sign, way in zip(now, later, (1, -1, -1), (0.3 * np.pi, 0, 0), strict=True):
         assert other == pytest.approx(sign * one + way, abs=1e-12)
-
-
-@pytest.mark.long
-def test_the_static_limit_is_approached_by_marches():
-    """Limit and marches use the same squares and steps, so that their errors are equal."""
-    motion, squares = motion_named("transverse-bore"), Resolution(16, 1, 48)
-    limit = simulate(Problem(motion, 0.0, 0.5, 0.0), "cartesian", squares, 1e-5)
-    runs = [
-        simulate(Problem(motion, v, 0.5, 0.0), "cartesian", squares, 1e-5) for v in (4e-3, 5e-4)
-    ]
-    above = [run.mu for run in runs]
-    # the excess is proportional to v^(2/3): at 1/8 of the velocity it is 1/4
-    guess = above[1] - (above[0] - above[1]) / 3.0
-    assert limit.converged and runs[0].converged and runs[1].converged
-    assert limit.mu < above[1] < above[0]
-    assert guess == pytest.approx(limit.mu, abs=8e-3)
 
 
 @pytest.mark.slow

@@ -14,12 +14,10 @@ import microslip
 from microslip import scene
 from microslip.app.cli import main
 from microslip.foundation.errors import InputError
-from microslip.periodic.discretise import Resolution
-from microslip.periodic.simulate import simulate
 from microslip.scene import by_name
 from microslip.scene.by_name import MOTIONS
 from microslip.scene.drive import Force, Spring
-from microslip.scene.named import Elliptic, Transverse, Zigzag
+from microslip.scene.named import Elliptic, Transverse
 from microslip.scene.problem import Problem
 from microslip.theory import paper
 
@@ -52,17 +50,6 @@ def test_the_oscillation_turns_at_both_ends_of_half_a_period(motion):
     both = (motion.displacement(at, 0.0, 0.7, 0.0) for at in (PHASE, ends))
     for part, end in zip(*both, strict=True):
         assert np.abs(part).max() <= abs(end[1]) + 1e-12
-
-
-def test_the_static_limit_knows_the_turning_points_alone():
-    """The static limit of the zigzag is that of the sine, which is known in closed form."""
-    resolution = Resolution(64, 1, 0)
-    one, other = (
-        simulate(Problem(motion, 0.0, 0.5, 0.0), "radial", resolution, 1e-8).mu
-        for motion in (Zigzag(), Transverse())
-    )
-    assert one == pytest.approx(other, abs=1e-9)
-    assert one == pytest.approx(paper.static_limit_transverse(0.5), abs=1e-3)
 
 
 CUBE = '''"""To and fro across the motion like the cube of a sine: slow in the middle."""

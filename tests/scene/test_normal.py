@@ -189,18 +189,3 @@ def test_closed_form_springs_and_rings_agree_for_other_indenters(
         result = microslip.solve(motion, velocity, amplitude, **settings)
         assert result.converged
         assert abs(result.mu_macro - exact.mu_macro) <= result.mu_macro_error
-
-
-@pytest.mark.parametrize("exponent", [1.0, 8.0])
-def test_static_friction_of_power_laws(exponent):
-    """The load is proportional to the power (n + 1)/n of the depth; static friction is the smallest
-    load."""
-    pressure = f"power:exponent={exponent:g}"
-    by_load = microslip.solve("normal", 0.0, 0.4, pressure=pressure)
-    assert by_load.mu_macro == pytest.approx(0.6, abs=1e-9)
-    by_depth = microslip.solve("normal:indentation=1", 0.0, 0.4, pressure=pressure)
-    phase = np.linspace(0.0, 2.0 * np.pi, 1001)[:-1]
-    power = (exponent + 1.0) / exponent
-    mean = np.mean((1.0 + 0.4 * np.sin(phase)) ** power)
-    assert by_depth.mu_macro == pytest.approx(0.6**power / mean, abs=1e-9)
-    assert microslip.solve("normal", 0.0, 1.0, pressure=pressure).mu_macro == 0.0

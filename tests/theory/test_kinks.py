@@ -5,9 +5,8 @@ import pytest
 
 from microslip.pressures.by_name import pressure_named
 from microslip.pressures.hertz import HERTZ
-from microslip.scene.by_name import motion_named
 from microslip.theory import masing, oscillating_load
-from microslip.theory.kinks import Kinks, kink_velocity, kinks_of
+from microslip.theory.kinks import kink_velocity, kinks_of
 
 AMPLITUDES = (0.2, 0.6, 1.0, 1.7)
 PULLED_BACK = 0.97
@@ -49,17 +48,3 @@ def test_a_load_that_oscillates_takes_nothing_from_a_little_below_its_kink_on():
         at = float(kink_velocity(kinks_of("normal"), np.array(amplitude)))
         assert load_oscillates(1.001 * at, amplitude) == pytest.approx(1.0, abs=1e-9)
         assert load_oscillates(0.95 * at, amplitude) < 1.0 - 1e-6
-
-
-def test_a_loop_is_cut_where_it_no_longer_goes_back():
-    for name in (
-        "elliptic",
-        "elliptic:forward=0.5,forward_cycles=2,phase=0",
-        "elliptic:forward=0.3,phase=30",
-    ):
-        phase = np.linspace(0.0, 2.0 * np.pi, 3601)
-        along, _, _ = motion_named(name).displacement(phase, 0.0, 0.7, 0.0)
-        fastest = np.gradient(along, phase).max()
-        at = kink_velocity(kinks_of(name), np.array(0.7))
-        assert float(at) == pytest.approx(fastest, rel=1e-3)
-    assert kinks_of("elliptic:forward=0") == Kinks()

@@ -101,21 +101,6 @@ def test_closed_bore_forms_are_the_integrals_of_the_kernels(velocity):
     assert theory.bore_torque(velocity) == pytest.approx(torque, rel=1e-10)
 
 
-def test_bore_of_a_ring_of_pressure():
-    def ring(r):
-        return np.exp(-(((r - 0.7) / 0.02) ** 2))
-
-    # A plain sum converges fast for a smooth ring.
-    r = np.linspace(0, 1, 20001)
-    weight = ring(r)
-    forward, torque = axisymmetric.bore_of(ring, [0.3, 2.0])
-    for i, v in enumerate((0.3, 2.0)):
-        share = np.sum(weight * r * theory.forward_kernel(r / v)) / np.sum(weight * r)
-        assert forward[i] == pytest.approx(share / (2 * np.pi), rel=1e-8)
-        share = np.sum(weight * r**2 * theory.torque_kernel(r / v)) / np.sum(weight * r**2)
-        assert torque[i] == pytest.approx(share / (2 * np.pi), rel=1e-8)
-
-
 # Oscillating bore
 
 

@@ -23,8 +23,8 @@ from microslip.contact.coulomb import project
 from microslip.contact.path import LONG_STROKE, Path, make_path
 from microslip.foundation.errors import InputError
 from microslip.periodic.discretise import Resolution, contact_of
+from microslip.periodic.march_values import bounds_at_phases
 from microslip.periodic.run import unsolved
-from microslip.periodic.snapshots import bounds_at_phases
 from microslip.pressures.by_name import pressure_named
 from microslip.pressures.hertz import HERTZ
 from microslip.pressures.pressure import Pressure

@@ -32,9 +32,8 @@ import numpy as np
 
 from microslip.answer.answer import UNKNOWN, Answer, Estimate
 from microslip.answer.ladder import LOOSEST, ORDER, Ladder
-from microslip.periodic.budget import Spent
+from microslip.periodic.budget import Effort, Spent
 from microslip.periodic.discretise import Resolution
-from microslip.periodic.effort import Effort
 from microslip.periodic.run import NAMES, Run
 from microslip.scene.problem import Problem
 

@@ -1,4 +1,4 @@
-"""Budget of a point: limits on its work and its wall-clock time.
+"""Effort of runs, and budget of a point: limits on its work and its wall-clock time.
 
 Both limits are checked after every march, so that they also end long searches.  With a limit on the
 work, the result is the same on every machine.  The time limit depends on the machine, so a result
@@ -10,11 +10,47 @@ from __future__ import annotations
 
 import math
 import time
+from dataclasses import dataclass
 from typing import Any
 
 from microslip.contact.contact import Contact, March
 from microslip.foundation.errors import SolverError
-from microslip.periodic.effort import Effort
+
+
+@dataclass(frozen=True)
+class Effort:
+    """Computational effort of one or several runs; efforts can be added and subtracted.
+
+    Attributes
+    ----------
+    solves : int
+        Number of step solves.
+    iterations : int
+        Number of iterations of the step solver.
+    work : int
+        Number of step solves times number of unknowns.
+    updates : int
+        Number of iterations times number of unknowns.
+    retried : int
+        Number of runs that did not converge at first and had a second attempt.
+    """
+
+    solves: int = 0
+    iterations: int = 0
+    work: int = 0
+    updates: int = 0
+    retried: int = 0
+
+    @staticmethod
+    def of(solves: int, iterations: int, unknowns: int) -> Effort:
+        """Effort of marches; `unknowns` is the number of unknowns in a step."""
+        return Effort(solves, iterations, solves * unknowns, iterations * unknowns)
+
+    def __add__(self, other: Effort) -> Effort:
+        return Effort(*(vars(self)[name] + value for name, value in vars(other).items()))
+
+    def __sub__(self, other: Effort) -> Effort:
+        return Effort(*(vars(self)[name] - value for name, value in vars(other).items()))
 
 
 class Spent(SolverError):

@@ -9,8 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from microslip.contact.contact import Contact
-from microslip.periodic.budget import Budget
-from microslip.periodic.effort import Effort
+from microslip.periodic.budget import Budget, Effort
 from microslip.periodic.method import SHIPPED, Method
 
 if TYPE_CHECKING:
@@ -18,6 +17,16 @@ if TYPE_CHECKING:
     from microslip.scene.problem import Problem
 from microslip.periodic.discretise import Resolution, contact_of
 
+STEP_SHARE = 1e-2
+"""Largest ratio of the step tolerance to the tolerance of the periodic state."""
+SLOW_STEP_SHARE = 3e-4
+"""Smallest ratio of the step tolerance to the tolerance of the periodic state.  The slower the
+motion, the longer its transients, and the more the errors of the steps accumulate."""
+TIGHTER = 0.1
+"""Smallest ratio of the step tolerance in a second attempt to the step tolerance in the first."""
+MARCH_SHARE = 0.16
+"""Largest sum of the step tolerances in half a period, divided by the tolerance of the periodic
+state.  With two stages per step, the residuals add up to a third of the tolerance."""
 NAMES = ("friction", "torque", "dissipation", "velocity", "displacement")
 """Names of the values of a run that have error estimates."""
 
@@ -129,3 +138,20 @@ def unsolved(residual: float, solves: int, step_tolerance: float) -> str:
 def failed_run(reason: str) -> Run:
     """The Run for a failed march.  Its numbers are NaN or infinite."""
     return Run(dict.fromkeys(NAMES, np.nan), np.inf, np.inf, reason=reason)
+
+
+def step_share(force_rate: float, steps: int, tighter: bool) -> float:
+    """Ratio of the step tolerance to the tolerance of the periodic state.
+
+    `force_rate` is the rise of the force per radian of phase, divided by mu F_z, for a contact
+    without slip.
+    """
+    slow_share = force_rate * np.pi * STEP_SHARE
+    floor = TIGHTER * SLOW_STEP_SHARE if tighter else SLOW_STEP_SHARE
+    return min(max(slow_share, floor), STEP_SHARE, MARCH_SHARE / steps)
+
+
+def periods_of(marches: int, problem: Problem) -> float:
+    """Convert a number of marches, each over a period or half a period, to a number of full
+    periods."""
+    return 0.5 * marches if problem.half_period_mirror else float(marches)

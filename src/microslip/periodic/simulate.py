@@ -16,11 +16,20 @@ import numpy as np
 
 from microslip.contact.contact import Body, StepFailure, forward_slip
 from microslip.contact.coulomb import project
+from microslip.periodic.budget import Effort
 from microslip.periodic.discretise import Resolution, path_of
-from microslip.periodic.effort import Effort
-from microslip.periodic.means import dissipated_energy, mean_forces
+from microslip.periodic.march_values import dissipated_energy, mean_forces
 from microslip.periodic.rest import run_to_rest
-from microslip.periodic.run import AS_SHIPPED, Run, Settings, failed_run, unsolved
+from microslip.periodic.run import (
+    AS_SHIPPED,
+    STEP_SHARE,
+    Run,
+    Settings,
+    failed_run,
+    periods_of,
+    step_share,
+    unsolved,
+)
 from microslip.periodic.search import (
     AT_REST,
     MOST_MARCHES,
@@ -33,7 +42,6 @@ from microslip.periodic.search import (
 from microslip.periodic.static_limit import SLOW_LOOP, limit_on_a_line, limit_on_a_loop
 from microslip.periodic.steady import steady_state
 from microslip.periodic.stick_edge import static_run
-from microslip.periodic.tolerances import STEP_SHARE, periods_of, step_share
 from microslip.scene.problem import Problem
 
 SLOW_EXCESS, LARGEST_EXCESS = 4.0, 0.6
@@ -201,7 +209,7 @@ class _Search:
         return {
             "friction": float(mean[0]) / self.problem.mean_load,
             "torque": float(mean[2]) / self.problem.pressure.torque,
-            "dissipation": dissipated_energy(self.contact, self.path, periodic),
+            "dissipation": dissipated_energy(self.contact, self.path, periodic.march),
         }
 
     def result(self) -> Run:

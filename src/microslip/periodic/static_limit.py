@@ -34,13 +34,16 @@ from microslip.contact.contact import (
     rigid_displacement,
 )
 from microslip.contact.path import EULER, Path, make_path
+from microslip.periodic.budget import Effort
 from microslip.periodic.discretise import Resolution, path_of
-from microslip.periodic.effort import Effort
-from microslip.periodic.means import dissipated_energy, mean_forces
-from microslip.periodic.run import Run, Settings, unsolved
+from microslip.periodic.march_values import (
+    bounds_at_phases,
+    dissipated_energy,
+    mean_forces,
+    tractions_at_phases,
+)
+from microslip.periodic.run import MARCH_SHARE, STEP_SHARE, Run, Settings, periods_of, unsolved
 from microslip.periodic.search import Goal, PeriodicState, PeriodMap, find_periodic_state
-from microslip.periodic.snapshots import bounds_at_phases, tractions_at_phases
-from microslip.periodic.tolerances import MARCH_SHARE, STEP_SHARE, periods_of
 from microslip.scene.problem import Problem
 
 STEPS = 4
@@ -324,7 +327,7 @@ def limit_run(
         {
             "friction": limit.force / load,
             # a constant traction does no work over a closed loop
-            "dissipation": dissipated_energy(contact, path, periodic),
+            "dissipation": dissipated_energy(contact, path, periodic.march),
         },
         distance=FELT * periodic.distance / load,
         residual=limit.solver_residual / load,

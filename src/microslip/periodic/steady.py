@@ -6,10 +6,9 @@ import numpy as np
 
 from microslip.contact.contact import FORWARD, TORQUE, Contact, forward_slip
 from microslip.contact.path import EULER, make_path
-from microslip.periodic.effort import Effort
-from microslip.periodic.run import Run, unsolved
+from microslip.periodic.budget import Effort
+from microslip.periodic.run import STEP_SHARE, Run, unsolved
 from microslip.periodic.search import Goal, PeriodMap, find_periodic_state
-from microslip.periodic.tolerances import STEP_SHARE
 from microslip.scene.problem import Problem
 
 STEADY_STRETCH = 8

@@ -16,9 +16,8 @@ import numpy as np
 
 from microslip.contact.contact import Contact, StepFailure
 from microslip.contact.rings import Focus
-from microslip.periodic.budget import Budget
+from microslip.periodic.budget import Budget, Effort
 from microslip.periodic.discretise import STRONGEST_FOCUS, Resolution, focus_strength
-from microslip.periodic.effort import Effort
 from microslip.periodic.run import AS_SHIPPED, Run, Settings
 from microslip.periodic.static_limit import SLOW_LOOP, at_turning_points, limit_run
 from microslip.pressures.hertz import HERTZ

@@ -29,8 +29,8 @@ import numpy as np
 from microslip.contact.convolution import square_convolution
 from microslip.contact.coulomb import coulomb_residual
 from microslip.contact.path import EULER, Path
+from microslip.periodic.budget import Effort
 from microslip.periodic.discretise import Resolution, path_of
-from microslip.periodic.effort import Effort
 from microslip.periodic.method import Method
 from microslip.periodic.run import Run, failed_run
 from microslip.scene.problem import Problem
