@@ -52,8 +52,10 @@ ROOM = 16_000_000
 SPELL = 1.0
 """Seconds without compilation after which the next compilation is announced again.  Between the
 kernels of one solution, milliseconds pass."""
-LONGEST_WAIT = 300.0
-"""Seconds that a process waits while another one compiles."""
+LONGEST_WAIT = 120.0
+"""Seconds that a process waits in total while others compile; one of them can be suspended."""
+PAUSE = 0.05
+"""Seconds between two attempts to lock the folder."""
 REPORTED = "MICROSLIP_SAID_UNSTORED"
 """Environment variable that is set after the message about a folder.  Jobs inherit it."""
 
@@ -100,6 +102,7 @@ class _Listener(event.Listener):
 
     depth, is_compiling, ended = 0, False, -SPELL
     seconds, _started = 0.0, 0.0
+    patience = LONGEST_WAIT
     _lock: IO | None = None
 
     def on_start(self, event: event.Event) -> None:
@@ -130,13 +133,14 @@ def _lock() -> IO | None:
     with contextlib.suppress(ImportError, OSError):
         import fcntl
 
-        file, started = open(f"{FOLDER}/lock", "w"), time.monotonic()  # noqa: SIM115
-        while time.monotonic() < started + LONGEST_WAIT:
+        file = open(f"{FOLDER}/lock", "w")  # noqa: SIM115
+        while _Listener.patience > 0.0:
             try:
                 fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
                 return file
             except BlockingIOError:
-                time.sleep(0.05)
+                time.sleep(PAUSE)
+                _Listener.patience -= PAUSE
     return None
 
 
