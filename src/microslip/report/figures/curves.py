@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 from itertools import product
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 import xarray as xr
@@ -202,10 +202,7 @@ def _panel(
     panels.logarithmic_if_wide(axes, np.concatenate([_values(line)[0] for line in lines]))
     if notes:
         at = ", ".join(f"${look.number(one)}$" for one in sorted(notes))
-        text = f"lines: limit for velocity to 0; markers: velocity {at}"
-        figure: Any = axes.get_figure(root=True)
-        room = figure.get_size_inches()[0] / (1.0 if alone else 1.5) - 0.7
-        text = look.wrapped(text, room, look.HEADING)
+        text = f"lines: limit for velocity to 0;\nmarkers: velocity {at}"
         axes.set_title(text, loc="left", fontsize=look.HEADING)
     return handles
 
