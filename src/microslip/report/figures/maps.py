@@ -22,6 +22,7 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 from matplotlib.path import Path
 from matplotlib.patheffects import withStroke
+from matplotlib.ticker import LogLocator
 from scipy.ndimage import maximum_filter
 from scipy.spatial import KDTree
 
@@ -79,7 +80,8 @@ def draw(*datasets: xr.Dataset) -> Figure:
     rows = [_panels(dataset, len(datasets) > 1) for dataset in datasets]
     drawn = [panel for row in rows for panel in row]
     variables = [panel.variable for panel in rows[0]]
-    aligned = len(variables) > 1 and all([one.variable for one in r] == variables for r in rows)
+    aligned = len(variables) in (2, 3, 4)
+    aligned &= all([one.variable for one in row] == variables for row in rows)
     across = len(variables) if aligned else COLUMNS.get(len(drawn), 3)
     has_cuts = len(datasets) == 1 and drawn[-1].variable in ("mu_macro", "mu_macro_change")
     height = HEIGHT[across] * -(-len(drawn) // across) + 0.35
@@ -170,6 +172,9 @@ def _fill(page: Any, axes: list[Axes], drawn: list[Panel], across: int, aligned:
         panels.heading(one, panel.title, room)
     _label(axes, drawn, across, room)
     shared = aligned or len(scales) == 1
+    for one in axes:
+        if not shared and across > 2 and one.get_xscale() == "log":  # beside colour bars
+            one.xaxis.set_major_locator(LogLocator(numticks=4))
     for name, group in groups.items():
         for part in [group] if shared else [[one] for one in group]:
             label = scales[name].label
