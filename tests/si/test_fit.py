@@ -246,11 +246,8 @@ GOOD = "speed [mm/s],amplitude [um],friction [N]\n1,0.5,1.93\n2,0.5,2.1\n"
     ("changed", "message"),
     [
         (("mm/s", "mm"), "line 2: speed = '1 mm': the unit is m"),
-        (("mm/s", "furlong"), "line 2: speed = '1 furlong'"),
         (("1.93", ""), "line 2: friction is empty; allowed: a number in every row"),
-        (("1.93", "nan"), "line 2: friction is nan; allowed: a finite number"),
         (("1,0.5", "-1,0.5"), "line 2: speed = '-1 mm/s': allowed is a finite value"),
-        (("2,0.5", "2"), "line 3: 2 cells; allowed: 3"),
     ],
 )
 def test_an_unreadable_line_is_left_out_with_the_reason(closed, tmp_path, changed, message):

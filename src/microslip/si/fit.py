@@ -678,7 +678,8 @@ def _fitted(
         problem = f"the residuals are larger than the errors of the rows allow (p = {chance:.1g})"
         doubt = "the theory does not describe these rows, or the errors are too small"
         doubts.append(f"{problem}: {doubt}")
-    doubts += _warnings(rows, settings["motion"], bodies, values)
+    modulus = math.exp(logs[scale][0]) if bodies.radius is not None else None
+    doubts += _warnings(rows, settings["motion"], bodies, mu, modulus)
     if determined and (other := profile.second(at, allowed)) is not None:
         second = float(profile.mu(other)[0])
         size = other if scale == "u_lim" else 1.5 * (math.log(second) + unit - other)
@@ -713,14 +714,15 @@ def _fitted(
     return Fit(values, columns, _curve(rows, model, mu, at, macro, errors), rows.labels)
 
 
-def _warnings(rows: Rows, motion: str, bodies: Bodies, values: Mapping[str, Any]) -> list[str]:
+def _warnings(
+    rows: Rows, motion: str, bodies: Bodies, mu: float, modulus: float | None
+) -> list[str]:
     """Assumptions of the theory that do not hold at the best fit."""
-    modulus = values["shear_modulus_Pa"]
     if modulus is None:
-        return broken_rules({"mu": values["mu"]})
+        return broken_rules({"mu": mu})
     k = int(np.argmax(rows.conditions["amplitude"]))
     moving = {name: float(rows.conditions[name][k]) for name in CONDITIONS if name != "load"}
-    contact = bodies.contact(values["mu"], modulus, rows.mean_load, motion, **moving)
+    contact = bodies.contact(mu, modulus, rows.mean_load, motion, **moving)
     return warnings_of(contact, moving["speed"])
 
 
