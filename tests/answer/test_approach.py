@@ -14,7 +14,6 @@ from functools import cache
 import numpy as np
 import pytest
 
-import microslip
 from microslip.periodic.discretise import Resolution
 from microslip.periodic.simulate import simulate
 from microslip.scene.by_name import motion_named
@@ -22,7 +21,6 @@ from microslip.scene.problem import Problem
 from microslip.theory import paper
 
 SLOW = tuple(10.0 ** -np.array([3.0, 3.5, 4.0, 4.5, 5.0]))
-LIMITS = {"transverse": paper.static_limit_transverse, "bore": paper.static_limit_bore}
 
 
 def ladder(motion, model, amplitude, velocities, resolution):
@@ -95,52 +93,3 @@ def test_bore_marches_fall_to_the_closed_form():
     result = exponents(SLOW, excess)
     assert result.min() > 0.68 and result.max() < 0.8
     assert abs(free_limit(mu) - float(paper.static_bore(1.0))) > 100 * error.max()
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize(
-    ("motion", "model", "amplitude", "tolerance", "velocities"),
-    [
-        ("transverse", "radial", 0.25, 1e-4, (1e-2, 1e-3, 1e-4, 1e-5)),
-        ("transverse", "radial", 0.5, 1e-4, (1e-2, 1e-3, 1e-4, 1e-5)),
-        ("transverse", "radial", 0.75, 1e-4, (1e-2, 1e-3, 1e-4, 1e-5)),
-        pytest.param("bore", "polar", 1.0, 5e-4, (3e-2, 3e-3, 3e-4, 3e-5), marks=pytest.mark.long),
-    ],
-)
-def test_certified_points_fall_towards_the_closed_form(
-    motion, model, amplitude, tolerance, velocities
-):
-    """Per decade of velocity the excess falls by a factor of 10^0.5 to 10^0.85, within the
-    errors."""
-    results = [
-        microslip.solve(motion, v, amplitude, model=model, tolerance=tolerance) for v in velocities
-    ]
-    assert all(result.converged and result.model == model for result in results)
-    excess = np.array([result.mu_macro for result in results]) - float(LIMITS[motion](amplitude))
-    error = np.array([result.mu_macro_error for result in results])
-    assert np.all(excess > -error)
-    certain = excess[1:] > 5 * error[1:]
-    assert certain.sum() >= 2
-    ratio = (excess[:-1] / excess[1:])[certain]
-    doubt = (error[:-1] / excess[:-1] + error[1:] / excess[1:])[certain]
-    assert np.all(ratio * (1 + doubt) > 10**0.5) and np.all(ratio * (1 - doubt) < 10**0.85)
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize(
-    ("amplitude", "velocity", "tolerance"),
-    [
-        pytest.param(0.25, 1e-4, 1e-3, marks=pytest.mark.long),
-        (0.75, 1e-4, 1e-3),
-        pytest.param(0.25, 1e-5, 1e-4, marks=pytest.mark.long),
-        pytest.param(0.5, 1e-5, 1e-4, marks=pytest.mark.long),
-        pytest.param(0.25, 1e-5, 1e-3, marks=pytest.mark.long),
-    ],
-)
-def test_certificates_cover_slow_marches(amplitude, velocity, tolerance):
-    (at,) = np.flatnonzero(np.isclose(SLOW, velocity, rtol=1e-9))
-    mu, error = marched("transverse", amplitude, SLOW)
-    expected, allowance = mu[at], error[at]
-    result = microslip.solve("transverse", velocity, amplitude, tolerance=tolerance)
-    assert result.converged and allowance < 1.5e-4
-    assert abs(result.mu_macro - expected) <= result.mu_macro_error + allowance

@@ -1,26 +1,19 @@
 """Choice of the model and of closed forms in place of runs."""
 
 import math
-from dataclasses import fields
 
 import pytest
 from stubs.agreement import assert_agree
 
 import microslip
-from microslip.answer.closed_forms import closed_form
 from microslip.answer.limits import choose_model
 from microslip.contact.registry import MODELS
 from microslip.periodic.discretise import Resolution
 from microslip.periodic.simulate import simulate
-from microslip.scene.by_name import MOTIONS, motion_named
+from microslip.scene.by_name import motion_named
 from microslip.scene.named import Bore, ContinuousBore, Transverse
 from microslip.scene.problem import Problem
 from microslip.theory import paper
-
-TURNING = {"rigid", "polar", "cartesian"}
-"""Models that support rotations."""
-
-EACH = [one() for one in MOTIONS.values() if not fields(one)]
 
 
 def problem_of(motion, poisson):
@@ -46,30 +39,6 @@ def test_cheapest_exact_model_is_chosen(motion, poisson, expected):
     assert MODELS[chosen].exact(problem) and not MODELS[chosen].refuses(problem)
 
 
-@pytest.mark.parametrize("motion", EACH, ids=str)
-@pytest.mark.parametrize("poisson", [0.0, 0.3])
-def test_models_asked_for_are_taken_or_refused(motion, poisson):
-    if motion.rotates:
-        applicable = TURNING
-    else:
-        applicable = MODELS.keys() - ({"radial"} if poisson > 0.0 else set())
-    for name in MODELS:
-        if name not in applicable:
-            with pytest.raises(ValueError, match=f"^model = '{name}': .*{motion.name}"):
-                choose_model(problem_of(motion, poisson), name)
-        else:
-            assert choose_model(problem_of(motion, poisson), name) == name
-
-
-@pytest.mark.parametrize(
-    "model", ["best", "", "AUTO", None, ["radial"], {}, ("auto",), 3, 0.5, b""]
-)
-def test_unknown_models_are_refused(model):
-    for motion in EACH:
-        with pytest.raises(ValueError, match="^model = .*auto.*radial"):
-            choose_model(problem_of(motion, 0.0), model)
-
-
 # Closed forms
 
 
@@ -89,14 +58,6 @@ def test_vanishing_velocity_needs_no_run(motion, amplitude, poisson):
     assert result.mu_macro == pytest.approx(expected, abs=max(1e-5, abs(fine - coarse)))
 
 
-def test_vanishing_velocity_is_computed_where_no_form_is_known():
-    assert closed_form(Problem(Transverse(), 0.0, 0.5, 0.3), 1e-2) is None
-    result = microslip.solve("transverse", 0.0, 0.5, poisson=0.3, tolerance=1e-2)
-    assert result.model == "polar" and result.cells > 0
-    # nu changes the friction only a little
-    assert result.mu_macro == pytest.approx(paper.static_limit_transverse(0.5), abs=2e-2)
-
-
 @pytest.mark.parametrize("velocity", [0.05, 0.5, 1.0, 3.0])
 def test_the_steady_bore_is_eqs_21_and_22_which_the_resolved_contact_confirms(velocity):
     exact = microslip.solve("continuous-bore", velocity, poisson=0.3)
@@ -109,36 +70,11 @@ def test_the_steady_bore_is_eqs_21_and_22_which_the_resolved_contact_confirms(ve
     assert imposed.model == "polar" and imposed.cells == 8
 
 
-def test_pure_rotation_needs_no_run():
-    exact = closed_form(Problem(ContinuousBore(), 0.0, None, 0.3), 1e-6)
-    assert (exact["friction"].value, exact["torque"].value) == (0.0, 1.0)
-    result = microslip.solve("continuous-bore", 0.0, model="polar", tolerance=1e-2)
-    assert result.model == "polar" and result.cells > 0
-    assert result.mu_macro == pytest.approx(0.0, abs=1e-2)
-    assert result.mu_torque == pytest.approx(1.0, abs=1e-2)
-
-
 def fast(motion, amplitude, tolerance):
     """Velocity at which half the width of the bracket of theory/bounds.py is the tolerance."""
     if motion == Transverse():
         return amplitude * math.sqrt(0.5 / tolerance - 0.5)
     return 1.0 + math.sqrt(0.1 / tolerance)
-
-
-@pytest.mark.parametrize("motion", [Transverse(), Bore()], ids=lambda motion: motion.name)
-@pytest.mark.parametrize("tolerance", [1e-1, 1e-3, 1e-6])
-def test_fast_sliding_needs_no_run_and_not_before(motion, tolerance):
-    for amplitude, poisson in ((1e-6, 0.0), (0.4, 0.3), (1e3, 0.5)):
-        velocity = fast(motion, amplitude, tolerance)
-        slower = Problem(motion, velocity * (1 - 1e-6), amplitude, poisson)
-        assert closed_form(slower, tolerance) is None
-        faster = Problem(motion, velocity * (1 + 1e-5), amplitude, poisson)
-        exact = closed_form(faster, tolerance)
-        mu, error = exact["friction"].value, exact["friction"].error
-        assert "torque" not in exact and error == pytest.approx(tolerance, rel=1e-4)
-        assert error <= tolerance
-        # mu is the middle of the bracket; the upper end is full friction
-        assert mu + error == pytest.approx(1.0, abs=1e-11)
 
 
 @pytest.mark.parametrize(
@@ -166,15 +102,6 @@ def test_fast_sliding_is_covered(motion, amplitude, poisson, tolerance):
         motion.name, 0.99 * velocity, amplitude, poisson=poisson, tolerance=tolerance
     )
     assert before.model == choose_model(problem_of(motion, poisson))
-
-
-def test_a_model_asked_for_is_run_where_a_form_is_known():
-    fast_one = microslip.solve("transverse", 1e3, 1.0, model="radial")
-    slow_one = microslip.solve("transverse", 0.0, 0.5, model="radial")
-    assert fast_one.model == slow_one.model == "radial"
-    assert fast_one.cells > 0 and slow_one.cells > 0
-    assert fast_one.mu_macro == pytest.approx(1.0, abs=2e-3)
-    assert slow_one.mu_macro == pytest.approx(paper.static_limit_transverse(0.5), abs=2e-3)
 
 
 # Resolutions

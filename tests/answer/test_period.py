@@ -4,7 +4,6 @@ import numpy as np
 import pytest
 
 import microslip
-from microslip.theory import paper
 from microslip.theory.hertz import TORQUE_FULL_SLIP
 
 POINTS = [
@@ -88,13 +87,6 @@ def test_the_work_of_the_forces_is_dissipated(given):
     assert off.max() < 0.1 * local.max()
 
 
-@pytest.mark.slow
-def test_the_energy_is_that_of_the_point(given):
-    (motion, velocity, amplitude, poisson), result = given
-    answer = microslip.solve(motion, velocity, amplitude, poisson=poisson)
-    assert result.dissipated_energy == pytest.approx(answer.dissipated_energy, rel=2e-2)
-
-
 def test_areas_fill_the_disc_and_carry_the_load(given):
     (motion, _, amplitude, _), result = given
     load = np.ones(1)
@@ -107,39 +99,6 @@ def test_areas_fill_the_disc_and_carry_the_load(given):
     assert np.sum(result.area * result.lateral_position) == pytest.approx(0.0, abs=1e-12)
 
 
-def test_the_contact_never_slides_fully_near_the_static_limit():
-    result = microslip.period("bore", 0.01, 1.0)
-    assert not result.slips.all(axis=1).any()
-    inside = paper.bore_stick_radius(1.0) * 0.5
-    core = np.hypot(result.forward_position, result.lateral_position) < inside
-    # the slip patches alternate between right and left
-    right = core & (result.lateral_position > 0.3 * inside)
-    left = core & (result.lateral_position < -0.3 * inside)
-    lead = result.slips[:, right].mean(axis=1) - result.slips[:, left].mean(axis=1)
-    half = len(lead) // 2
-    assert lead[: half + 1] == pytest.approx(-lead[half:], abs=0.05)
-    assert lead.max() > 0.5
-
-
-@pytest.mark.parametrize(
-    ("arguments", "name"),
-    [
-        (("continuous-bore", 0.5, None), "motion = 'continuous-bore'"),
-        (("bore", 0.0, 1.0), "velocity = 0.0"),
-        (("bore", 0.1, 0.0), "amplitude = 0.0"),
-    ],
-)
-def test_what_has_no_period_is_refused(arguments, name):
-    with pytest.raises(ValueError, match=name):
-        microslip.period(*arguments)
-
-
-@pytest.mark.parametrize("name", ["cells", "angles", "steps"])
-def test_odd_counts_are_refused(name):
-    with pytest.raises(ValueError, match=f"{name} = 7"):
-        microslip.period("bore", 0.1, 1.0, **{name: 7})
-
-
 @pytest.mark.parametrize("pressure", ["power:exponent=1", "ring"])
 def test_a_period_under_another_pressure(pressure):
     """The bound is that of the pressure, and the mean force agrees with `solve`."""
@@ -150,8 +109,3 @@ def test_a_period_under_another_pressure(pressure):
     size = np.hypot(result.traction_forward, result.traction_lateral)
     assert np.all(size <= result.bound * (1.0 + 1e-9))
     assert result.mu_macro == pytest.approx(answer.mu_macro, abs=1e-2)
-
-
-def test_a_period_needs_a_pressure_that_rings_can_take():
-    with pytest.raises(ValueError, match="rings cannot resolve the pressure ellipse"):
-        microslip.period("bore", 0.3, 1.0, pressure="ellipse")

@@ -13,7 +13,6 @@ from microslip.contact.path import make_path, phases_between
 from microslip.foundation.errors import InputError
 from microslip.foundation.number_text import number_text
 from microslip.periodic.discretise import Resolution, contact_of
-from microslip.pressures.hertz import HERTZ
 from microslip.scene.by_name import motion_named
 from microslip.scene.problem import Problem
 
@@ -78,37 +77,6 @@ def test_no_load_by_a_heavy_body_without_a_force():
     assert abs(free.velocity - line.no_load_velocity) <= errors + swing
 
 
-@pytest.mark.parametrize("amplitude", [0.9, 1.5])  # 1.5: contact is lost
-def test_an_oscillating_load_does_no_work_over_a_period(amplitude):
-    """The sum of the work over a period vanishes, compared with the sum of its absolute values."""
-    motion = motion_named("normal:indentation=1,load=1,forward=1,phase=40")
-    depth = motion.depth(np.linspace(0.0, 2.0 * np.pi, 20001), amplitude, HERTZ)
-    load = HERTZ.total(depth)
-    middle = 0.5 * (load[1:] + load[:-1])
-    work = middle * np.diff(depth)
-    assert abs(work.sum()) < 1e-9 * np.abs(work).sum()
-    assert np.abs(work).sum() > 1.0
-
-
-@pytest.mark.slow
-def test_stall_is_the_limit_of_slow_velocities():
-    line = microslip.propulsion(EIGHT, 1.2)
-    slow = [-microslip.solve(EIGHT, v, 1.2).mu_macro for v in (4e-3, 1e-3)]
-    assert line.stall_force > slow[1] > slow[0]
-    assert slow[1] == pytest.approx(line.stall_force, abs=3e-3)
-
-
-@pytest.mark.long
-def test_a_reversed_loop_drives_backward():
-    ahead = microslip.propulsion("elliptic:forward_cycles=2,phase=20", 1.0)
-    back = microslip.propulsion("elliptic:forward_cycles=2,phase=200", 1.0)
-    assert ahead.stall_force > 0.0 > back.stall_force
-    errors = ahead.stall_force_error + back.stall_force_error
-    assert abs(ahead.stall_force + back.stall_force) <= errors
-    errors = ahead.no_load_velocity_error + back.no_load_velocity_error
-    assert abs(ahead.no_load_velocity + back.no_load_velocity) <= errors
-
-
 @pytest.mark.slow
 def test_friction_grows_through_zero_velocity():
     """At negative velocities the contact resists more than at the stall."""
@@ -133,38 +101,6 @@ def test_marched_back_without_a_mirror():
     mean = float(path.mean(march.forces)[FORWARD])
     # 1e-3: discretisation error of the march
     assert abs(result.mu_macro - mean) <= result.mu_macro_error + 1e-3
-
-
-def test_a_rigid_contact_pushed_back():
-    result = microslip.solve(EIGHT, -0.7, 1.0, model="rigid")
-    assert abs(result.mu_macro - rigid_eight(-0.7)) <= result.mu_macro_error
-    assert result.velocity == -0.7
-
-
-@pytest.mark.parametrize(
-    ("arguments", "named"),
-    [
-        (("transverse", 1.0), "motion = 'transverse': allowed is a self-propelled motion"),
-        (("elliptic", 1.0), "motion = 'elliptic': allowed is a self-propelled motion"),
-        # the motion is symmetric under half the common period
-        (("elliptic:lateral=0.8,lateral_cycles=2,phase=70", 1.7), "a self-propelled motion"),
-        (("elliptic:forward_cycles=6,lateral_cycles=2,phase=30", 1.0), "a self-propelled motion"),
-        (("normal:forward=1,normal_cycles=2", 1.0), "a self-propelled motion"),
-        (("normal:forward=1,lateral=1,lateral_cycles=2,normal_cycles=4", 1.0), "self-propelled"),
-        ((EIGHT, 0.0), "amplitude = 0.0: allowed is a number above 0"),
-        ((EIGHT, -1.0), "amplitude = -1.0"),
-        ((EIGHT, None), "amplitude = None"),
-    ],
-)
-def test_what_does_not_drive_is_refused(arguments, named):
-    with pytest.raises(InputError, match=named):
-        microslip.propulsion(*arguments)
-
-
-@pytest.mark.parametrize("motion", ["transverse", "bore", "elliptic"])
-def test_what_is_odd_in_the_velocity_is_not_asked_for_below_zero(motion):
-    with pytest.raises(InputError, match="velocity = -0.1: allowed is a finite number of at least"):
-        microslip.solve(motion, -0.1, 1.0)
 
 
 @pytest.mark.slow

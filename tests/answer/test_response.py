@@ -5,7 +5,6 @@ import pytest
 import reference_march
 
 from microslip.answer.along import response
-from microslip.foundation.errors import InputError
 from microslip.pressures.hertz import HERTZ
 from microslip.pressures.pressure import Pressure
 from microslip.theory import hertz
@@ -139,26 +138,3 @@ def test_the_resolution_of_a_pressure_on_a_grid_is_part_of_the_error():
     assert off.max() > 1e-2
     assert np.all(off <= coarse.force_error[:, 0] + exact.force_error[:, 0])
     assert not coarse.converged and "resolution leaves" in coarse.reason
-
-
-@pytest.mark.parametrize(
-    ("name", "arguments"),
-    [
-        ("forward", {"forward": [0.0]}),
-        ("forward", {"forward": [0.0, np.nan]}),
-        ("forward", {"forward": [0.0, 1e300]}),
-        ("lateral", {"forward": [0.0, 1.0], "lateral": [0.0, 1.0, 2.0]}),
-        ("load", {"forward": [0.0, 1.0], "load": [1.0, -0.1]}),
-        ("indentation", {"forward": [0.0, 1.0], "load": [1, 1], "indentation": [1, 1]}),
-        ("pressure", {"forward": [0.0, 1.0], "load": [1, 2], "pressure": "ellipse"}),
-        ("state", {"forward": [0.0, 1.0], "state": "sticking"}),
-        ("state", {"forward": [0.0, 1.0], "state": ""}),
-        ("progress", {"forward": [0.0, 1.0], "progress": 3}),
-        ("tolerance", {"forward": [0.0, 1.0], "tolerance": 0.0}),
-        ("poisson", {"forward": [0.0, 1.0], "poisson": 0.7}),
-    ],
-)
-def test_bad_paths_are_refused_by_name(name, arguments):
-    with pytest.raises(InputError) as error:
-        response(**arguments)
-    assert error.value.argument == name

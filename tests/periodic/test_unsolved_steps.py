@@ -9,7 +9,6 @@ from microslip.contact.modes import PolarContact
 from microslip.contact.ring_contact import RadialContact
 from microslip.foundation.errors import SolverError
 from microslip.periodic.discretise import Resolution
-from microslip.periodic.run import unsolved
 from microslip.periodic.simulate import simulate
 from microslip.scene.by_name import motion_named
 from microslip.scene.problem import Problem
@@ -70,8 +69,7 @@ def test_a_period_does_not_converge_where_only_its_last_march_is_unsolved(monkey
     """The steps of the search are solved, those of the last march are not."""
 
     def loosely(contact, path, state, tolerance, rows, along=period.along):
-        track = along(contact, path, state, LOOSE, rows)
-        return track._replace(failure=unsolved(track.residual, path.solves, tolerance))
+        return along(contact, path, state, LOOSE, rows)
 
     monkeypatch.setattr(period, "along", loosely)
     result = microslip.period("transverse", 0.1, 1.0, cells=8, angles=4, steps=32)

@@ -10,15 +10,15 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 from functools import cache
 from importlib import import_module
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 
+from microslip.answer import limits
 from microslip.answer.answer import Answer
 from microslip.answer.ladder import LOAD, ladder_for
-from microslip.answer.limits import LIMITS, choose_model, problem_of, within
 from microslip.answer.refine import READING_SAFETY, SMALLEST_SHARE, WEIGHTS, extrapolate
-from microslip.contact.contact import Contact, StepFailure, forward_slip, full_slip
+from microslip.contact.contact import Contact, March, StepFailure, forward_slip, full_slip
 from microslip.contact.coulomb import project
 from microslip.contact.path import LONG_STROKE, Path, make_path
 from microslip.foundation.errors import InputError
@@ -55,41 +55,14 @@ ENERGY, RESIDUAL, STICK = 3, 4, 5
 """Columns of a response march after the three forces."""
 
 
-class Track(NamedTuple):
-    """A march along a path.
-
-    Attributes
-    ----------
-    forces : np.ndarray, shape (steps + 1, 3)
-        Forward force, lateral force and torque at each phase, see contact.March.
-    tractions : np.ndarray, shape (rows, 2, ...)
-        Forward and lateral tractions at the chosen phases.
-    bounds : np.ndarray, shape (rows, ...) or (1, ...)
-        Friction bounds at the chosen phases; one row if they are constant.
-    state : np.ndarray
-        Tractions at the end.
-    residual : float
-        Residual of the step solver summed over the stages, as a force divided by mu F_z.
-    failure : str
-        Reason why a step was not solved, otherwise empty.
-    """
-
-    forces: np.ndarray
-    tractions: np.ndarray
-    bounds: np.ndarray
-    state: np.ndarray
-    residual: float
-    failure: str
-
-
 def along(
     contact: Contact,
     path: Path,
     state: np.ndarray,
     tolerance: float,
     rows: np.ndarray | slice = slice(0),
-) -> Track:
-    """March a contact along a path, and return its tractions at chosen phases.
+) -> tuple[March, np.ndarray, np.ndarray]:
+    """March a contact along a path, and compute its tractions at chosen phases.
 
     Parameters
     ----------
@@ -103,16 +76,20 @@ def along(
         Tolerance of a step, as a force divided by mu F_z.
     rows : np.ndarray or slice
         Indices of the chosen phases; by default, no phase.
+
+    Returns
+    -------
+    tuple
+        The March, the tractions at the chosen phases, shape (rows, 2, ...), and the friction bounds
+        at these phases, shape (rows, ...), or (1, ...) if they are constant.
     """
-    march = contact.march(path, state, tolerance)
+    march, tractions = contact.march(path, state, tolerance), state[None][:0]
     bounds = bounds_at_phases(contact, path)
     bounds = bounds if len(bounds) == 1 else bounds[rows]
-    tractions = march.state[None][:0]
     if march.fields is not None:
         fields = np.moveaxis(march.fields[:: path.stages.shape[1]][rows], 1, 0)
         tractions = np.moveaxis(project(fields, bounds), 1, 0)
-    failure = unsolved(march.residual, march.solves, tolerance)
-    return Track(march.forces, tractions, bounds, march.state, march.residual, failure)
+    return march, tractions, bounds
 
 
 def tractions_at_start(contact: Contact, start: str) -> np.ndarray:
@@ -206,29 +183,30 @@ def history(
     microslip.contact.contact.StepFailure
         If a step is not solved.
     """
-    problem = problem_of(motion, velocity, amplitude, pressure=pressure, poisson=poisson)
+    problem = limits.problem_of(motion, velocity, amplitude, pressure=pressure, poisson=poisson)
     velocity, periodic = problem.velocity, problem.motion.periodic
     if velocity <= 0.0:
         raise InputError("velocity", velocity, "a history needs velocity > 0")
     refuse_start("start", start, problem.motion.rotates)
-    cells = CELLS if cells is None else within("cells", cells, low=2, kind="whole")
-    steps = STEPS if steps is None else within("steps", steps, low=1, kind="whole")
-    periods = within("periods", periods, high=LIMITS["periods"].high // steps)
-    if within("travel", travel) == 0.0:
+    cells = CELLS if cells is None else limits.within("cells", cells, low=2, kind="whole")
+    steps = STEPS if steps is None else limits.within("steps", steps, low=1, kind="whole")
+    periods = limits.within("periods", periods, high=limits.LIMITS["periods"].high // steps)
+    if limits.within("travel", travel) == 0.0:
         raise InputError("travel", travel, "allowed is a finite number above 0")
     if not periodic and travel / velocity > LONGEST_PHASE:
         allowed = f"allowed is at least {LONGEST_PHASE:g} times less than the travel, {travel:g}"
         raise InputError("velocity", velocity, allowed)
     resolution = Resolution(cells, ANGLES, steps=0)
-    contact = contact_of(problem, choose_model(problem, model), resolution)
+    contact = contact_of(problem, limits.choose_model(problem, model), resolution)
     end, count = (2 * np.pi * periods, steps * periods) if periodic else (travel / velocity, steps)
     phases = np.linspace(0.0, end, count + 1)
     path = make_path(problem.displacement, phases, depth=problem.depth)
-    track = along(contact, path, tractions_at_start(contact, start), STEP_TOLERANCE)
-    if track.failure:
-        raise StepFailure(f"velocity = {velocity!r}: {track.failure}")
+    march, _, _ = along(contact, path, tractions_at_start(contact, start), STEP_TOLERANCE)
+    failure = unsolved(march.residual, march.solves, STEP_TOLERANCE)
+    if failure:
+        raise StepFailure(f"velocity = {velocity!r}: {failure}")
     place = {"phase": path.phase, "displacement_forward": path.positions[:, 0]}
-    return History(problem, place | named_forces(problem, track.forces))
+    return History(problem, place | named_forces(problem, march.forces))
 
 
 def named_forces(problem: Problem, forces: np.ndarray) -> dict[str, np.ndarray]:
@@ -366,13 +344,13 @@ def response(
     if isinstance(state, Response):
         path, first, start = _joined(state, path)
     refuse_start("state", start, path.rotates, "a Response or ")
-    poisson = within("poisson", poisson)
-    tolerance = within("tolerance", tolerance, high=1.0)
+    poisson = limits.within("poisson", poisson)
+    tolerance = limits.within("tolerance", tolerance, high=1.0)
     if progress is not None and not callable(progress):
         raise InputError("progress", progress, "allowed is a function of two arguments")
     pressure = pressure if isinstance(pressure, Pressure) else pressure_named(pressure)
     problem = Problem(path, poisson=poisson, pressure=pressure)
-    model = choose_model(problem)
+    model = limits.choose_model(problem)
     ladder = ladder_for(problem, model, tolerance)
 
     @cache
@@ -463,17 +441,17 @@ def _marched(
         parts = [first + k + np.arange(1, n + 1) / n for k, n in enumerate(between)]
         phases = np.concatenate([[first], *parts])
         piece = make_path(problem.displacement, phases, depth=problem.depth)
-        track = along(contact, piece, state, step_tolerance, ends)
-        mean_forces = 0.5 * (track.forces[1:] + track.forces[:-1])
+        march, tractions, bounds = along(contact, piece, state, step_tolerance, ends)
+        mean_forces = 0.5 * (march.forces[1:] + march.forces[:-1])
         works = np.sum(mean_forces * np.diff(piece.positions, axis=0), axis=1)
         works = work + np.concatenate([[0.0], np.cumsum(works)])[ends]
-        energies = np.array([0.5 * contact.energy(one) for one in track.tractions])
-        out[first, :ENERGY] = track.forces[0]
-        out[rows, :ENERGY] = track.forces[ends[1:]]
+        energies = np.array([0.5 * contact.energy(one) for one in tractions])
+        out[first, :ENERGY] = march.forces[0]
+        out[rows, :ENERGY] = march.forces[ends[1:]]
         out[rows, ENERGY] = (works - (energies - initial))[1:]
-        out[rows, RESIDUAL] = out[first, RESIDUAL] + track.residual
-        out[rows, STICK] = _stick_fraction(contact, track)[1:]
-        work, state = works[-1], track.state
+        out[rows, RESIDUAL] = out[first, RESIDUAL] + march.residual
+        out[rows, STICK] = _stick_fraction(contact, tractions, bounds)[1:]
+        work, state = works[-1], march.state
         if progress is not None:
             progress(last, len(counts))
     out[:, 2] /= problem.pressure.torque
@@ -491,10 +469,10 @@ def _pieces(counts: np.ndarray, size: int) -> Iterator[tuple[int, int]]:
         first = last
 
 
-def _stick_fraction(contact: Contact, track: Track) -> np.ndarray:
+def _stick_fraction(contact: Contact, tractions: np.ndarray, bounds: np.ndarray) -> np.ndarray:
     """Fraction of the contact area whose tractions are below the friction bound."""
-    size = np.hypot(track.tractions[:, 0], track.tractions[:, 1])
-    bounds = np.broadcast_to(track.bounds, size.shape)
+    size = np.hypot(tractions[:, 0], tractions[:, 1])
+    bounds = np.broadcast_to(bounds, size.shape)
     area = np.where(bounds > 0.0, contact.weight, 0.0)
     sticking = np.where(size < ON_BOUND * bounds, area, 0.0)
     axes = tuple(range(1, size.ndim))

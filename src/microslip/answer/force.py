@@ -11,20 +11,14 @@ from dataclasses import replace
 from functools import cache
 from typing import Any
 
+from microslip.answer import limits
 from microslip.answer.answer import UNKNOWN, Estimate, Result, about
-from microslip.answer.limits import (
-    CLOSEST_FORCE,
-    is_even,
-    oscillates,
-    runs_away,
-    without_forward_motion,
-)
-from microslip.answer.request import Request, ladder_of, prescribed, result_of_runs, runs
+from microslip.answer.closed_forms import closed_form
+from microslip.answer.request import Request, answer_of, ladder_of, result_of_runs, runs
 from microslip.periodic.budget import Spent
 from microslip.periodic.method_names import method_named
 from microslip.scene.drive import Force
 from microslip.scene.problem import Problem
-from microslip.theory import paper
 
 FIRST_DRIFT, FACTOR = 0.1, 4.0
 SLOWEST, FASTEST = 1e-6, 1e6
@@ -62,22 +56,22 @@ def under_force(request: Request) -> Result:
     """Compute the Result of a contact under a prescribed force."""
     problem, force, periodic = request.problem, _force(request), request.problem.motion.periodic
     if periodic and not about(problem)["mass"]:
-        problem = without_forward_motion(problem)
+        problem = limits.without_forward_motion(problem)
         request = replace(request, problem=problem)
     if force < 0.0 and not problem.propels:  # solved as the mirror image of a forward force
         ahead = under_force(_under(-force, request))
         return ahead.changed(friction=-ahead.friction, mean_velocity=-ahead.mean_velocity)
-    away = runs_away(problem)
+    away = limits.runs_away(problem)
     if away:
         full = Estimate(math.copysign(1.0, force))
         return _without_runs(request, UNBOUNDED, UNKNOWN, away, friction=full)
     if not periodic:
-        velocity = steady_velocity(problem)
+        velocity = _steady_velocity(problem, force)
         error = STEADY_ERROR * max(1.0, velocity)
         return _without_runs(request, Estimate(velocity, {"model": error}))
-    if not oscillates(problem):
+    if not limits.oscillates(problem):
         return _without_runs(request, AT_REST, Estimate(0.0))
-    if not is_even(problem):
+    if not limits.is_even(problem):
         return _moving(request, force)
     static = _static(request, force)
     threshold, error = static.friction.value, static.friction.error
@@ -87,7 +81,7 @@ def under_force(request: Request) -> Result:
     if force > threshold + error:
         return _moving(request, force)
     least = threshold + GAP_MARGIN * error
-    if not least < CLOSEST_FORCE:
+    if not least < limits.CLOSEST_FORCE:
         return _unknown(
             request,
             f"the error of the force threshold, {error:.1e}, leaves open whether the "
@@ -134,23 +128,14 @@ def _unknown(request: Request, reason: str) -> Result:
     return _without_runs(request, UNBOUNDED, UNKNOWN, reason, **effort)
 
 
-def steady_velocity(problem: Problem) -> float:
-    """Velocity of a steady rotation under a force, computed from Eqs 17 and 21 for 0 <= force < 1.
-
-    The caller must check the problem with `limits.refuse` first.
-    """
+def _steady_velocity(problem: Problem, force: float) -> float:
+    """Velocity of a steady rotation under a force from 0 to 1, from Eqs 17 and 21."""
     from scipy.optimize import brentq  # imported here because it loads slowly
 
-    from microslip.theory import axisymmetric
-
-    pressure, drive = problem.pressure, problem.drive
-    assert drive is not None and drive.force is not None
-    force = drive.force
-
     def imbalance(velocity: float) -> float:
-        if pressure.hertzian:
-            return float(paper.bore_forward(velocity)) - force
-        return float(axisymmetric.bore_of(pressure.bound, velocity)[0]) - force
+        exact = closed_form(replace(problem, velocity=velocity, drive=None), 0.0)
+        assert exact is not None  # checked by limits.contradictions
+        return exact["friction"].value - force
 
     high = 1.0
     while imbalance(high) < 0.0 and high < FASTEST:
@@ -166,7 +151,7 @@ def _static(request: Request, force: float) -> Result:
 
     def at_rest(tolerance: float | None) -> Result:
         problem = replace(request.problem, velocity=0.0, drive=None)
-        return prescribed(replace(request, problem=problem, tolerance=tolerance))
+        return answer_of(replace(request, problem=problem, tolerance=tolerance))
 
     rough, tolerance = ROUGH_TOLERANCE, request.tolerance
     while tolerance is not None and tolerance < rough:
@@ -179,7 +164,7 @@ def _static(request: Request, force: float) -> Result:
     if limit - error < force <= limit + error and (tolerance or 0.0) > STATIC_TOLERANCE:
         exact = at_rest(STATIC_TOLERANCE)
         below = force <= exact.mu_macro - exact.mu_macro_error
-        if below or limit + GAP_MARGIN * error >= CLOSEST_FORCE:
+        if below or limit + GAP_MARGIN * error >= limits.CLOSEST_FORCE:
             return exact
     return static
 
@@ -237,7 +222,8 @@ def _velocity_near(request: Request) -> tuple[float, float]:
         Settings(method_named(request.method), budget=request.budget),
         moving.unit_drift,
     )
-    request.progress(coarse)
+    if request.progress is not None:
+        request.progress(coarse)
 
     @cache
     def friction(drift: float) -> float:  # NaN if the run failed

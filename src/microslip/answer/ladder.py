@@ -21,7 +21,6 @@ import numpy as np
 from microslip.contact.path import LONG_STROKE
 from microslip.contact.registry import MODELS
 from microslip.foundation.arguments import SMALLEST_TOLERANCE
-from microslip.foundation.errors import InputError
 from microslip.periodic.discretise import Resolution, contact_of, path_of
 from microslip.periodic.static_limit import SLOW_LOOP, at_turning_points
 from microslip.scene.problem import Problem
@@ -218,15 +217,6 @@ def _imposing(ladder: Ladder, tolerance: float, cells: int | None, steps: int | 
         steps=half / ladder.start,
         imposed=min(number / per_level for number, per_level in axes if per_level),
     )
-
-
-def refuse_free(ladder: Ladder, cells: int | None, steps: int | None) -> None:
-    """Raise InputError if the ladder refines cells or steps for which no number is imposed."""
-    numbers = (("cells", ladder.cells, cells), ("steps", ladder.steps, steps))
-    free = " and ".join(name for name, refined, imposed in numbers if refined and imposed is None)
-    if free:
-        allowed = f"allowed is a number, or none where {free} are imposed"
-        raise InputError("tolerance", None, allowed)
 
 
 def with_mass(ladder: Ladder, problem: Problem, model: str, tolerance: float) -> tuple[Ladder, str]:

@@ -132,8 +132,11 @@ def problem_of(
                 raise InputError(name, value, "allowed is none beside a Problem, which has its own")
         own, velocity, amplitude = motion.drive, motion.velocity, motion.amplitude
         poisson, pressure, motion = motion.poisson, motion.pressure, motion.motion
+        if own is not None and drive is None:
+            raise InputError("drive", str(own), "allowed is none here: the velocity is prescribed")
         if own is not None:
-            _refuse_body(own, drive is not None)
+            body = {name: getattr(own, name) or None for name in ("stiffness", "mass", "damping")}
+            _drive_of(None if own.force is not None else velocity, own.force, **body)
     elif drive is not None:
         own = _drive_of(velocity, **drive)
     motion = motion if isinstance(motion, Motion) else motion_named(motion)
@@ -172,19 +175,6 @@ def _drive_of(
         if force is None or name != "mass":
             raise InputError(name, value, allowed)
     return None if force is None else Force(within("force", force), **body)
-
-
-def _refuse_body(drive: Drive, allowed: bool) -> None:
-    """Raise InputError if the drive of a Problem is not allowed, or outside its limits."""
-    if not allowed:
-        message = "allowed is none here: the velocity is prescribed"
-        raise InputError("drive", str(drive), message)
-    for name in (
-        ("mass", "damping") if drive.force is not None else ("stiffness", "mass", "damping")
-    ):
-        within(name, getattr(drive, name))
-    if drive.force is not None:
-        within("force", drive.force)
 
 
 # Oscillations under a force
@@ -340,7 +330,9 @@ def contradictions(problem: Problem, model: str, method: str) -> Iterator[tuple[
         Name of the method.
     """
     motion, drive, periodic = problem.motion, problem.drive, problem.motion.periodic
-    shipped = method == method_names.SHIPPED
+    shipped, lack = method == method_names.SHIPPED, method_names.missing(method)
+    if lack:
+        yield "method", method, lack
     refusal = method_refusal(problem, model, method)
     if not (refusal or shipped) and method_names.method_named(method).run is not None:
         refusal = "it is one run, which cannot be refined"

@@ -4,20 +4,14 @@ from __future__ import annotations
 
 import numpy as np
 
-from microslip.answer.along import (
-    ANGLES,
-    CELLS,
-    ON_BOUND,
-    STEP_TOLERANCE,
-    along,
-    named_forces,
-)
+from microslip.answer import limits
+from microslip.answer.along import ANGLES, CELLS, ON_BOUND, STEP_TOLERANCE, along, named_forces
 from microslip.answer.answer import Answer
-from microslip.answer.limits import choose_model, problem_of, within
 from microslip.contact.contact import StepFailure, rigid_displacement
 from microslip.contact.modes import PolarContact
 from microslip.foundation.errors import InputError, SolverError
 from microslip.periodic.discretise import Resolution, contact_of, path_of
+from microslip.periodic.run import unsolved
 from microslip.periodic.simulate import simulate
 from microslip.periodic.steady import steady_state
 from microslip.pressures.hertz import HERTZ
@@ -131,27 +125,27 @@ def period(
     microslip.answer.period.NoPeriodicState
         If the march failed.
     """
-    problem = problem_of(motion, velocity, amplitude, pressure=pressure, poisson=poisson)
+    problem = limits.problem_of(motion, velocity, amplitude, pressure=pressure, poisson=poisson)
     if not problem.motion.periodic:
         raise InputError("motion", problem.motion.name, "allowed is one that oscillates")
     for name, value in (("velocity", problem.velocity), ("amplitude", problem.size)):
         if value <= 0.0:
             raise InputError(name, value, f"a period needs {name} > 0")
-    cells, angles = within("cells", cells, low=2), within("angles", angles)
-    steps = within("steps", steps, low=4)
+    cells, angles = limits.within("cells", cells, low=2), limits.within("angles", angles)
+    steps = limits.within("steps", steps, low=4)
     if cells * angles * steps > MOST_VALUES:
         allowed = f"allowed is at most {MOST_VALUES:g} for cells x angles x steps"
         raise InputError("steps", steps, allowed)
-    model, resolution = choose_model(problem, "polar"), Resolution(cells, angles, steps // 2)
+    model, resolution = limits.choose_model(problem, "polar"), Resolution(cells, angles, steps // 2)
     run = simulate(problem, model, resolution, PERIOD_TOLERANCE)
     if run.state is None:
         raise NoPeriodicState(f"velocity = {problem.velocity!r}: {run.reason}")
     contact = contact_of(problem, model, resolution)
     assert isinstance(contact, PolarContact)
     path = path_of(problem, contact, steps // 2)
-    track = along(contact, path, run.state, STEP_TOLERANCE, slice(None))
-    phase, forces, tractions = path.phase, track.forces, track.tractions
-    bounds = np.broadcast_to(track.bounds, tractions[:, 0].shape)
+    march, tractions, bounds = along(contact, path, run.state, STEP_TOLERANCE, slice(None))
+    failure = unsolved(march.residual, march.solves, STEP_TOLERANCE)
+    phase, forces, bounds = path.phase, march.forces, np.broadcast_to(bounds, tractions[:, 0].shape)
     # slip in every step: rigid minus elastic displacement
     elastic = np.array([contact.displacement(change) for change in np.diff(tractions, axis=0)])
     moves = np.diff(path.positions, axis=0).T[..., None, None]
@@ -185,7 +179,7 @@ def period(
         "dissipated_energy": float(place["area"] @ density),
         "mu_macro": run.mu,
     }
-    return Period(problem, values, reason=run.reason or track.failure)
+    return Period(problem, values, reason=run.reason or failure)
 
 
 def patches(motion: str, velocity: float, amplitude: float, **settings: object) -> dict:
@@ -269,14 +263,14 @@ def traction_field(
     microslip.contact.contact.StepFailure
         If no steady state is reached, or a step is not solved.
     """
-    problem = problem_of(motion, velocity, amplitude, poisson=poisson)
+    problem = limits.problem_of(motion, velocity, amplitude, poisson=poisson)
     velocity = problem.velocity
     if problem.motion.periodic:
         raise InputError("motion", problem.motion.name, "allowed is continuous-bore")
     if velocity <= 0.0:
         raise InputError("velocity", velocity, "a traction field needs velocity > 0")
-    cells = CELLS if cells is None else within("cells", cells, low=2, kind="whole")
-    model = choose_model(problem, "polar")
+    cells = CELLS if cells is None else limits.within("cells", cells, low=2, kind="whole")
+    model = limits.choose_model(problem, "polar")
     contact = contact_of(problem, model, Resolution(cells, ANGLES, steps=0))
     assert isinstance(contact, PolarContact)
     run = steady_state(contact, problem, STEADY_TOLERANCE)

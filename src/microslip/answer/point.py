@@ -4,14 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import replace
-from typing import Any
 
+from microslip.answer import limits
 from microslip.answer.answer import Result, about
-from microslip.answer.limits import method_refusal, oscillates, problem_of
-from microslip.answer.request import TOLERANCE, Request, prescribed, request_of
+from microslip.answer.request import TOLERANCE, answer_of, request_of
 from microslip.contact.registry import MODELS
-from microslip.foundation.errors import InputError
-from microslip.periodic.method_names import SHIPPED, method_named, missing
+from microslip.periodic import method_names
 from microslip.pressures.by_name import pressure_named
 from microslip.pressures.hertz import HERTZ
 from microslip.pressures.pressure import Pressure
@@ -35,7 +33,7 @@ def solve(
     tolerance: float | None = TOLERANCE,
     cells: int | None = None,
     steps: int | None = None,
-    method: str = SHIPPED,
+    method: str = method_names.SHIPPED,
     most_work: float | None = None,
     time_limit: float | None = None,
     progress: Callable | None = None,
@@ -99,109 +97,65 @@ def solve(
         If an argument is out of range or a model does not apply.  The message names the argument.
     """
     drive = {"force": force, "stiffness": stiffness, "mass": mass, "damping": damping}
-    problem = problem_of(
+    problem = limits.problem_of(
         motion, velocity, amplitude, pressure=pressure, poisson=poisson, drive=drive
     )
     request = request_of(
         problem,
-        model,
-        tolerance,
+        model=model,
+        tolerance=tolerance,
         cells=cells,
         steps=steps,
         method=method,
+        progress=progress,
         most_work=most_work,
         time_limit=time_limit,
-        progress=progress,
     )
-    if problem.velocity >= 0.0:
-        return replace(answer_of(request).changed(**about(problem)), problem=problem)
-    behind = replace(problem, velocity=-problem.velocity, backward=not problem.backward)
-    answer = answer_of(replace(request, problem=behind))  # the mirror image
-    answer = answer.changed(mean_velocity=-answer.mean_velocity, friction=-answer.friction)
+    if problem.drive is not None and problem.drive.force is not None:
+        from microslip.answer.force import under_force  # imported here because it loads slowly
+
+        answer = under_force(request)
+    elif problem.velocity < 0.0:  # the mirror image
+        behind = replace(problem, velocity=-problem.velocity, backward=not problem.backward)
+        answer = answer_of(replace(request, problem=behind))
+        answer = answer.changed(mean_velocity=-answer.mean_velocity, friction=-answer.friction)
+    else:
+        answer = answer_of(request)
     return replace(answer.changed(**about(problem)), problem=problem)
 
 
-def answer_of(request: Request) -> Result:
-    """Answer a request at a velocity of at least 0."""
-    problem, drive = request.problem, request.problem.drive
-    if drive is not None and drive.force is not None:
-        # imported here because it loads compiled code
-        from microslip.answer.force import under_force
+def warm_up() -> None:
+    """Compile the solver for round contacts; Numba stores the compiled code.
 
-        return under_force(request)
-    moves = problem.motion.periodic and problem.velocity > 0.0
-    if drive is not None and not (moves and oscillates(problem)):
-        # under a constant force the length of the spring is constant
-        request = replace(request, problem=replace(problem, drive=None))
-    return prescribed(request)
-
-
-KERNELS: dict[str, tuple[dict[str, Any], ...]] = {
-    "rings": ({"motion": "transverse"},),
-    "angles": (
-        {"motion": "transverse", "poisson": 0.3},
-        {"motion": "bore"},
-        {"motion": "continuous-bore", "amplitude": None, "model": "polar"},
-    ),
-    "pulled": ({"motion": "transverse", "stiffness": 1.0}, {"motion": "bore", "stiffness": 1.0}),
-}
-"""Points for each group of kernels.  Solving these points compiles the kernels."""
-
-
-def warm_up(*kernels: str) -> None:
-    """Compile kernels of the models that "auto" can choose; Numba caches them.
-
-    The first compilation takes a while.  Several processes can compile different kernels at the
-    same time.  The kernels of squares are compiled at their first use.
-
-    Parameters
-    ----------
-    kernels : str
-        Names of kernels: "rings", "angles" (for rotations and Poisson's ratios above 0), "pulled"
-        (for a force or a spring).  Default: "rings" and "angles".
-
-    Raises
-    ------
-    InputError
-        If a name is unknown.
+    The first compilation takes a while.  The kernels of squares are compiled at their first use.
     """
-    kernels = kernels or ("rings", "angles")
-    for name in kernels:
-        if name not in KERNELS:
-            raise InputError("kernels", name, f"may be {', '.join(KERNELS)}")
-    for name in kernels:
-        for case in KERNELS[name]:
-            point = {"velocity": 0.5, "amplitude": 0.5, "tolerance": 1e-2}
-            solve(**point | case)
+    for motion in ("transverse", "bore"):
+        solve(motion, 0.5, 0.5, tolerance=1e-2)
 
 
 # Single runs, which compare methods
 
 
-def applies(
-    motion: str, poisson: float, model: str, method: str, pressure: str = HERTZ.name
-) -> str:
+def applies(motion: str, poisson: float, model: str, method: str, pressure: str = "hertz") -> str:
     """Reason why a model or a method does not apply to a motion; empty if both apply."""
     kind = motion_named(motion)
     amplitude = 1.0 if kind.periodic else None
     problem = Problem(kind, 1.0, amplitude, poisson, pressure_named(pressure))
-    refusal = MODELS[model].refuses(problem) or missing(method)
-    return refusal or method_refusal(problem, model, method)
+    refusal = MODELS[model].refuses(problem) or method_names.missing(method)
+    return refusal or limits.method_refusal(problem, model, method)
 
 
 def run_trial(
     motion: str,
     velocity: float,
-    amplitude: float,
+    amplitude: float | None,
     *,
     poisson: float,
     model: str,
     method: str,
-    cells: int,
-    angles: int,
-    steps: int,
     tolerance: float,
-    pressure: str = HERTZ.name,
+    pressure: str = "hertz",
+    **sizes: int,
 ) -> dict:
     """Run a model with a method at one resolution.  The result does not depend on the machine.
 
@@ -209,14 +163,11 @@ def run_trial(
     ----------
     motion, velocity, amplitude, poisson, model, method, pressure
         See `microslip.solve`.
-    cells : int
-        Number of rings, or of squares along a side.
-    angles : int
-        Number of angular points on half the disc.
-    steps : int
-        Number of steps in a full period.
     tolerance : float
         Tolerance of the periodic state, as a force divided by mu F_z.
+    **sizes : int
+        cells: number of rings, or of squares along a side; angles: number of angular points on half
+        the disc; steps: number of steps in a full period.
 
     Returns
     -------
@@ -241,20 +192,16 @@ def run_trial(
     from microslip.periodic.run import Settings
     from microslip.periodic.simulate import simulate
 
-    resolution = Resolution(cells, angles, max(steps // 2, 1))
+    resolution = Resolution(sizes["cells"], sizes["angles"], max(sizes["steps"] // 2, 1))
     problem = Problem(motion_named(motion), velocity, amplitude, poisson, pressure_named(pressure))
-    settings = Settings(method_named(method))
+    settings = Settings(method_names.method_named(method))
     run = simulate(problem, model, resolution, tolerance, settings=settings)
     effort = run.effort
-    unknowns = effort.work // effort.solves if effort.solves else 0
     return {
         "mu_macro": float(run.mu),
         "converged": bool(run.converged),
-        "reason": run.reason,
-        "periods": run.periods,
-        "iterations": effort.iterations,
-        "solves": effort.solves,
-        "unknowns": unknowns,
-        "work": effort.work,
-        "effort": effort.updates,
+        **{"reason": run.reason, "periods": run.periods},
+        **{"iterations": effort.iterations, "solves": effort.solves},
+        "unknowns": effort.work // effort.solves if effort.solves else 0,
+        **{"work": effort.work, "effort": effort.updates},
     }

@@ -18,8 +18,8 @@ from dataclasses import replace
 from functools import cache
 from typing import Any
 
+from microslip.answer import limits
 from microslip.answer.answer import Answer, Result
-from microslip.answer.limits import problem_of
 from microslip.answer.point import solve
 from microslip.foundation.errors import InputError
 from microslip.foundation.number_text import number_text
@@ -88,26 +88,17 @@ def propulsion(
     InputError
         If an argument is out of range, or if no amplitude of the motion can propel the contact.
     """
-    problem = problem_of(motion, None, amplitude, pressure=pressure, poisson=poisson)
+    problem = limits.problem_of(motion, None, amplitude, pressure=pressure, poisson=poisson)
     example = "elliptic:forward_cycles=2,phase=0 or normal:forward=1,phase=90"
-    for name, value, fits, allowed in (
-        ("velocity", problem.velocity, problem.velocity == 0.0, "0: propulsion() determines it"),
-        (
-            "motion",
-            problem.motion.name,
-            problem.propels,
-            f"a self-propelled motion, such as {example}",
-        ),
-        (
-            "pressure",
-            problem.pressure.name,
-            problem.pressure.mirrored,
-            "one that is its own mirror image",
-        ),
-        ("amplitude", problem.amplitude, problem.amplitude != 0.0, "a number above 0"),
-    ):
-        if not fits:
-            raise InputError(name, value, f"allowed is {allowed}")
+    name, mirror = problem.motion.name, problem.pressure.mirrored
+    if problem.velocity != 0.0:
+        raise InputError("velocity", problem.velocity, "allowed is 0: propulsion() determines it")
+    if not problem.propels:
+        raise InputError("motion", name, f"allowed is a self-propelled motion, such as {example}")
+    if not mirror:
+        raise InputError("pressure", problem.pressure.name, "allowed is a symmetric pressure")
+    if not problem.amplitude:
+        raise InputError("amplitude", problem.amplitude, "allowed is a number above 0")
     behind = replace(problem, backward=not problem.backward)
     ahead = solve(problem, **settings)
     back = solve(behind, **settings) if ahead.mu_macro >= 0.0 else ahead

@@ -12,13 +12,13 @@ from __future__ import annotations
 import math
 import time
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from functools import cache
 from typing import TYPE_CHECKING, Any
 
+from microslip.answer import limits
 from microslip.answer.answer import CLOSED_FORM, Answer, Estimate, Result
-from microslip.answer.closed_forms import Exact, closed_form, no_vibration
-from microslip.answer.limits import choose_model, refuse, within
+from microslip.answer.closed_forms import closed_form, no_vibration
 from microslip.foundation.arguments import is_real, without_array
 from microslip.foundation.errors import InputError
 from microslip.periodic import method_names
@@ -57,32 +57,32 @@ class Request:
         The problem.
     model : str
         Name in contact.registry.MODELS.
-    chosen : bool
-        Whether the requested model is "auto", so that a closed form can replace the model.
-    method : str
-        Name of the method.
     tolerance : float or None
         Absolute tolerance.  None means that any error is accepted.
     cells, steps : int or None
         Imposed numbers of cells and of steps per full period; None if not imposed.
+    method : str
+        Name of the method.
+    progress : callable or None
+        Called before every run, with the run's Resolution.
+    chosen : bool
+        Whether the requested model is "auto", so that a closed form can replace the model.
     budget : budget.Budget
         Budget of all runs together.
-    progress : callable
-        Called before every run, with the run's Resolution.
     started : float
         Value of time.perf_counter() when the request was made.
     """
 
     problem: Problem
     model: str
-    chosen: bool
-    method: str
     tolerance: float | None
-    cells: int | None
-    steps: int | None
-    budget: Budget
-    progress: Callable
-    started: float
+    cells: int | None = None
+    steps: int | None = None
+    method: str = method_names.SHIPPED
+    progress: Callable | None = None
+    chosen: bool = False
+    budget: Budget = field(default_factory=Budget)
+    started: float = field(default_factory=time.perf_counter)
 
     @property
     def accuracy(self) -> float:
@@ -103,15 +103,10 @@ class Request:
 
 def request_of(
     problem: Problem,
-    model: str,
-    tolerance: float | None,
     *,
-    cells: int | None = None,
-    steps: int | None = None,
-    method: str = method_names.SHIPPED,
     most_work: float | None = None,
     time_limit: float | None = None,
-    progress: Callable | None = None,
+    **settings: Any,
 ) -> Request:
     """Build the Request for a problem.  The time limit counts from this call.
 
@@ -119,8 +114,8 @@ def request_of(
     ----------
     problem : problem.Problem
         The problem, already checked.
-    model, tolerance, cells, steps, method, most_work, time_limit, progress
-        See `microslip.solve`.
+    most_work, time_limit, **settings
+        See `microslip.solve`: model, tolerance, cells, steps, method and progress.
 
     Raises
     ------
@@ -128,58 +123,43 @@ def request_of(
         If an argument is out of range, or a model or a method does not apply.  The message names
         the argument.
     """
-    started = time.perf_counter()
-    given = {"cells": cells, "steps": steps, "tolerance": tolerance}
-    numbers = {n: None if v is None else within(n, v) for n, v in given.items()}
+    request = Request(problem=problem, **settings)
+    numbers = {name: getattr(request, name) for name in ("cells", "steps", "tolerance")}
+    numbers = {n: None if v is None else limits.within(n, v) for n, v in numbers.items()}
     budget = {"most_work": without_array(most_work), "time_limit": without_array(time_limit)}
     for name, value in budget.items():
         if value is not None and not (is_real(value) and value > 0.0):
             raise InputError(name, value, "allowed is a number above 0")
-    if progress is not None and not callable(progress):
-        raise InputError("progress", progress, "allowed is a function of one argument")
-    name = choose_model(problem, model)
-    method_names.split(method)
-    lack = method_names.missing(method)
-    if lack:
-        raise InputError("method", method, lack)
-    refuse(problem, name, method)
-    usual = {"most_work": MOST_WORK.get(name, MOST_WORK_OF_OTHERS), "time_limit": math.inf}
-    limits = usual | {name: value for name, value in budget.items() if value is not None}
-    return Request(
-        problem=problem,
-        model=name,
-        chosen=model == "auto",
-        method=method,
-        budget=Budget(limits["most_work"], limits["time_limit"]),
-        progress=progress or (lambda resolution: None),
-        started=started,
-        **numbers,
-    )
+    if request.progress is not None and not callable(request.progress):
+        raise InputError("progress", request.progress, "allowed is a function of one argument")
+    model = limits.choose_model(problem, request.model)
+    limits.refuse(problem, model, request.method)
+    work, seconds = budget.values()
+    work = MOST_WORK.get(model, MOST_WORK_OF_OTHERS) if work is None else work
+    own = Budget(work, math.inf if seconds is None else seconds)
+    chosen = request.model == "auto"
+    return replace(request, model=model, chosen=chosen, budget=own, **numbers)
 
 
-def prescribed(request: Request) -> Result:
-    """Friction at a prescribed velocity or through a spring: a closed form if there is one,
+def answer_of(request: Request) -> Result:
+    """Friction at a velocity of at least 0, or through a spring: a closed form if there is one,
     otherwise runs of a model."""
-    exact, tolerance = _exact(request), request.tolerance
+    problem, drive, reason = request.problem, request.problem.drive, ""
+    moves = problem.motion.periodic and problem.velocity > 0.0
+    if drive is not None and not (moves and limits.oscillates(problem)):
+        # under a constant force the length of the spring is constant
+        problem = replace(problem, drive=None)
+        request = replace(request, problem=problem)
+    exact, tolerance = no_vibration(problem), request.tolerance
+    imposed = problem.velocity > 0.0 and not (request.cells is None and request.steps is None)
+    if not (exact or imposed) and request.chosen and request.method == method_names.SHIPPED:
+        exact = closed_form(problem, tolerance or 0.0)
     if exact is None:
         return result_of_runs(request, runs(request, request.accuracy), tolerance)
-    error, reason = exact["friction"].error, ""
+    error = exact["friction"].error
     if tolerance is not None and error > tolerance:
         reason = f"the error is {error:.1e}, above the tolerance of {tolerance:g}"
     return request.result(exact, reason)
-
-
-def _exact(request: Request) -> Exact | None:
-    """Closed form for a request; None if there is none or if an imposed resolution requires a
-    march."""
-    problem = request.problem
-    exact = no_vibration(problem)
-    imposed = request.cells is not None or request.steps is not None
-    if exact is not None or not request.chosen or request.method != method_names.SHIPPED:
-        return exact
-    if imposed and problem.velocity > 0.0:
-        return None
-    return closed_form(problem, request.tolerance or 0.0)
 
 
 def ladder_of(request: Request, tolerance: float) -> Ladder:
@@ -187,13 +167,15 @@ def ladder_of(request: Request, tolerance: float) -> Ladder:
 
     Raises InputError if a resolution would have to be chosen without a tolerance of the request.
     """
-    # imported here because it loads compiled code
-    from microslip.answer.ladder import ladder_for, refuse_free
+    from microslip.answer.ladder import ladder_for  # imported here because it loads compiled code
 
-    imposed = request.cells, request.steps
-    ladder = ladder_for(request.problem, request.model, tolerance, *imposed)
-    if request.tolerance is None:
-        refuse_free(ladder, *imposed)
+    cells, steps = request.cells, request.steps
+    ladder = ladder_for(request.problem, request.model, tolerance, cells, steps)
+    numbers = {"cells": (ladder.cells, cells), "steps": (ladder.steps, steps)}
+    free = [name for name, (refined, imposed) in numbers.items() if refined and imposed is None]
+    if free and request.tolerance is None:
+        allowed = f"allowed is a number, or none where {' and '.join(free)} are imposed"
+        raise InputError("tolerance", None, allowed)
     return ladder
 
 
@@ -264,14 +246,14 @@ def _run_of(
     @cache  # the search for the slip front is charged once
     def settings() -> Settings:
         method = method_names.method_named(request.method)
-        focus = None
-        if free:
-            focus = edge_focus(own, request.model, request.budget, request.progress)
+        place = own, request.model, request.budget, request.progress
+        focus = edge_focus(*place) if free else None
         return Settings(method, budget=request.budget, focus=focus, slope=slope)
 
     def run(problem: Problem, resolution: Resolution, guess: Run | None) -> Run:
         usual = settings()
-        request.progress(resolution)
+        if request.progress is not None:
+            request.progress(resolution)
         first = simulate(problem, request.model, resolution, tolerance, guess, usual)
         if first.converged or not repeats:
             return first

@@ -9,28 +9,14 @@ without tangential load.  Then the vibration starts at its mean position.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from dataclasses import replace
 from typing import Any
 
+from microslip.answer import limits
+from microslip.answer import request as requests
 from microslip.answer.answer import ERRORS, Answer, Estimate, about
 from microslip.answer.force import STATIC_TOLERANCE
-from microslip.answer.limits import (
-    is_even,
-    oscillates,
-    problem_of,
-    runs_away,
-    without_forward_motion,
-)
-from microslip.answer.request import (
-    RUN_SHARE,
-    Request,
-    ladder_of,
-    prescribed,
-    request_of,
-    result_of_runs,
-    runs,
-)
 from microslip.foundation.arguments import real
 from microslip.foundation.errors import InputError
 from microslip.pressures.hertz import HERTZ
@@ -47,7 +33,7 @@ accumulate over all periods.  Near the static limit, a run takes several hundred
 (tests/answer/test_shakedown.py)."""
 PLANNED_VELOCITY = 0.1
 """Velocity for which the time steps are chosen; for velocity 0, the ladder has no time steps."""
-SHARED = ("model", "cells", "angles", "steps_per_period", "periods", "solve_time_s")
+SHARED = ("model", "tolerance", "cells", "angles", "steps_per_period", "periods", "solve_time_s")
 """Values that a Shakedown has in common with a Result."""
 
 
@@ -131,17 +117,16 @@ def shakedown(
         if force is not None:
             raise InputError("force", force, "allowed is none beside a Problem that has one")
         force, motion = motion.drive.force, replace(motion, drive=None)
-    problem = problem_of(motion, None, amplitude, pressure=pressure, poisson=poisson)
+    problem = limits.problem_of(motion, None, amplitude, pressure=pressure, poisson=poisson)
     if not problem.motion.periodic:
         raise InputError("motion", problem.motion.name, "allowed is a motion that oscillates")
     force = real("force", force, 0.0)
     if tolerance is None:
         raise InputError("tolerance", tolerance, "allowed is a number")
-    problem = without_forward_motion(replace(problem, velocity=0.0, drive=Force(force)))
-    request = request_of(
-        problem, model, tolerance, most_work=most_work, time_limit=time_limit, progress=progress
-    )
-    if not is_even(problem):
+    problem = limits.without_forward_motion(replace(problem, velocity=0.0, drive=Force(force)))
+    given: dict[str, Any] = {"model": model, "tolerance": tolerance, "progress": progress}
+    request = requests.request_of(problem, most_work=most_work, time_limit=time_limit, **given)
+    if not limits.is_even(problem):
         allowed = "allowed is a motion that exerts no forward force by itself, such as transverse"
         raise InputError("motion", problem.motion.name, allowed)
     limit, away = _threshold(request)
@@ -156,43 +141,40 @@ def shakedown(
     return _to_rest(request, own, away)
 
 
-def _threshold(request: Request) -> tuple[Estimate, str]:
+def _threshold(request: requests.Request) -> tuple[Estimate, str]:
     """Compute the static limit, and a message if the contact runs away (otherwise "")."""
     problem = request.problem
-    away = runs_away(problem)
-    if not oscillates(problem):
+    away = limits.runs_away(problem)
+    if not limits.oscillates(problem):
         return Estimate(1.0), away
     if away:
         return Estimate(math.nan, {"model": math.inf}), away
     tolerance = min(request.tolerance or STATIC_TOLERANCE, STATIC_TOLERANCE)
     still = replace(problem, drive=None)
-    static = prescribed(replace(request, problem=still, chosen=True, tolerance=tolerance))
-    return static.friction, ""
+    changes: dict[str, Any] = {"problem": still, "chosen": True, "tolerance": tolerance}
+    return requests.answer_of(replace(request, **changes)).friction, ""
 
 
-def _to_rest(request: Request, own: dict[str, Any], away: str) -> Shakedown:
+def _to_rest(request: requests.Request, own: dict[str, Any], away: str) -> Shakedown:
     """Run the contact to rest, unless it moves away.  `own`: values of the Shakedown."""
-    problem, accuracy = request.problem, request.accuracy
-    displacement = Estimate(math.inf, {"model": math.inf})
-    finest: Mapping[str, float] = {}
-    effort, errors = 0, dict.fromkeys(ERRORS.values(), 0.0)
-    if away:
-        result = request.result({}, away, model=request.model)
-    else:
-        planned = replace(problem, velocity=PLANNED_VELOCITY)
-        ladder = ladder_of(replace(request, problem=planned), accuracy)
+    endless = {"displacement": Estimate(math.inf, {"model": math.inf})}
+    answer = Answer(request.problem, {"imposed": False}, endless, away)
+    if not away:
+        planned = replace(request.problem, velocity=PLANNED_VELOCITY)
+        ladder = requests.ladder_of(replace(request, problem=planned), request.accuracy)
         # the contact must come to rest in the coarsest run too
         ladder = replace(ladder, start=2 * ladder.start)
-        share = REST_SHARE * RUN_SHARE
-        answer = runs(request, accuracy, "displacement", ladder=ladder, share=share)
-        displacement = answer.estimates["displacement"]
-        finest = answer.values["finest"].values if "finest" in answer.values else {}
-        errors |= {ERRORS[source]: error for source, error in displacement.by_source.items()}
-        friction = {"friction": Estimate(own["force"])}
-        result = result_of_runs(request, answer, request.tolerance, "displacement", **friction)
-        effort = result.effort.work
-    values = own | {name: getattr(result, name) for name in SHARED} | errors
-    values |= {name: finest.get(name, math.nan) for name in ("pushed", "most_after")}
-    values |= {"tolerance": request.tolerance, "work": effort}
-    values |= {"displacement": displacement.value, "displacement_error": displacement.error}
-    return Shakedown(problem, values, reason=result.reason)
+        share = REST_SHARE * requests.RUN_SHARE
+        settings: dict[str, Any] = {"ladder": ladder, "share": share}
+        answer = requests.runs(request, request.accuracy, "displacement", **settings)
+    still = {"friction": Estimate(own["force"])}
+    result = requests.result_of_runs(request, answer, request.tolerance, "displacement", **still)
+    displacement, run = answer.estimates["displacement"], answer.values.get("finest")
+    errors = {name: displacement.by_source.get(one, 0.0) for one, name in ERRORS.items()}
+    if away:
+        errors = dict.fromkeys(errors, 0.0)
+    own |= {name: getattr(result, name) for name in SHARED} | errors
+    finest = {} if run is None else run.values
+    own |= {name: finest.get(name, math.nan) for name in ("pushed", "most_after")}
+    own |= {"displacement": displacement.value, "displacement_error": displacement.error}
+    return Shakedown(request.problem, own | {"work": result.effort.work}, reason=result.reason)
