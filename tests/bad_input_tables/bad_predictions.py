@@ -118,6 +118,9 @@ UNCERTAIN = [
     ({"tolerance": "0.01 +- 1 %"}, "--tolerance = '0.01 +- 1 %'"),
 ]
 OTHERS = [
+    ({"load": None, "frequency": None, "radius": None}, "also missing: frequency, radius"),
+    ({"diameter": "10 mm"}, "--radius is half of it"),
+    ({"contact_diameter": "10 mm"}, "--contact-radius is half of it"),
     ({"output": "found.nc"}, "--output = 'found.nc': allowed only with --table"),
 ]
 PREDICTIONS = OTHERS + MOTIONS + CONTACTS + BODIES + DRIVES + REDUCTIONS + UNCERTAIN

@@ -356,3 +356,23 @@ def test_the_solver_recovers_its_own_parameters():
     again = fitted(table, nu=0.0, radius="5 mm")
     # equal to the last bit; in texts NaN equals NaN
     assert str(again.to_dict()) == str(result.to_dict())
+
+
+def test_a_large_fitted_mu_has_the_warning_of_predict():
+    rows = {"speed [mm/s]": [1, 2, 4, 8, 1000], "mu": [0.6, 0.9, 1.2, 1.4, 1.5]}
+    common = {"amplitude": "1 um", "frequency": "1 kHz", "load": "10 N"}
+    result = microslip.fit("transverse", rows, **common, tolerance=0.02)
+    assert result.mu > 1.0
+    assert any("Coulomb" in text for text in result.warnings)
+
+
+def test_a_fit_prints_what_the_command_prints(tmp_path, capsys):
+    rows = "".join(f"{v},{mu}\n" for v, mu in ((1, 0.1), (2, 0.15), (4, 0.2), (8, 0.25), (99, 0.3)))
+    path = tmp_path / "rows.csv"
+    path.write_text("speed [mm/s],mu\n" + rows)
+    common = {"amplitude": "1 um", "frequency": "1 kHz", "load": "10 N", "tolerance": "0.02"}
+    code = cli.main(["fit", "transverse", str(path), *(f"--{n}={x}" for n, x in common.items())])
+    printed = capsys.readouterr().out
+    assert code in (0, 1)
+    assert str(microslip.fit("transverse", path, **common)) + "\n" == printed
+    assert "u_lim" in printed and "u lim" not in printed

@@ -116,15 +116,8 @@ def solve_at(contact: Contact, velocity: float | None, tolerance: float, **chang
         friction = FrictionMap(inputs.map, str(contact.motion), pressure)
         return friction.solve(velocity, amplitude, poisson, tolerance)
     try:
-        return solve(
-            contact.motion,
-            velocity,
-            amplitude,
-            poisson=poisson,
-            pressure=pressure,
-            tolerance=tolerance,
-            **changes,
-        )
+        about: dict[str, Any] = {"poisson": poisson, "pressure": pressure, "tolerance": tolerance}
+        return solve(contact.motion, velocity, amplitude, **about | changes)
     except InputError as error:
         name = ARGUMENTS.get(error.argument, "")
         if not changes or name not in inputs.quantities:
