@@ -164,7 +164,7 @@ def read(value: Any, si: str) -> Quantity:
             unit, value = f"m/m/{unit[2:]}" if unit.startswith("1/") else unit, value.magnitude
         elif hasattr(value, "dims"):  # a DataArray
             unit = value.attrs.get("units", "1").removeprefix("1")
-        elif not hasattr(value, "units"):
+        if not unit and (hasattr(value, "dims") or not hasattr(value, "units")):
             number = plain_number(value)
             return Quantity(number, f"{number:.12g} {si}".strip())
         digits = repr(plain_number(value)).removesuffix(".0")
