@@ -88,7 +88,7 @@ def shifted(case: dict) -> dict:
     out = (elliptical_bound if "radius" in prescribed else normal_problem)(case, centres)
     pressure = out["pressure"]
     bound = Pressure.from_array(centres, centres, pressure)
-    across = round(2.0 * bound.grid.half)  # the unit of length of the grid is its step
+    across = max(bound.grid.forward.steps, bound.grid.lateral.steps)
     half = 0.5 * across * element
     contact = CartesianContact(across, case["poisson"], bound)
     load = float(pressure.sum()) * element**2
