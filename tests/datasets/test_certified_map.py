@@ -103,3 +103,8 @@ def test_in_chunks_a_bad_question_is_refused_when_it_is_looked_at(dataset):
 def test_what_a_map_has_lost_is_named(dataset, name):
     with pytest.raises(InputError, match=f"{name} = None: microslip.at needs it"):
         dataset.drop_vars(name).microslip.at(0.1, 1.0)
+
+
+def test_a_map_without_all_its_points_is_refused(dataset):
+    with pytest.raises(InputError, match="all points"):
+        dataset.isel(point=slice(0, 20)).microslip.at(0.1, 1.0)

@@ -1,5 +1,9 @@
 """Interpolation between the points of a map, and its error bound."""
 
+import pickle
+import subprocess
+import sys
+
 import numpy as np
 import pytest
 import xarray as xr
@@ -22,6 +26,31 @@ def friction(v, a, nu=0.0):
 def made_up(velocity=VELOCITY, amplitude=AMPLITUDE, error=0.0, nu=0.0, **more):
     v, a = np.meshgrid(velocity, amplitude)
     return map_of(friction(v, a, nu), velocity, amplitude, error, **more).assign_coords(poisson=nu)
+
+
+OPENED = """
+{imports}
+with xr.open_dataset({path!r}) as data:
+    print(float(data.microslip.at(0.3, 1.1).mu_macro))
+"""
+
+
+@pytest.mark.parametrize(
+    "imports", ["import microslip, xarray as xr", "import xarray as xr, microslip"]
+)
+def test_importing_the_package_registers_the_accessor(imports, tmp_path):
+    made_up().to_netcdf(tmp_path / "map.nc")
+    code = OPENED.format(imports=imports, path=str(tmp_path / "map.nc"))
+    process = subprocess.run(
+        [sys.executable, "-c", code], capture_output=True, text=True, check=True
+    )
+    assert float(process.stdout) == float(made_up().microslip.at(0.3, 1.1).mu_macro)
+
+
+def test_a_dataset_can_be_pickled_after_a_query():
+    data = made_up()
+    answer = data.microslip.at(0.3, 1.1)
+    assert pickle.loads(pickle.dumps(data)).microslip.at(0.3, 1.1).identical(answer)
 
 
 def test_a_cubic_is_interpolated_exactly_on_three_axes():

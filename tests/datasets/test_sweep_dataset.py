@@ -335,3 +335,41 @@ def test_a_part_is_saved_and_read_again_and_plots_have_labels(tmp_path, solver):
         "amplitude, y0 / u_lim [1]",
         "mean forward force divided by mu F_z [1]",
     ]
+
+
+def test_a_dataset_of_many_points_can_be_opened(tmp_path):
+    """A file with fewer bytes than values is taken for a damaged one."""
+    axes = {"velocity": np.geomspace(0.01, 1, 70).tolist(), "amplitude": np.arange(70).tolist()}
+    configuration, path = sweep_stub.configured({"transverse": axes}), tmp_path / "transverse.nc"
+    record = {"versions": {}, "result": {"reason": "no periodic state"}}
+    netcdf.write(path, *sweep_dataset.build(configuration, "transverse", [record] * 4900))
+    assert microslip.open_map(path).reason.shape == (70, 70)
+
+
+@pytest.mark.slow
+def test_files_of_parts_of_an_axis_are_one_dataset(tmp_path, solver):
+    axes = {"amplitude": [0, 2]}
+    for name, velocity in (("slow", [0.1, 1]), ("fast", [10, 100])):
+        write("bore", tmp_path / f"{name}.nc", {"bore": axes | {"velocity": velocity}})
+    paths = [tmp_path / "fast.nc", tmp_path / "slow.nc"]
+    with xr.open_mfdataset(paths, data_vars="minimal", compat="no_conflicts") as both:
+        assert both.velocity.values.tolist() == [0.1, 1, 10, 100]
+        assert both.mu_static.dims == ("amplitude",)
+        assert both.converged.dtype == bool
+        assert float(both.mu_macro.sel(velocity=100, amplitude=2)) == pytest.approx(100 / 103)
+        assert both.motion == "bore"
+
+
+def test_variables_of_a_map_have_types_of_cf_1_8_and_no_texts(tmp_path, solver):
+    write("transverse", tmp_path / "transverse.nc")
+    with netCDF4.Dataset(tmp_path / "transverse.nc") as raw:
+        kinds = {name: variable.dtype for name, variable in raw.variables.items()}
+    assert set(map(str, kinds.values())) <= {"int8", "int16", "int32", "float32", "float64"}
+
+
+def test_only_codes_have_texts(tmp_path, solver):
+    with (
+        on_disk("bore", tmp_path) as data,
+        pytest.raises(InputError, match="codes = 'mu_macro': allowed is a variable with"),
+    ):
+        microslip.texts(data.mu_macro)
