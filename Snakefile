@@ -165,8 +165,8 @@ rule link_file:
     conda:
         "workflow/envs/microslip.yaml"
     params:
-        to=lambda wildcards, input: os.path.relpath(
-            input.file, os.path.dirname(f"{RESULTS}/{wildcards.plain}")
+        to=lambda wildcards, input, output: os.path.relpath(
+            input.file, os.path.dirname(output[0])  # a module adds its prefix to both
         ),
     shell:
         "(ln -s {params.to:q} {output:q} || cp {input.file:q} {output:q}) 2> {log:q}"

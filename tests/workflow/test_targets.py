@@ -67,7 +67,8 @@ def test_a_map_that_was_killed_goes_on_from_its_journal_to_the_same_bytes(certif
     (project.folder / "results" / "transverse.nc").resolve().unlink()
     (batch,) = project.folder.glob("results/batches/*/*.jsonl")
     lines = batch.read_bytes().splitlines(keepends=True)
-    batch.with_suffix(".0.journal").write_bytes(b"".join(lines[1:-9]))
+    journal = [line for line in lines if b'"result"' in line][:-7]
+    batch.with_suffix(".0.journal").write_bytes(b"".join(journal))
     os.truncate(batch, 1000)
     project.run()
     assert map_bytes(project) == map_bytes(certified)
@@ -94,7 +95,7 @@ def test_other_motions_have_datasets_and_figures_of_several(tmp_path):
     circle = {**axes, "model": "rigid", "motion": "elliptic", "title": "round"}
     cone = {**axes, "motion": "longitudinal", "pressure": "power:exponent=1"}
     sweeps = {"circle": circle, "cone": cone | {"velocity": [0, 0.1]}}
-    sweeps["pulled"] = {"motion": "bore", "model": "rigid", "amplitude": 1, "force": [0.2, 0.5]}
+    sweeps["pulled"] = {"motion": "bore", "amplitude": 1, "force": [0.2, 0.5], "tolerance": 0.1}
     figures = {
         "motions": {"kind": "map", "sweep": ["circle"]},
         "static": {"kind": "curves", "sweep": ["cone"]},

@@ -41,6 +41,5 @@ def test_a_job_that_solves_loads_nothing_that_draws_or_collects():
 
 
 @pytest.mark.long
-def test_collecting_loads_nothing_that_draws_and_drawing_nothing_that_solves():
-    assert not {"matplotlib", "plotly", "numba"} & loaded("collect")
-    assert not {"plotly", "numba"} & loaded("draw")
+def test_making_products_loads_nothing_that_draws_or_solves_before_it_is_needed():
+    assert not {"matplotlib", "plotly", "numba"} & loaded("make")
