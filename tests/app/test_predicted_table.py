@@ -10,7 +10,7 @@ from stubs import certified_stub
 
 import microslip
 from microslip.app import cli
-from microslip.datasets import certified_map, netcdf
+from microslip.datasets import netcdf
 
 SHARED = {"material": "steel", "radius": "5 mm", "mu": "0.3", "frequency": "20 kHz"}
 WORDS = [word for name, text in SHARED.items() for word in (f"--{name}", text)]
@@ -245,7 +245,7 @@ def test_a_long_period_gives_a_hint_to_fold_before_any_work(folder, capsys):
 def test_a_map_is_found_by_its_name_and_by_its_path(folder, capsys):
     axes = {"velocity": [0.05, 1], "amplitude": [0.5, 2], "error": 2e-2}
     map_ = certified_stub.configured("transverse", **axes)
-    dataset = certified_map.build(map_, certified_stub.played(map_, certified_stub.solved))
+    dataset = certified_stub.built(map_, certified_stub.solved)
     (folder / "results").mkdir()
     netcdf.write(folder / "results" / "certified_transverse.nc", dataset)
     words = ["predict", "transverse", "--young", "210 GPa", "--nu", "0", "--radius", "5 mm"]

@@ -5,7 +5,6 @@ import pytest
 from stubs import certified_stub
 
 import microslip
-from microslip.datasets import certified_map
 from microslip.foundation.errors import InputError
 from microslip.theory import paper
 
@@ -18,7 +17,7 @@ ERROR = 2e-2
 def friction():
     axes = {"velocity": [0.05, 1], "amplitude": [0.2, 3], "error": ERROR}
     map_ = certified_stub.configured("transverse", **axes)
-    return certified_map.build(map_, certified_stub.played(map_, certified_stub.solved))
+    return certified_stub.built(map_, certified_stub.solved)
 
 
 @pytest.mark.long

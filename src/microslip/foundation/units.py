@@ -158,13 +158,14 @@ def read(value: Any, si: str) -> Quantity:
     try:
         if isinstance(value, str):
             return _from_text(value, si)
-        unit = ""
+        unit, plain = "", not hasattr(value, "units")
         if hasattr(value, "to_root_units"):  # a quantity of pint
             unit = f"{value.units:~C}".replace("percent", "%")
             unit, value = f"m/m/{unit[2:]}" if unit.startswith("1/") else unit, value.magnitude
         elif hasattr(value, "dims"):  # a DataArray
             unit = value.attrs.get("units", "1").removeprefix("1")
-        if not unit and (hasattr(value, "dims") or not hasattr(value, "units")):
+            plain = not unit
+        if plain:
             number = plain_number(value)
             return Quantity(number, f"{number:.12g} {si}".strip())
         digits = repr(plain_number(value)).removesuffix(".0")
