@@ -231,6 +231,6 @@ def _remarks(contact: Contact, answer: Answer) -> list[str]:
         threshold = known.get("threshold")
         if threshold is None:
             remarks.append(UNKNOWN_THRESHOLD)
-        elif threshold.value != known["static"].value:
+        elif math.isfinite(threshold.value) and threshold.value != known["static"].value:
             remarks.append(ALONG_THE_DRIVE)
     return remarks
