@@ -73,7 +73,7 @@ def _table_of_inputs() -> str:
     for name, one in INPUTS.items():
         kind = "text" if one.unit is None else f"quantity, {one.range}"
         rows.append(f"    {name} : {kind}\n        {one.help}.")
-    return "\n".join(["", "    Inputs", "    ------", *rows, "    "])
+    return "\n".join(["", "    Other Parameters", "    ----------------", *rows, "    "])
 
 
 predict.__doc__ = f"{predict.__doc__}{_table_of_inputs()}"
