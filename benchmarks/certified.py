@@ -3,8 +3,8 @@
     python benchmarks/certified.py [--results FOLDER ...] [--maps NAME ...] [--points N] [--seed S]
                                    [--output FILE] [--markdown FILE]
 
-Each folder contains the certified maps of a run (snakemake certified). Random points are uniform in
-log velocity and in amplitude and, for a map over Poisson's ratio, also in this ratio. The points
+Each folder contains the certified maps of a run (config/certified.yaml). Random points are uniform
+in log velocity and in amplitude and, for a map over Poisson's ratio, also in this ratio. The points
 were not used to make a map or to choose map_refinement.SHARE. Their references have a smaller
 tolerance than the motion's most accurate map. A point is covered if the map's error is at most its
 error estimate plus the reference's error estimate. The output file stores the references, so that
@@ -171,7 +171,7 @@ def of_grid(dataset, grid, points, estimate, seconds):
 
 def main():
     parser = tables.parser_of(__doc__)
-    parser.add_argument("--results", type=Path, nargs="+", default=[Path("results")])
+    parser.add_argument("--results", type=Path, nargs="+", default=[Path("results/certified")])
     parser.add_argument("--maps", nargs="+", default=["transverse", "bore"])
     parser.add_argument("--points", type=int, default=2000)
     parser.add_argument("--seed", type=int, default=31)
@@ -179,7 +179,7 @@ def main():
     options = parser.parse_args()
     judgements, grids = [], []
     for name in options.maps:
-        maps = [microslip.open_map(f"certified_{name}", path).load() for path in options.results]
+        maps = [microslip.open_map(name, path).load() for path in options.results]
         least = min(dataset.error for dataset in maps)
         motion = maps[0].motion
         points = random_points(maps[0], options.points, options.seed)

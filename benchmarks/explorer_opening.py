@@ -1,7 +1,7 @@
 """Size of the explorer, and its opening time in Chromium from a local file without a network.
 
 Run ``python benchmarks/explorer_opening.py results/explorer.html --markdown
-docs/measured/explorer.md`` after ``snakemake explorer``. The page is opened each time in a new
+docs/measured/explorer.md`` on the page of config/explorer.yaml. It is opened each time in a new
 profile without a cache. It counts as open when all of its charts are drawn and it reacts to a
 click. ``--pictures docs/images`` saves pictures of the page and of its form for a real contact.
 """

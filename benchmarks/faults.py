@@ -34,8 +34,8 @@ from tqdm import tqdm
 
 ROOT = Path(__file__).parent.parent
 UNLOCK_MESSAGE = "can be removed with the --unlock argument"
-IGNORED = ("warm_up", "logs")
-"""Folders of results that are not compared."""
+IGNORED = "logs"
+"""Folder of results that is not compared."""
 SIGNALS = {
     "SIGKILL, Snakemake and all its jobs": (signal.SIGKILL, True),
     "SIGKILL, Snakemake alone": (signal.SIGKILL, False),
@@ -87,8 +87,7 @@ class Project:
             path.relative_to(self.results).as_posix(): path
             for path in sorted(self.results.rglob("*"))
             if path.is_file() and path.suffix not in (".damaged", ".part")
-            if path.name != ".again"  # the content of .again changes with each run
-            if path.relative_to(self.results).parts[0] not in IGNORED
+            if path.relative_to(self.results).parts[0] != IGNORED
         }
 
     def digests(self):
@@ -98,13 +97,13 @@ class Project:
 
     def stored(self):
         """Inode and modification time of all stored points and single runs, by name."""
-        stats = {n: path.stat() for n, path in self.files().items() if is_stored_point(n)}
+        stats = {n: path.stat() for n, path in self.files().items() if is_batch(n)}
         return {name: (stat.st_ino, stat.st_mtime_ns) for name, stat in stats.items()}
 
 
-def is_stored_point(name):
-    """True for the name of a result of a point or of a single run."""
-    return name.startswith(("points/", "histories/"))
+def is_batch(name):
+    """True for the name of a file of solved points or of single runs."""
+    return name.startswith("batches/") and name.endswith(".jsonl")
 
 
 def processes(running):
@@ -173,7 +172,7 @@ def round_of(project, fault, reference, seconds, rng, jobs_end_first):
         wait_for_all(running)
     findings += [f"the plain re-run failed: {output[-2000:]}"] if output else []
     # Removed points of a batch that is complete are not computed again.
-    digests = {name: reference[name] for name in reference if is_stored_point(name)}
+    digests = {name: reference[name] for name in reference if is_batch(name)}
     digests |= project.digests()
     names = sorted(digests.keys() | reference.keys())
     findings += [f"changed: {n}" for n in names if digests.get(n) != reference.get(n)]

@@ -17,24 +17,17 @@ from pathlib import Path
 
 import tables
 
-from microslip.foundation import machine, source_digest
+from microslip.foundation import machine
 
 ROOT = Path(__file__).parents[1]
-STEPS = {
-    "compile the solver": [
-        f"results/warm_up/{source_digest.of_solver()[:16]}_{kernels}.txt"
-        for kernels in ("rings", "angles")
-    ],
-    "solve all points, collect and draw": ["all"],
-    "second run: nothing to do": ["all"],
-}
+STEPS = ("compile, solve all points, collect and draw", "second run: nothing to do")
 
 
-def row(step, targets, folder, cores):
-    """Run targets and return one row of the table."""
+def row(step, folder, cores):
+    """Run the workflow and return one row of the table."""
     environment = os.environ | {"NUMBA_CACHE_DIR": str(folder / "compiled")}
     environment["PYTHONPATH"] = str(ROOT / "src")
-    command = [sys.executable, "-m", "microslip", "sweep", *targets, "--cores", str(cores)]
+    command = [sys.executable, "-m", "microslip", "sweep", "--cores", str(cores)]
     before, begun = resource.getrusage(resource.RUSAGE_CHILDREN), time.perf_counter()
     subprocess.run(command, cwd=folder, env=environment, check=True, stdout=subprocess.DEVNULL)
     wall, after = time.perf_counter() - begun, resource.getrusage(resource.RUSAGE_CHILDREN)
@@ -47,7 +40,7 @@ def main():
     parser.add_argument("--cores", type=int, default=2)
     options = parser.parse_args()
     with tempfile.TemporaryDirectory() as place:
-        rows = [row(*step, Path(place), options.cores) for step in STEPS.items()]
+        rows = [row(step, Path(place), options.cores) for step in STEPS]
     load = f"mean load {os.getloadavg()[2]:.1f} of {os.cpu_count()} cores"
     note = f"{options.cores} jobs at a time on {machine.cpu_model()}, {load}."
     tables.publish(f"{tables.markdown(rows)}\n\n{note}\n", options)

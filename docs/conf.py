@@ -68,7 +68,6 @@ TITLES = {
     "first_run": "Time of the first run",
     "growth": "Time and memory of large sweeps",
     "interpolation": "Errors of interpolation between the points of a map",
-    "many_questions": "Time and memory of many queries of a map",
     "paper_method": "Cost of the paper's method",
     "published_numbers": "Published numbers, case by case",
     "slurm": "Sweep on Slurm",
