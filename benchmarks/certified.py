@@ -38,8 +38,17 @@ TRUTH = {"transverse": 0.1, "bore": 0.2}
 """Tolerance of a motion's references, divided by the smallest error of the motion's maps."""
 TIMED = 40
 """Number of points of a grid that are solved to measure their cost."""
-UNIFORM = (25, 49, 97, 193)
+UNIFORM = (25, 97, 193)
 """Numbers of nodes along each axis of the uniform grids."""
+
+JUDGEMENTS = """\
+Certified maps at random points, which are uniform in the logarithm of the velocity and in the
+amplitude. The points were used neither to make a map nor to choose a constant. A point is covered
+if the error of the map is at most its estimate plus the error estimate of the reference. The last
+column is the smallest fraction of the surplus with which all points would be covered."""
+GRIDS = """\
+Cost of the maps, and of uniform grids whose nodes are as accurate as the points of the map. The
+error between the nodes is that of `microslip.at`."""
 
 
 def random_points(dataset, number, seed):
@@ -116,13 +125,9 @@ def judged(dataset, points, truth):
         "points of the map": dataset.points,
         "random points": len(points),
         "covered, %": f"{100 * np.mean(miss <= estimate + truth[:, 1]):.2f}",
-        "covered by the estimate alone, %": f"{100 * np.mean(miss <= estimate):.2f}",
-        "median error": f"{np.median(miss):.1e}",
         "largest error": f"{miss.max():.1e}",
-        "median estimate": f"{np.median(estimate):.1e}",
         "largest estimate": f"{dataset.cell_error.values.max():.1e}",
-        "fraction of the surplus for 99.9 %": f"{np.quantile(share, 0.999):.3f}",
-        "for all": f"{share.max():.3f}",
+        "fraction of the surplus": f"{share.max():.3f}",
     }
 
 
@@ -163,8 +168,6 @@ def of_grid(dataset, grid, points, estimate, seconds):
         "grid": grid,
         "points": points,
         "largest estimate": f"{estimate.max():.1e}",
-        "median estimate": f"{np.median(estimate):.1e}",
-        "CPU ms a point": f"{1e3 * seconds:.0f}",
         "CPU s, all points": f"{seconds * points:.0f}",
     }
 
@@ -189,8 +192,8 @@ def main():
             grids.append(of_map(dataset))
             if not dataset["poisson"].ndim:
                 grids += [of_uniform_grid(dataset, count) for count in UNIFORM]
-    text = f"{tables.markdown(judgements)}\n\n{tables.markdown(grids)}"
-    tables.publish(text, options)
+    text = (JUDGEMENTS, tables.markdown(judgements), GRIDS, tables.markdown(grids))
+    tables.publish("\n\n".join(text), options)
 
 
 if __name__ == "__main__":

@@ -2,11 +2,11 @@
 
     python benchmarks/static_approach.py [--tolerance T] [--markdown FILE]
 
-There is a table for each motion (transverse and bore, nu = 0) and amplitude. It lists the velocity,
-mu_macro, the error estimate, and the excess over the closed form of the limit. The last column is
-the local exponent p in excess ~ velocity^p, between a velocity and the next larger velocity. It is
-empty where an excess is not much larger than its error estimate. Smaller tolerances show the
-exponent at smaller velocities.
+The table has a row for each motion (transverse and bore, nu = 0) and amplitude. It lists the closed
+form of the limit, and the excess of mu_macro over this limit at each velocity. The last column is
+the range of the local exponent p in excess ~ velocity^p between neighbouring velocities. It leaves
+out an excess that is not much larger than its error estimate. Smaller tolerances show the exponent
+at smaller velocities.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ from microslip.datasets.catalogue import FORMS, STATIC
 VELOCITIES = (1e-2, 1e-3, 1e-4, 1e-5, 1e-6)
 AMPLITUDES = {"transverse": (0.25, 0.5, 0.75), "bore": (0.5, 1.0, 2.0)}
 CERTAIN = 5.0
-"""An exponent is printed if the excess is at least this many times its error estimate."""
+"""An exponent counts if the excess is at least this many times its error estimate."""
 
 
 def exponent(points, limit):
@@ -43,40 +43,35 @@ def exponent(points, limit):
     return math.log(excess[0] / excess[1]) / math.log(points[-2].velocity / points[-1].velocity)
 
 
-def table(motion, amplitude, tolerance):
-    """Markdown lines of the table for a motion and an amplitude."""
+def row(motion, amplitude, tolerance):
+    """Row of the table for a motion and an amplitude."""
     limit = float(FORMS[motion][STATIC].function(amplitude))
-    lines = [f"{motion}, amplitude {amplitude:g}: closed form of the limit {limit:.6f}", ""]
-    lines += [
-        "| velocity | mu_macro | error estimate | excess | exponent |",
-        "|---|---|---|---|---|",
-    ]
-    points = []
+    cells = {"motion": motion, "amplitude": f"{amplitude:g}", "limit": f"{limit:.6f}"}
+    points, exponents = [], []
     for velocity in VELOCITIES:
         point = microslip.solve(motion, velocity, amplitude, tolerance=tolerance)
         points.append(point)
         seconds = f"{point.solve_time_s:.1f} s {point.reason}"
         print(f"{motion} {amplitude:g} at {velocity:g}: {seconds}", file=sys.stderr, flush=True)
-        if not point.converged:
-            lines.append(f"| {velocity:g} | not converged: {point.reason} | | | |")
-            continue
-        local = exponent(points, limit)
-        lines.append(
-            f"| {velocity:g} | {point.mu_macro:.6f} | {point.mu_macro_error:.1e} "
-            f"| {point.mu_macro - limit:.2e} | {'' if local is None else f'{local:.2f}'} |"
-        )
-    return lines
+        excess = f"{point.mu_macro - limit:.2e}" if point.converged else "not converged"
+        cells[f"excess at {velocity:g}"] = excess
+        exponents.append(exponent(points, limit))
+    local = [one for one in exponents if one is not None]
+    return cells | {"exponent": f"{min(local):.2f} to {max(local):.2f}" if local else ""}
 
 
 def main():
     parser = tables.parser_of(__doc__)
     parser.add_argument("--tolerance", type=float, default=1e-4)
     options = parser.parse_args()
-    lines = []
-    for motion, amplitudes in AMPLITUDES.items():
-        for amplitude in amplitudes:
-            lines += [*table(motion, amplitude, options.tolerance), ""]
-    tables.publish("\n".join(lines), options)
+    rows = [
+        row(motion, amplitude, options.tolerance)
+        for motion, amplitudes in AMPLITUDES.items()
+        for amplitude in amplitudes
+    ]
+    text = "The excess is mu_macro minus its limit at velocity 0. The error estimate of mu_macro is"
+    text += f" at most {options.tolerance:g}.\n\n{tables.markdown(rows)}"
+    tables.publish(text, options)
 
 
 if __name__ == "__main__":
