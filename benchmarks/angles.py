@@ -20,9 +20,8 @@ import tables
 from microslip.periodic.discretise import Resolution
 from microslip.periodic.run import Settings
 from microslip.periodic.simulate import simulate
-from microslip.periodic.stick_edge import edge_focus
-from microslip.pressures.by_name import pressure_named
-from microslip.scene.by_name import motion_named
+from microslip.periodic.static_limit import edge_focus
+from microslip.scene.by_name import motion_named, pressure_named
 from microslip.scene.problem import Problem
 
 LOADED = "normal:lateral=0.9,phase=90"

@@ -13,7 +13,7 @@ from scipy.optimize import brentq
 from microslip.contact.convolution import influence
 from microslip.contact.path import EULER, make_path
 from microslip.contact.squares import CartesianContact
-from microslip.pressures.pressure import Pressure
+from microslip.scene.pressure import Pressure
 
 RESIDUAL = 1e-11
 """Residual force of the step, divided by friction times load."""

@@ -50,8 +50,7 @@ from scipy.stats import beta
 import microslip
 from microslip.answer import ladder
 from microslip.answer import refine as refinement
-from microslip.pressures.by_name import pressure_named
-from microslip.scene.by_name import motion_named
+from microslip.scene.by_name import motion_named, pressure_named
 from microslip.scene.problem import Problem
 
 TIGHTER, TIGHTER_AT_1E_4 = 0.1, 0.25

@@ -22,9 +22,8 @@ from microslip.answer.limits import choose_model
 from microslip.periodic.discretise import Resolution
 from microslip.periodic.run import Settings
 from microslip.periodic.simulate import simulate
-from microslip.periodic.static_limit import at_turning_points
-from microslip.periodic.stick_edge import edge_focus
-from microslip.pressures.hertz import HERTZ
+from microslip.periodic.static_limit import at_turning_points, edge_focus
+from microslip.scene.hertz import HERTZ
 
 SWEPT = {"radial": ((96, 1), (192, 1)), "polar": ((64, 12), (96, 24))}
 SWEPT_STEPS = 4

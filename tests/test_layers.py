@@ -8,14 +8,14 @@ import microslip
 
 PACKAGE = Path(microslip.__file__).parent
 RULE = (
-    "foundation < theory < pressures < scene < contact < periodic "
+    "foundation < theory < scene < contact < periodic "
     "< answer < si < config < sweeps < datasets < studies < report < app"
 )
 ROOMS = RULE.split(" < ")
 PHYSICS = ROOMS[1 : ROOMS.index("si")]
-FROM_FILES = {"grid_file"}
-"""Modules of the pressure from a file, the only physics with paths."""
-LISTS_FILES = Path("periodic", "method_names.py")
+FROM_FILES = Path("scene", "files.py")
+"""Module of motions and pressures from files, the only physics with paths."""
+LISTS_FILES = Path("periodic", "method.py")
 """Module that lists the files of methods without importing them."""
 MODULES = sorted(path.relative_to(PACKAGE) for path in PACKAGE.rglob("*.py"))
 
@@ -70,8 +70,7 @@ def test_physics_knows_no_files_workflow_or_plots():
     forbidden = {"xarray", "netCDF4", "matplotlib", "snakemake", "yaml", "json", "os", "pathlib"}
     names = set()
     for path in MODULES:
-        files = path == LISTS_FILES or (path.parts[0] == "pressures" and path.stem in FROM_FILES)
-        if path.parts[0] in PHYSICS and not files:
+        if path.parts[0] in PHYSICS and path not in (LISTS_FILES, FROM_FILES):
             names |= {(str(path), name) for name in imported(path)[1] & forbidden}
     assert not names
 
@@ -79,8 +78,7 @@ def test_physics_knows_no_files_workflow_or_plots():
 def test_nothing_else_in_the_physics_knows_where_files_are():
     named = ("foundation", "named_files")
     users = {path for path in MODULES if any(name[:2] == named for name in imported(path)[0])}
-    readers = {"scene/by_name.py", "scene/from_file.py"}
-    readers |= {"pressures/by_name.py", "pressures/grid_file.py"}
+    readers = {"scene/by_name.py", "scene/files.py"}
     assert {path.as_posix() for path in users if path.parts[0] in PHYSICS} == readers
 
 

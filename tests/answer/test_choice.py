@@ -71,7 +71,7 @@ def test_the_steady_bore_is_eqs_21_and_22_which_the_resolved_contact_confirms(ve
 
 
 def fast(motion, amplitude, tolerance):
-    """Velocity at which half the width of the bracket of theory/bounds.py is the tolerance."""
+    """Velocity at which half the width of the bracket of theory/exact.py is the tolerance."""
     if motion == Transverse():
         return amplitude * math.sqrt(0.5 / tolerance - 0.5)
     return 1.0 + math.sqrt(0.1 / tolerance)

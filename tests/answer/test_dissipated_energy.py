@@ -6,7 +6,7 @@ import pytest
 from scipy.integrate import quad
 
 import microslip
-from microslip.pressures.by_name import pressure_named
+from microslip.scene.by_name import pressure_named
 from microslip.theory import hertz, masing
 from microslip.theory.indenters import torsion_energy
 

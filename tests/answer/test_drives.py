@@ -13,10 +13,8 @@ from microslip.foundation.errors import InputError
 from microslip.periodic.discretise import Resolution
 from microslip.periodic.run import Settings
 from microslip.periodic.simulate import simulate
-from microslip.pressures.by_name import pressure_named
-from microslip.scene.by_name import motion_named
-from microslip.scene.drive import Force
-from microslip.scene.problem import Problem
+from microslip.scene.by_name import motion_named, pressure_named
+from microslip.scene.problem import Force, Problem
 from microslip.theory import indenters, paper
 
 PLACES = {

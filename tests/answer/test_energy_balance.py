@@ -12,8 +12,7 @@ import pytest
 
 import microslip
 from microslip.answer.limits import choose_model, problem_of
-from microslip.contact.contact import FORWARD, forces, rigid_displacement
-from microslip.contact.coulomb import project
+from microslip.contact.contact import FORWARD, forces, project, rigid_displacement
 from microslip.contact.path import make_path
 from microslip.periodic import simulate, static_limit
 

@@ -14,8 +14,7 @@ from microslip.answer.refine import (
     SAFETY,
     extrapolate,
 )
-from microslip.periodic.budget import Effort, Spent
-from microslip.periodic.run import Run
+from microslip.periodic.run import Effort, Run, Spent
 
 EXACT, EXACT_TORQUE = 0.4, 0.7
 LADDER = Ladder(start=8, angles=0.5, steps=2)

@@ -5,8 +5,8 @@ import pytest
 import reference_march
 
 from microslip.answer.along import response
-from microslip.pressures.hertz import HERTZ
-from microslip.pressures.pressure import Pressure
+from microslip.scene.hertz import HERTZ
+from microslip.scene.pressure import Pressure
 from microslip.theory import hertz
 
 PEAK = 0.9

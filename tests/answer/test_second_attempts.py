@@ -7,8 +7,7 @@ from stubs.agreement import assert_agree
 import microslip
 from microslip.answer import request
 from microslip.periodic import simulate
-from microslip.periodic.budget import Effort
-from microslip.periodic.run import Run
+from microslip.periodic.run import Effort, Run
 
 
 class Stubborn:

@@ -8,8 +8,7 @@ import microslip
 from microslip.periodic.discretise import Resolution
 from microslip.periodic.simulate import simulate
 from microslip.scene.by_name import motion_named
-from microslip.scene.drive import Force
-from microslip.scene.problem import Problem
+from microslip.scene.problem import Force, Problem
 
 
 def mindlin(force):

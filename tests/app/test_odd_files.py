@@ -11,7 +11,7 @@ from microslip.config.load import ConfigError
 from microslip.datasets.open_map import open_map
 from microslip.foundation.errors import InputError
 from microslip.foundation.files import CacheError
-from microslip.pressures.by_name import pressure_named
+from microslip.scene.by_name import pressure_named
 
 
 def one_line(caught, words):

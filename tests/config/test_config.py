@@ -16,8 +16,7 @@ from microslip.config import load as config
 from microslip.config.load import ConfigError, load
 from microslip.config.settings import Sweep
 from microslip.contact.registry import MODELS
-from microslip.pressures.by_name import pressure_named
-from microslip.scene.by_name import motion_named
+from microslip.scene.by_name import motion_named, pressure_named
 from microslip.scene.problem import Problem
 from microslip.sweeps import request
 

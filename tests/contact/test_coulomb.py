@@ -6,7 +6,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
-from microslip.contact.coulomb import coulomb_residual, project
+from microslip.contact.contact import coulomb_residual, project
 
 POINTS = 4
 NUMBER = st.floats(-3.0, 3.0, allow_subnormal=False)

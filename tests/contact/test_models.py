@@ -11,8 +11,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from microslip.contact.contact import forces, forward_slip
-from microslip.contact.coulomb import project
+from microslip.contact.contact import forces, forward_slip, project
 from microslip.contact.modes import PolarContact
 from microslip.contact.path import EULER, SDIRK2, half_period_phases, make_path
 from microslip.contact.reduced import slider_contact

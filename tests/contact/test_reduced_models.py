@@ -7,7 +7,7 @@ from scipy.integrate import quad, solve_ivp
 import microslip
 from microslip.contact.path import EULER, make_path
 from microslip.contact.reduced import mdr_contact
-from microslip.pressures.hertz import HERTZ
+from microslip.scene.hertz import HERTZ
 from microslip.theory import hertz, paper
 
 

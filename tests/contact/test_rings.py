@@ -4,8 +4,7 @@ import numpy as np
 import pytest
 from contact.test_models import larger_residual
 
-from microslip.contact.contact import energy_norm, forward_slip
-from microslip.contact.coulomb import coulomb_residual, project
+from microslip.contact.contact import coulomb_residual, energy_norm, forward_slip, project
 from microslip.contact.path import EULER, SDIRK2, half_period_phases, make_path
 from microslip.contact.reduced import slider_contact
 from microslip.contact.ring_contact import RadialContact

@@ -9,9 +9,8 @@ from microslip.contact.convolution import MIRROR, TURN, convolve, square_convolu
 from microslip.contact.path import make_path
 from microslip.contact.registry import MODELS
 from microslip.contact.squares import CartesianContact
-from microslip.pressures.by_name import pressure_named
-from microslip.pressures.hertz import HERTZ, Hertz
-from microslip.scene.by_name import motion_named
+from microslip.scene.by_name import motion_named, pressure_named
+from microslip.scene.hertz import HERTZ, Hertz
 from microslip.scene.problem import Problem
 
 ELLIPSE = "ellipse:ratio=0.6"

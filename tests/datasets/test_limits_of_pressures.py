@@ -7,8 +7,8 @@ from scipy.integrate import quad
 from microslip.config.settings import Sweep
 from microslip.datasets import theory_limits
 from microslip.datasets.catalogue import FORMS
-from microslip.pressures.by_name import pressure_named
-from microslip.theory import axisymmetric
+from microslip.scene.by_name import pressure_named
+from microslip.theory import indenters
 
 AMPLITUDE = np.array([0.0, 0.2, 0.6, 0.9, 1.0, 1.5])
 
@@ -33,7 +33,7 @@ def test_eq_9_is_the_load_where_the_displacement_reaches(name):
     radius = np.linspace(0.0, 1.0, 100001)
     stick = radius[np.searchsorted(pressure.depth(radius), 0.6)]
     assert result == pytest.approx(
-        axisymmetric.static_stick_zone_of(lambda r: float(pressure.bound(r)), stick), abs=1e-4
+        indenters.static_stick_zone_of(lambda r: float(pressure.bound(r)), stick), abs=1e-4
     )
 
 
@@ -91,7 +91,7 @@ def test_datasets_of_other_pressures_have_them():
     dims, values, attributes = result["mu_static_stick_zone"]
     assert dims == ("amplitude",)
     assert values[1] == pytest.approx(
-        axisymmetric.static_stick_zone_of(pressure_named("power:exponent=1").bound, 0.5), abs=1e-6
+        indenters.static_stick_zone_of(pressure_named("power:exponent=1").bound, 0.5), abs=1e-6
     )
     assert "Eq 9" in attributes["long_name"]
 

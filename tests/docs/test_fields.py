@@ -13,7 +13,7 @@ from microslip.config import load
 from microslip.datasets import sweep_dataset
 from microslip.datasets.catalogue import FORMS
 from microslip.datasets.variables import TABLE, rows_of
-from microslip.scene.from_file import UNITS
+from microslip.scene.files import UNITS
 from microslip.si.output import Prediction
 from microslip.sweeps import batch, request
 

@@ -4,7 +4,7 @@ import pytest
 from stubs.benchmark import ROOT, module
 
 import microslip
-from microslip.theory import bounds
+from microslip.theory import exact
 
 SEED = 3
 MEASURED = ROOT / "docs" / "measured"
@@ -12,9 +12,9 @@ TABLE = MEASURED / f"references-{SEED}.csv"
 SEEDS = [SEED, pytest.param(5, marks=pytest.mark.long)]
 DRIVES = {"force", "stiffness", "contacts"}
 PROVED = {
-    "transverse": bounds.largest_drop_transverse,
-    "bore": bounds.largest_drop_bore,
-    "longitudinal": bounds.largest_drop_longitudinal,
+    "transverse": exact.largest_drop_transverse,
+    "bore": exact.largest_drop_bore,
+    "longitudinal": exact.largest_drop_longitudinal,
 }
 LEAST = 24
 """Number of cheap points that are solved."""

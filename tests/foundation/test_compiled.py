@@ -19,7 +19,7 @@ from microslip.foundation.source_digest import LOADED, Sources
 KERNELS = [n for n in LOADED.names if b"compiled import kernel\n" in LOADED.content(n)]
 TWO_TYPES = """
 import sys, numpy as np
-from microslip.contact.coulomb import shrink
+from microslip.contact.operators import shrink
 for kind in sys.argv[1:]:
     number = np.dtype(kind).type(4.0)
     print(shrink(number, number * 0, number / number))
@@ -79,12 +79,12 @@ def test_the_edited_law_of_friction_is_used(package):
     """After an edit of an inlined function, the compiled code of its caller is not used."""
     (package / "contact/caller.py").write_text(
         "from microslip.foundation.compiled import kernel\n"
-        "from microslip.contact.coulomb import shrink\n\n\n"
+        "from microslip.contact.operators import shrink\n\n\n"
         "@kernel\ndef called(x):\n    return x * shrink(x, 0.0, 1.0)\n"
     )
     program = "from microslip.contact.caller import called; print(called(4.0))"
     assert float(output(program, package=package)) == pytest.approx(1.0)
-    law = package / "contact" / "coulomb.py"
+    law = package / "contact" / "operators.py"
     text = law.read_text()
     law.write_text(text.replace("return min(1.0, bound /", "return min(1.0, 0.5 * bound /", 1))
     assert float(output(program, package=package)) == pytest.approx(0.5)
@@ -210,7 +210,7 @@ def test_without_a_compiler_one_line_refuses(command, tmp_path):
 
 BESIDE_LINEAR_ALGEBRA = """
 import sys
-from microslip.contact.coulomb import shrink
+from microslip.contact.operators import shrink
 print(shrink(4.0, 0.0, 1.0), "scipy.linalg" in sys.modules)
 import numba, numpy as np, scipy.linalg
 print(numba.njit(lambda a: np.linalg.det(a @ a))(np.diag([2.0, 3.0])))

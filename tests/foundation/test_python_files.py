@@ -13,8 +13,7 @@ from microslip.config import load
 from microslip.foundation import named_files
 from microslip.foundation.errors import InputError
 from microslip.foundation.named_files import base_name
-from microslip.pressures.by_name import pressure_named
-from microslip.scene.by_name import motion_named
+from microslip.scene.by_name import motion_named, pressure_named
 from microslip.sweeps import request
 
 HELPER = "FACTOR = 1.0\n"
@@ -37,7 +36,7 @@ class Sideways(_Base):
 """
 PRESSURE = """
 from dataclasses import dataclass
-from microslip.pressures.power import Power
+from microslip.scene.indenters import Power
 
 @dataclass(frozen=True)
 class Cone(Power):

@@ -18,8 +18,7 @@ from microslip.periodic.discretise import Resolution, contact_of, path_of
 from microslip.periodic.run import Settings
 from microslip.periodic.simulate import simulate
 from microslip.scene.by_name import motion_named
-from microslip.scene.drive import Force, Spring
-from microslip.scene.problem import Problem
+from microslip.scene.problem import Force, Problem, Spring
 
 DRIVES = {
     "a force": Force(0.4),

@@ -10,7 +10,7 @@ from stubs.studies_stub import configured
 import microslip
 from microslip.answer import point as trial
 from microslip.foundation import canonical
-from microslip.periodic import method_names
+from microslip.periodic import method as methods
 from microslip.studies import accuracy, requests
 
 os.environ.setdefault("OMP_NUM_THREADS", "1")  # read when the package is first imported
@@ -27,25 +27,25 @@ def without(monkeypatch):
     def result(name):
         return None if name == "aspher" else find_spec(name)
 
-    monkeypatch.setattr(method_names, "find_spec", result)
+    monkeypatch.setattr(methods, "find_spec", result)
     monkeypatch.setitem(sys.modules, "aspher", None)
 
 
 @pytest.fixture
 def within(monkeypatch):
     """An environment that seems to have the package, which cannot be imported."""
-    monkeypatch.setattr(method_names, "find_spec", lambda name: object())
+    monkeypatch.setattr(methods, "find_spec", lambda name: object())
 
 
 def test_no_other_method_needs_a_package(without):
-    lacking = {name: method_names.missing(name) for name in method_names.names()}
+    lacking = {name: methods.missing(name) for name in methods.names()}
     assert {name for name, reason in lacking.items() if reason} == {"aspher"}
     assert "the package aspher" in lacking["aspher"]
-    assert method_names.method_named("aspher").requires == "aspher"
+    assert methods.method_named("aspher").requires == "aspher"
 
 
 def test_without_the_package_its_name_is_good_and_its_runs_are_refused(without):
-    method_names.split("aspher")
+    methods.split("aspher")
     assert "aspher" in configured({"methods": ["shipped", "aspher"]}).accuracy.methods
     with pytest.raises(ValueError, match="needs the package aspher"):
         microslip.solve("transverse", 0.5, 3.0, model="cartesian", cells=8, method="aspher")

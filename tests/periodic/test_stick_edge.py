@@ -5,11 +5,10 @@ import pytest
 
 import microslip
 from microslip.contact.rings import Focus, make_rings
-from microslip.periodic.budget import Budget, Spent
 from microslip.periodic.discretise import Resolution
-from microslip.periodic.run import Settings
+from microslip.periodic.run import Budget, Settings, Spent
 from microslip.periodic.simulate import simulate
-from microslip.periodic.stick_edge import (
+from microslip.periodic.static_limit import (
     FINE_RESOLUTION,
     FINE_TOLERANCE,
     LINE_RESOLUTION,
@@ -18,9 +17,8 @@ from microslip.periodic.stick_edge import (
     edge_focus,
     stick_edges,
 )
-from microslip.pressures.by_name import pressure_named
-from microslip.pressures.hertz import HERTZ
-from microslip.scene.by_name import motion_named
+from microslip.scene.by_name import motion_named, pressure_named
+from microslip.scene.hertz import HERTZ
 from microslip.scene.problem import Problem
 from microslip.theory import hertz, indenters
 

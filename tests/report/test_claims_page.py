@@ -11,8 +11,8 @@ from stubs.claims_stub import answered, configured
 import microslip
 from microslip.app import cli
 from microslip.foundation.errors import InputError
-from microslip.pressures.hertz import HERTZ
 from microslip.report import claims_page, dataset_page
+from microslip.scene.hertz import HERTZ
 from microslip.studies import registry
 from microslip.studies.claims import command
 

@@ -9,8 +9,8 @@ import microslip
 from microslip.app.cli import main
 from microslip.foundation.errors import InputError
 from microslip.foundation.named_files import DIGITS
-from microslip.pressures.hertz import HERTZ
 from microslip.scene.by_name import motion_named
+from microslip.scene.hertz import HERTZ
 
 PHASE = np.linspace(0.0, 2.0 * np.pi, 64, endpoint=False)
 SINE = np.sin(PHASE)

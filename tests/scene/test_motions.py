@@ -9,9 +9,8 @@ import pytest
 import microslip
 from microslip.foundation.errors import InputError
 from microslip.scene.by_name import MOTIONS
-from microslip.scene.drive import Force, Spring
 from microslip.scene.named import Elliptic, Transverse
-from microslip.scene.problem import Problem
+from microslip.scene.problem import Force, Problem, Spring
 
 PERIODIC = [one() for one in MOTIONS.values() if one.periodic and not fields(one)]
 MIRRORED = [motion for motion in PERIODIC if motion.half_period_mirror]

@@ -4,15 +4,15 @@ import numpy as np
 import pytest
 
 import microslip
-from microslip.contact.coulomb import project
+from microslip.contact.contact import project
 from microslip.contact.path import EULER, make_path
 from microslip.contact.reduced import mdr_contact
 from microslip.contact.registry import MODELS
 from microslip.contact.ring_contact import RadialContact
 from microslip.periodic.discretise import Resolution, contact_of, path_of
 from microslip.periodic.simulate import simulate
-from microslip.pressures.hertz import HERTZ
 from microslip.scene.by_name import motion_named
+from microslip.scene.hertz import HERTZ
 from microslip.scene.problem import Problem
 
 ALONE = [

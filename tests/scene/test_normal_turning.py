@@ -6,8 +6,8 @@ import pytest
 import microslip
 from microslip.periodic.discretise import Resolution
 from microslip.periodic.simulate import simulate
-from microslip.pressures.hertz import HERTZ
 from microslip.scene.by_name import motion_named
+from microslip.scene.hertz import HERTZ
 from microslip.scene.problem import Problem
 from microslip.theory import hertz, paper
 

@@ -202,7 +202,7 @@ def test_an_unknown_displacement_of_a_contact_that_stays_has_its_reason(monkeypa
     def endless(*changes, **settings):
         return SimpleNamespace(converged=False, reason="lost on the way")
 
-    monkeypatch.setattr("microslip.answer.shakedown.shakedown", endless)
+    monkeypatch.setattr("microslip.answer.force.shakedown", endless)
     light = microslip.predict("transverse", **requests)
     assert (light.outcome, light.displacement_reason) == ("stays", "lost on the way")
     assert "unknown: lost on the way" in str(light)

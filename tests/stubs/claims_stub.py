@@ -4,7 +4,7 @@ import numpy as np
 from stubs import studies_stub
 
 from microslip.config import load
-from microslip.pressures.by_name import pressure_named
+from microslip.scene.by_name import pressure_named
 from microslip.theory import oscillating_load, paper
 
 CLAIMS = {

@@ -13,7 +13,7 @@ from microslip.datasets import netcdf
 from microslip.report import claims_page
 from microslip.studies import registry
 from microslip.studies.claims import verdicts
-from microslip.theory import constant_stiffness, paper
+from microslip.theory import oscillating_load, paper
 
 NOT_DECIDED, HOLDS, PARTLY, NOT = verdicts.WORDS
 OPEN, HOLD, FAIL = verdicts.OPEN, verdicts.HOLDS, verdicts.FAILS
@@ -186,7 +186,7 @@ def both_sides_stick(request, changed):
     return {"stick_left": [0.2] * 9, "stick_right": [0.2] * 9}
 
 
-STIFF, eq37 = "normal:indentation=1", constant_stiffness.sum_of_powers
+STIFF, eq37 = "normal:indentation=1", oscillating_load.sum_of_powers
 
 FLIPPED = {
     "Eq 6 far": (1, of_points("transverse", lambda v, a: 0.5), PARTLY),

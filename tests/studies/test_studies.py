@@ -322,7 +322,7 @@ def test_a_trial_and_patches_use_the_pressure_of_the_request():
 
 def test_the_papers_run_uses_the_pressure_of_the_request(monkeypatch):
     """The friction bounds of the squares are the loads of the pressure."""
-    from microslip.pressures.by_name import pressure_named
+    from microslip.scene.by_name import pressure_named
 
     class Seen(Exception):
         pass

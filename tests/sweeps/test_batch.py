@@ -11,7 +11,7 @@ from stubs.sweep_stub import EFFORT, RUNS, Solver, configured, requests_of
 import microslip
 from microslip.contact.contact import StepFailure
 from microslip.foundation.errors import CacheError, InputError, SolverError
-from microslip.periodic.budget import Spent
+from microslip.periodic.run import Spent
 from microslip.sweeps import batch
 
 

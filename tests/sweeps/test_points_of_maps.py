@@ -18,7 +18,7 @@ from microslip.sweeps.map_refinement import (
     refine_cells,
     surpluses_of,
 )
-from microslip.theory.kinks import Kinks, kink_velocity, kinks_of
+from microslip.theory.exact import Kinks, kink_velocity, kinks_of
 
 PLAIN = MapCoordinates((0.01, 1.0), (0.5, 2.5))
 TRANSVERSE = MapCoordinates((0.001, 10.0), (0.0, 3.0), kinks_of("transverse"))

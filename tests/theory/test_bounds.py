@@ -10,7 +10,7 @@ from scipy.optimize import brentq
 
 import microslip
 from microslip.theory import hertz, paper
-from microslip.theory.bounds import largest_drop_bore, largest_drop_transverse
+from microslip.theory.exact import largest_drop_bore, largest_drop_transverse
 
 ratios = st.floats(-6.0, 6.0).map(lambda x: 10**x)
 amplitudes = st.floats(-6.0, 3.0).map(lambda x: 10**x)

@@ -4,8 +4,7 @@ import numpy as np
 import pytest
 
 from microslip.foundation.errors import InputError
-from microslip.theory.drift import bore_drift, transverse_drift
-from microslip.theory.paper import bore_forward
+from microslip.theory.paper import bore_drift, bore_forward, transverse_drift
 
 PHASES = (np.arange(2000) + 0.5) * np.pi / 2000
 

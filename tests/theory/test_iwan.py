@@ -7,7 +7,7 @@ from hypothesis import strategies as st
 
 import microslip
 from microslip.foundation.errors import InputError
-from microslip.pressures.by_name import pressure_named
+from microslip.scene.by_name import pressure_named
 
 PRESSURES = ("hertz", "power:exponent=1", "power:exponent=4", "punch:flat=0.8")
 

@@ -3,10 +3,10 @@
 import numpy as np
 import pytest
 
-from microslip.pressures.by_name import pressure_named
-from microslip.pressures.hertz import HERTZ
+from microslip.scene.by_name import pressure_named
+from microslip.scene.hertz import HERTZ
 from microslip.theory import masing, oscillating_load
-from microslip.theory.kinks import kink_velocity, kinks_of
+from microslip.theory.exact import kink_velocity, kinks_of
 
 AMPLITUDES = (0.2, 0.6, 1.0, 1.7)
 PULLED_BACK = 0.97

@@ -8,7 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from scipy.integrate import quad
 
-from microslip.theory import axisymmetric, hertz
+from microslip.theory import hertz, indenters
 from microslip.theory import paper as theory
 
 AMPLITUDE = st.floats(0.0, 5.0)
@@ -42,12 +42,12 @@ def test_eq_11_is_eq_10_at_the_radius_of_eq_8(amplitude):
 
 def test_stick_zone_of_any_pressure():
     c = np.array([[0.0, 1e-3], [0.5, 1.0]])
-    general = axisymmetric.static_stick_zone_of(hertz_pressure, c)
+    general = indenters.static_stick_zone_of(hertz_pressure, c)
     assert general == pytest.approx(theory.static_stick_zone(c), rel=1e-9)
     # Flat-ended punch: the load inside c is 1 - sqrt(1 - c^2); uniform pressure: c^2.
-    punch = axisymmetric.static_stick_zone_of(lambda r: 1 / np.sqrt(1 - r * r), c)
+    punch = indenters.static_stick_zone_of(lambda r: 1 / np.sqrt(1 - r * r), c)
     assert punch == pytest.approx(1 - np.sqrt(1 - c**2), abs=1e-8)
-    assert axisymmetric.static_stick_zone_of(lambda r: 7.0, c) == pytest.approx(c**2, rel=1e-10)
+    assert indenters.static_stick_zone_of(lambda r: 7.0, c) == pytest.approx(c**2, rel=1e-10)
 
 
 # Continuous bore
@@ -96,7 +96,7 @@ def test_kernels_are_eqs_19_and_20(ratio):
 
 @pytest.mark.parametrize("velocity", [1e-6, 0.1, 0.8, 0.999, 1.0, 1.001, 1.5, 30.0, 1e6])
 def test_closed_bore_forms_are_the_integrals_of_the_kernels(velocity):
-    forward, torque = axisymmetric.bore_of(hertz_pressure, velocity)
+    forward, torque = indenters.bore_of(hertz_pressure, velocity)
     assert theory.bore_forward(velocity) == pytest.approx(forward, rel=1e-10)
     assert theory.bore_torque(velocity) == pytest.approx(torque, rel=1e-10)
 

@@ -9,7 +9,7 @@ from typing import Any, Self
 
 from microslip.contact.registry import MODELS
 from microslip.foundation.number_text import number_text
-from microslip.periodic.budget import Effort
+from microslip.periodic.run import Effort
 from microslip.scene.problem import Problem
 
 CLOSED_FORM = "closed-form"

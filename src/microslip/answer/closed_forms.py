@@ -6,7 +6,7 @@ import math
 from collections.abc import Callable
 
 from microslip.answer.answer import Estimate
-from microslip.pressures.hertz import HERTZ
+from microslip.scene.hertz import HERTZ
 from microslip.scene.problem import Problem
 from microslip.theory import hertz, masing, paper
 from microslip.theory.exact import LARGEST_DROPS, STATIC_LIMITS
@@ -40,7 +40,7 @@ def closed_form(problem: Problem, tolerance: float) -> Exact | None:
     Closed forms exist in four cases.  The first is the steady state of a motion without
     oscillation, where every point slips in the direction of its rigid velocity.  The second is the
     limit of vanishing velocity, and the third is motion along one line at nu = 0.  The fourth is
-    fast sliding, if the bounds in bounds.py differ by less than the tolerance.
+    fast sliding, if the bounds in theory/exact.py differ by less than the tolerance.
 
     Parameters
     ----------
@@ -71,7 +71,7 @@ def _fast_sliding(problem: Problem, tolerance: float) -> Exact | None:
     """Midpoint of the bounds for fast sliding, or None if they differ by more than the tolerance.
 
     Per radian, the dissipated energy is between the drift d and d (1 + drop / (4 - 2 drop)), see
-    theory/bounds.py.  `drop` is the largest value of 1 - mu.
+    theory/exact.py.  `drop` is the largest value of 1 - mu.
     """
     motion = problem.motion
     largest_drop = LARGEST_DROPS.get(motion.name)
@@ -92,9 +92,9 @@ def _steady_bore(problem: Problem) -> Exact | None:
     if problem.pressure == HERTZ:
         both = paper.bore_forward(velocity), paper.bore_torque(velocity)
     elif problem.pressure.is_round:
-        from microslip.theory import axisymmetric  # imported here because it loads slowly
+        from microslip.theory import indenters  # imported here because it loads slowly
 
-        both, error = axisymmetric.bore_of(problem.pressure.bound, velocity), QUADRATURE
+        both, error = indenters.bore_of(problem.pressure.bound, velocity), QUADRATURE
     else:
         return None
     return {

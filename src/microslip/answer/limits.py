@@ -21,14 +21,12 @@ from microslip.foundation.arguments import (
     real,
 )
 from microslip.foundation.errors import InputError
-from microslip.periodic import method_names
-from microslip.pressures.by_name import pressure_named
-from microslip.pressures.hertz import HERTZ
-from microslip.pressures.pressure import Pressure
-from microslip.scene.by_name import motion_named
-from microslip.scene.drive import Drive, Force, Spring
+from microslip.periodic.method import SHIPPED, method_named, missing
+from microslip.scene.by_name import motion_named, pressure_named
+from microslip.scene.hertz import HERTZ
 from microslip.scene.motion import LOOP, Motion
-from microslip.scene.problem import Problem
+from microslip.scene.pressure import Pressure
+from microslip.scene.problem import Drive, Force, Problem, Spring
 
 
 class Limit(NamedTuple):
@@ -289,9 +287,9 @@ def choose_model(problem: Problem, model: str = "auto") -> str:
 def method_refusal(problem: Problem, model: str, method: str) -> str:
     """Reason why a method does not apply to a model and a motion; empty if it applies."""
     motion = problem.motion
-    if method == method_names.SHIPPED:
+    if method == SHIPPED:
         return ""
-    how = method_names.method_named(method)
+    how = method_named(method)
     if how.run is not None:
         if model != how.model:
             return f"it is a run of the model {how.model}"
@@ -311,7 +309,7 @@ def method_refusal(problem: Problem, model: str, method: str) -> str:
     return ""
 
 
-def refuse(problem: Problem, model: str, method: str = method_names.SHIPPED) -> None:
+def refuse(problem: Problem, model: str, method: str = SHIPPED) -> None:
     """Raise InputError for the first of the `contradictions`."""
     for argument, value, allowed in contradictions(problem, model, method):
         raise InputError(argument, value, allowed)
@@ -330,11 +328,11 @@ def contradictions(problem: Problem, model: str, method: str) -> Iterator[tuple[
         Name of the method.
     """
     motion, drive, periodic = problem.motion, problem.drive, problem.motion.periodic
-    shipped, lack = method == method_names.SHIPPED, method_names.missing(method)
+    shipped, lack = method == SHIPPED, missing(method)
     if lack:
         yield "method", method, lack
     refusal = method_refusal(problem, model, method)
-    if not (refusal or shipped) and method_names.method_named(method).run is not None:
+    if not (refusal or shipped) and method_named(method).run is not None:
         refusal = "it is one run, which cannot be refined"
     if refusal:
         yield "method", method, f"does not apply to {motion.name}, model {model}: {refusal}"
@@ -346,7 +344,7 @@ def contradictions(problem: Problem, model: str, method: str) -> Iterator[tuple[
     if not MODELS[model].drivable:
         yield "model", model, f"supports no {pulls}, only a prescribed velocity"
     if not shipped:
-        yield "method", method, f"allowed is {method_names.SHIPPED} with a {pulls}"
+        yield "method", method, f"allowed is {SHIPPED} with a {pulls}"
     if force is None:
         if periodic and problem.velocity == 0.0 and not is_even(problem):
             allowed = f"allowed is a number above 0 for {motion.name} with a spring"

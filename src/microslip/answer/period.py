@@ -12,11 +12,10 @@ from microslip.contact.modes import PolarContact
 from microslip.foundation.errors import InputError, SolverError
 from microslip.periodic.discretise import Resolution, contact_of, path_of
 from microslip.periodic.run import unsolved
-from microslip.periodic.simulate import simulate
-from microslip.periodic.steady import steady_state
-from microslip.pressures.hertz import HERTZ
-from microslip.pressures.pressure import Pressure
+from microslip.periodic.simulate import simulate, steady_state
+from microslip.scene.hertz import HERTZ
 from microslip.scene.motion import Motion
+from microslip.scene.pressure import Pressure
 from microslip.scene.problem import Problem
 
 PERIOD_CELLS, PERIOD_STEPS = 16, 64

@@ -9,12 +9,11 @@ from microslip.answer import limits
 from microslip.answer.answer import Result, about
 from microslip.answer.request import TOLERANCE, answer_of, request_of
 from microslip.contact.registry import MODELS
-from microslip.periodic import method_names
-from microslip.pressures.by_name import pressure_named
-from microslip.pressures.hertz import HERTZ
-from microslip.pressures.pressure import Pressure
-from microslip.scene.by_name import motion_named
+from microslip.periodic.method import SHIPPED, method_named, missing
+from microslip.scene.by_name import motion_named, pressure_named
+from microslip.scene.hertz import HERTZ
 from microslip.scene.motion import Motion
+from microslip.scene.pressure import Pressure
 from microslip.scene.problem import Problem
 
 
@@ -33,7 +32,7 @@ def solve(
     tolerance: float | None = TOLERANCE,
     cells: int | None = None,
     steps: int | None = None,
-    method: str = method_names.SHIPPED,
+    method: str = SHIPPED,
     most_work: float | None = None,
     time_limit: float | None = None,
     progress: Callable | None = None,
@@ -62,7 +61,7 @@ def solve(
         F_z / (u_lim omega).  F_z is the normal load without oscillation.
     pressure : str or Pressure
         Pressure, such as "hertz", "power:exponent=1" or "file:measured.csv", see
-        microslip.pressures.by_name.
+        microslip.scene.by_name.
     poisson : float
         Poisson's ratio, 0 to 0.5.
     model : str
@@ -75,7 +74,7 @@ def solve(
         Imposed numbers of cells and of steps per full period.  By default, they are chosen
         according to the tolerance.
     method : str
-        "shipped", or another name in periodic.method_names.names() for a comparison.
+        "shipped", or another name in periodic.method.names() for a comparison.
     most_work : float or None
         Limit on the work of all runs together.  The work of a run is its number of step solves
         times its number of unknowns.  Defaults to MOST_WORK.
@@ -141,7 +140,7 @@ def applies(motion: str, poisson: float, model: str, method: str, pressure: str 
     kind = motion_named(motion)
     amplitude = 1.0 if kind.periodic else None
     problem = Problem(kind, 1.0, amplitude, poisson, pressure_named(pressure))
-    refusal = MODELS[model].refuses(problem) or method_names.missing(method)
+    refusal = MODELS[model].refuses(problem) or missing(method)
     return refusal or limits.method_refusal(problem, model, method)
 
 
@@ -194,7 +193,7 @@ def run_trial(
 
     resolution = Resolution(sizes["cells"], sizes["angles"], max(sizes["steps"] // 2, 1))
     problem = Problem(motion_named(motion), velocity, amplitude, poisson, pressure_named(pressure))
-    settings = Settings(method_names.method_named(method))
+    settings = Settings(method_named(method))
     run = simulate(problem, model, resolution, tolerance, settings=settings)
     effort = run.effort
     return {

@@ -3,7 +3,7 @@
 The sphere moves forward at a prescribed velocity v, like a body too heavy for its velocity to
 change during a period.  The contact exerts the force -mu(v) on its own body.  The stall force is
 -mu(v -> 0), the load that stops the body.  The no-load velocity is the root of mu(v).  Friction
-never decreases with the velocity (theory/bounds.py), so two velocities at which friction has
+never decreases with the velocity (theory/exact.py), so two velocities at which friction has
 opposite signs bracket the root.
 
 A body without mass under a constant load is not propelled: it follows the forward oscillation (see
@@ -23,9 +23,9 @@ from microslip.answer.answer import Answer, Result
 from microslip.answer.point import solve
 from microslip.foundation.errors import InputError
 from microslip.foundation.number_text import number_text
-from microslip.pressures.hertz import HERTZ
-from microslip.pressures.pressure import Pressure
+from microslip.scene.hertz import HERTZ
 from microslip.scene.motion import Motion
+from microslip.scene.pressure import Pressure
 from microslip.scene.problem import Problem
 
 FACTOR, FASTEST = 4.0, 1e6

@@ -32,9 +32,8 @@ import numpy as np
 
 from microslip.answer.answer import UNKNOWN, Answer, Estimate
 from microslip.answer.ladder import LOOSEST, ORDER, Ladder
-from microslip.periodic.budget import Effort, Spent
 from microslip.periodic.discretise import Resolution
-from microslip.periodic.run import NAMES, Run
+from microslip.periodic.run import NAMES, Effort, Run, Spent
 from microslip.scene.problem import Problem
 
 SAFETY = 1.5
@@ -134,7 +133,7 @@ def refine(
         resolution, the observed order, the number of periods in the longest run, the effort of all
         runs, whether every run is `periodic`, and whether the resolution is `imposed`.  The answer
         is not converged if a run did not converge, if the finest level is not fine enough, or if a
-        run raised budget.Spent.  In the last case, the estimates are those before that run, or
+        run raised run.Spent.  In the last case, the estimates are those before that run, or
         unknown.
     """
     runs: dict[tuple[int, int], Run] = {}

@@ -21,8 +21,8 @@ from microslip.answer.answer import CLOSED_FORM, Answer, Estimate, Result
 from microslip.answer.closed_forms import closed_form, no_vibration
 from microslip.foundation.arguments import is_real, without_array
 from microslip.foundation.errors import InputError
-from microslip.periodic import method_names
-from microslip.periodic.budget import Budget
+from microslip.periodic.method import SHIPPED, method_named
+from microslip.periodic.run import Budget
 from microslip.scene.problem import Problem
 
 if TYPE_CHECKING:  # these load compiled code, which a closed form does not need
@@ -67,7 +67,7 @@ class Request:
         Called before every run, with the run's Resolution.
     chosen : bool
         Whether the requested model is "auto", so that a closed form can replace the model.
-    budget : budget.Budget
+    budget : run.Budget
         Budget of all runs together.
     started : float
         Value of time.perf_counter() when the request was made.
@@ -78,7 +78,7 @@ class Request:
     tolerance: float | None
     cells: int | None = None
     steps: int | None = None
-    method: str = method_names.SHIPPED
+    method: str = SHIPPED
     progress: Callable | None = None
     chosen: bool = False
     budget: Budget = field(default_factory=Budget)
@@ -152,7 +152,7 @@ def answer_of(request: Request) -> Result:
         request = replace(request, problem=problem)
     exact, tolerance = no_vibration(problem), request.tolerance
     imposed = problem.velocity > 0.0 and not (request.cells is None and request.steps is None)
-    if not (exact or imposed) and request.chosen and request.method == method_names.SHIPPED:
+    if not (exact or imposed) and request.chosen and request.method == SHIPPED:
         exact = closed_form(problem, tolerance or 0.0)
     if exact is None:
         return result_of_runs(request, runs(request, request.accuracy), tolerance)
@@ -233,19 +233,19 @@ def _run_of(
 ) -> Callable[[Problem, Resolution, Run | None], Run]:
     """Function that runs a problem at one resolution, see refine.refine.
 
-    The runs raise budget.Spent if the budget of the request is exceeded.
+    The runs raise run.Spent if the budget of the request is exceeded.
     """
     from microslip.periodic.run import Settings
     from microslip.periodic.simulate import simulate
-    from microslip.periodic.stick_edge import edge_focus
+    from microslip.periodic.static_limit import edge_focus
 
     own, free = request.problem, request.problem.drive is None
     repeats = free and own.motion.periodic and own.velocity > 0.0
-    repeats = repeats and request.method == method_names.SHIPPED
+    repeats = repeats and request.method == SHIPPED
 
     @cache  # the search for the slip front is charged once
     def settings() -> Settings:
-        method = method_names.method_named(request.method)
+        method = method_named(request.method)
         place = own, request.model, request.budget, request.progress
         focus = edge_focus(*place) if free else None
         return Settings(method, budget=request.budget, focus=focus, slope=slope)

@@ -257,8 +257,7 @@ def refuse_unsolvable(
 
 def _refuse_corners(sweep: Sweep) -> None:
     from microslip.answer.limits import choose_model, problem_of, refuse
-    from microslip.pressures.by_name import pressure_named
-    from microslip.scene.by_name import motion_named
+    from microslip.scene.by_name import motion_named, pressure_named
 
     motion = motion_named(sweep.motion)
     pressure_named(sweep.pressure)

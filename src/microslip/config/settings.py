@@ -19,7 +19,8 @@ from microslip.foundation.arguments import LARGEST
 from microslip.foundation.canonical import number
 from microslip.foundation.errors import InputError
 from microslip.foundation.spec import near_miss
-from microslip.periodic import method_names
+from microslip.periodic.method import names as method_names
+from microslip.periodic.method import split as split_method
 
 MOST_POINTS = 1_000_000
 """Largest number of points in a sweep.  With more points, planning takes more than a minute."""
@@ -266,7 +267,7 @@ def _is_folder(text: str) -> bool:
 
 def _checked_method(text: Any) -> str:
     try:
-        method_names.split(text)
+        split_method(text)
     except InputError as error:
         raise Refusal(f"{error.value!r}: {error.allowed}") from None
     return text
@@ -291,7 +292,7 @@ Methods = Annotated[
     tuple[str, ...],
     Allowed(
         "a list of methods, or null for all",
-        lambda v: method_names.names() if v is None else _list(_METHOD, "a list of methods")(v),
+        lambda v: method_names() if v is None else _list(_METHOD, "a list of methods")(v),
     ),
 ]
 
@@ -546,10 +547,10 @@ class ModelMap(_Grid):
 class Accuracy(Settings):
     """Study of the cost of accuracy, with the dataset accuracy.nc."""
 
-    methods: Methods = method_names.names()
-    """Methods to compare, with parameters as in "projected-gradient:step=0.5". A method has the
-    name of its file in src/microslip/periodic/methods, with hyphens; "shipped" is the method of
-    microslip.solve. The default is all methods."""
+    methods: Methods = method_names()
+    """Methods to compare, with parameters as in "projected-gradient:step=0.5". The name
+    of a file in src/microslip/periodic/methods, with hyphens, names a method; "shipped" is the
+    method of microslip.solve. The default is all methods."""
     points: dict[Text, StudyPoint]
     """Points at which all methods and models run, by name. Each point has a panel."""
     levels: Annotated[int, _number(1, 6, 1)] = 6
@@ -611,7 +612,7 @@ class Block(Settings):
 class Stability(Settings):
     """Study of the failures of methods, with the dataset stability.nc."""
 
-    methods: Methods = method_names.names()
+    methods: Methods = method_names()
     """Methods to compare, named as under `accuracy`."""
     tolerance: Tolerance = 1e-3
     """Largest accepted absolute error of mu_macro."""

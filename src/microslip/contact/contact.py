@@ -1,4 +1,17 @@
-"""Interface of the models: a discretised contact, and the result of a march."""
+"""Interface of the models: a discretised contact, Coulomb's law at its points, and a march.
+
+The unknowns of a Coulomb step are tractions q with |q| <= g.  The slip is s = b - A q, where A is
+the influence operator and b is the displacement imposed by the rigid motion and the history.  Slip
+occurs only where |q| = g, in the direction of q.  This is the optimality condition of a convex
+problem, and is equivalent to the fixed point
+
+    q = P_g(q + s / d) for any d > 0; P_g projects onto the disc |q| <= g.
+
+All quantities are dimensionless.
+
+The time integration is compiled for rings, see march.py.  Here, it is in Python, for steps that
+take long to solve.
+"""
 
 from __future__ import annotations
 
@@ -10,6 +23,30 @@ import numpy as np
 
 from microslip.contact.path import Path
 from microslip.foundation.errors import SolverError
+
+
+def project(q: np.ndarray, bound: np.ndarray) -> np.ndarray:
+    """Project tractions q (2, ...) onto |q| <= bound; bound broadcasts to the shape of q[0]."""
+    return q * np.minimum(1.0, bound / np.maximum(np.hypot(q[0], q[1]), 1e-300))
+
+
+def coulomb_residual(
+    q: np.ndarray, slip: np.ndarray, bound: np.ndarray, weight: np.ndarray, scale: np.ndarray
+) -> float:
+    """Residual of Coulomb's law, Sum weight |P_g(q + slip/scale) - q|, as a force divided by mu
+    F_z.
+
+    Parameters
+    ----------
+    q, slip : np.ndarray, shape (2, ...)
+        Forward and lateral components of tractions and slip.
+    bound, weight, scale : np.ndarray
+        Friction bound, area of a point, and diagonal of the influence operator; they broadcast to
+        the shape of q[0].
+    """
+    change = project(q + slip / scale, bound) - q
+    return float(np.sum(weight * np.hypot(change[0], change[1])))
+
 
 FORWARD, LATERAL, TORQUE = range(3)
 """Columns of the forces of a march."""
@@ -231,3 +268,80 @@ def forces(contact: Contact, state: np.ndarray) -> np.ndarray:
     forward, lateral = loads = contact.weight * state
     torque = np.vdot(contact.lateral_position, forward) - np.vdot(contact.forward_position, lateral)
     return np.array([*loads.sum(axis=(1, 2)), torque])
+
+
+Step = tuple[np.ndarray, np.ndarray, int, float, float]
+"""Tractions, slip, number of iterations, residual as a force divided by mu F_z, and displacement d
+of a driven body (0 without a body)."""
+
+
+class StepSolver(Protocol):
+    """Solver of the Coulomb steps of a march."""
+
+    def solve(self, b: np.ndarray, guess: np.ndarray) -> Step:
+        """Solve a step for the imposed displacement b from a guess of the tractions."""
+
+    def balance(self, b: np.ndarray, guess: np.ndarray, stiffness: float, load: float) -> Step:
+        """Solve a step of a driven body: stiffness d + forward force = load."""
+
+
+def march_by_steps(
+    contact: Contact,
+    solver: StepSolver,
+    path: Path,
+    state: np.ndarray,
+    previous: Guess | None = None,
+    *,
+    body: Body | None = None,
+    start: np.ndarray | None = None,
+) -> March:
+    """March along a path; for the arguments, see contact.Contact and RingContact.march."""
+    stages, total, end = len(path.carry), len(path.motion) - 1, path.end
+    guess = None if previous is None else previous.fields
+    if guess is None or guess.shape != (1 + total, *state.shape):
+        guess = None
+    residual, iterations = 0.0, 0
+    history, out = np.empty((1 + total, *state.shape)), np.empty((1 + path.steps, 3))
+    moves, forward = np.zeros((1 + path.steps, 2)), np.zeros_like(state)
+    forward[0] = 1.0
+    slips, advances, gains = [state] * stages, np.zeros(stages), np.zeros(stages)
+    at_end = history[0] = y = np.array(state, dtype=float)
+    out[0] = forces(contact, state)
+    if body is not None:
+        drive, lengths = body.along(path, start)
+        moves[0] = drive[4:]
+        if not body.remembers:
+            moves[0, 0] = (body.load - out[0, 0]) / body.stiffness if body.stiffness else 0.0
+    rigid = rigid_displacement(contact, path.motion[0])
+    z = contact.displacement(y) - rigid - moves[0, 0] * forward
+    for at in range(1, 1 + total):
+        k, s = divmod(at - 1, stages)
+        rigid = rigid_displacement(contact, path.motion[at])
+        b = z + rigid
+        for j in range(s):
+            b -= path.carry[s, j] * slips[j]
+        if guess is not None:
+            y = guess[1] if at == 1 else y + guess[at] - guess[at - 1]
+        elif k > 1:
+            y = 2.0 * history[at - stages] - history[at - 2 * stages]
+        place = 0.0
+        if body is None:
+            step = solver.solve(b, y)
+        else:
+            place, rate = moves[k] + path.carry[s, :s] @ np.stack([advances, gains], 1)[:s]
+            b += place * forward
+            stiffness = body.stiffness + (body.damping + body.mass / lengths[k]) / lengths[k]
+            load = body.load - body.stiffness * place + body.mass * rate / lengths[k]
+            step = solver.balance(b, y, stiffness, load)
+            gains[s] = step[4] / lengths[k] - rate
+        y, slips[s], count, error, advances[s] = step
+        history[at] = y
+        iterations, residual = iterations + count, residual + error
+        if s == stages - 1:
+            b = b - slips[s] - rigid - place * forward
+            if body is not None:
+                moves[k + 1] = place + advances[s], advances[s] / lengths[k]
+            z = b if end == 1.0 else z + (b - z) / end
+            at_end = y if end == 1.0 else at_end + (y - at_end) / end
+            out[k + 1] = forces(contact, at_end)
+    return March(at_end, out, residual, iterations, total, history, moves)

@@ -26,8 +26,8 @@ from microslip.contact.contact import LATERAL, MIRROR, TORQUE
 from microslip.contact.influence import ring_influence
 from microslip.contact.ring_contact import Growth, RingContact, load_on_rings
 from microslip.contact.rings import Focus, Rings, make_rings
-from microslip.pressures.hertz import HERTZ
-from microslip.pressures.pressure import Pressure
+from microslip.scene.hertz import HERTZ
+from microslip.scene.pressure import Pressure
 
 FEWEST_PROLONGED = 16
 """Smallest number of rings at which tractions from a coarser mesh are a better initial guess than

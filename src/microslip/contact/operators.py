@@ -80,6 +80,15 @@ def plus_multiple(total: tuple, numbers: tuple, factor: float) -> tuple:
     )
 
 
+@kernel(inline="always")
+def shrink(forward: float, lateral: float, bound: float) -> float:
+    """Factor between 0 and 1 that projects the traction (forward, lateral) onto the disc |q| <=
+    bound."""
+    size = np.sqrt(forward * forward + lateral * lateral)
+    # without a branch, so that the compiler can vectorise it
+    return min(1.0, bound / max(size, 1e-300))
+
+
 @kernel
 def transform(
     matrix: np.ndarray,

@@ -35,8 +35,8 @@ from microslip.contact import contact
 from microslip.contact.path import Path
 from microslip.contact.ring_contact import Growth, RadialContact
 from microslip.contact.rings import Focus, make_rings
-from microslip.pressures.hertz import HERTZ
-from microslip.pressures.pressure import Pressure
+from microslip.scene.hertz import HERTZ
+from microslip.scene.pressure import Pressure
 
 GRADING = 0.98
 """Grading of the steps towards the turning points.  At a turning point, the direction of slip

@@ -17,8 +17,8 @@ from microslip.contact.operators import multiply, padded
 from microslip.contact.path import Path
 from microslip.contact.rings import Focus, make_rings
 from microslip.contact.splitting import PENALTIES, best_penalty
-from microslip.pressures.hertz import HERTZ
-from microslip.pressures.pressure import Pressure
+from microslip.scene.hertz import HERTZ
+from microslip.scene.pressure import Pressure
 
 
 def load_on_rings(pressure: Pressure, edges: np.ndarray, depth: np.ndarray) -> np.ndarray:

@@ -14,8 +14,8 @@ from typing import NamedTuple
 import numpy as np
 
 from microslip.foundation.errors import InputError
-from microslip.pressures.hertz import HERTZ
-from microslip.pressures.pressure import Pressure
+from microslip.scene.hertz import HERTZ
+from microslip.scene.pressure import Pressure
 
 
 class Focus(NamedTuple):

@@ -25,8 +25,7 @@ from __future__ import annotations
 import numpy as np
 from numba import types
 
-from microslip.contact.coulomb import shrink
-from microslip.contact.operators import ZERO, four, multiply, multiply_two
+from microslip.contact.operators import ZERO, four, multiply, multiply_two, shrink
 from microslip.foundation.compiled import kernel
 
 MOST_ITERATIONS = 4000

@@ -14,14 +14,29 @@ from dataclasses import replace
 
 import numpy as np
 
-from microslip.contact.contact import LATERAL, MIRROR, TORQUE, Body, Contact, Guess, March
+from microslip.contact.contact import (
+    LATERAL,
+    MIRROR,
+    TORQUE,
+    Body,
+    Contact,
+    Guess,
+    March,
+    Step,
+    march_by_steps,
+)
 from microslip.contact.convolution import MIRROR as MIRRORED
-from microslip.contact.convolution import TURN, convolve, square_convolution, workspace
-from microslip.contact.descent import PATIENCE, descend
+from microslip.contact.convolution import (
+    PATIENCE,
+    TURN,
+    convolve,
+    descend,
+    square_convolution,
+    workspace,
+)
 from microslip.contact.path import Path
-from microslip.contact.step_march import Step, march_by_steps
-from microslip.pressures.hertz import HERTZ
-from microslip.pressures.pressure import Pressure
+from microslip.scene.hertz import HERTZ
+from microslip.scene.pressure import Pressure
 
 MOST_DISPLACEMENTS = 60
 """Largest number of trial displacements of a driven body in each step."""

@@ -11,9 +11,9 @@ from functools import partial
 import numpy as np
 
 from microslip.datasets.catalogue import FORMS, STATIC, ClosedForm
-from microslip.pressures.by_name import pressure_named
-from microslip.pressures.pressure import Pressure
-from microslip.theory import axisymmetric, hertz, indenters, masing, paper
+from microslip.scene.by_name import pressure_named
+from microslip.scene.pressure import Pressure
+from microslip.theory import hertz, indenters, masing, paper
 
 ZONE = replace(
     FORMS["transverse"]["mu_static_stick_zone"],
@@ -88,9 +88,7 @@ def _steady(pressure: Pressure, of_sphere: dict[str, ClosedForm]) -> dict[str, C
     return {
         name: replace(
             form,
-            function=lambda velocity, part=part: axisymmetric.bore_of(pressure.bound, velocity)[
-                part
-            ],
+            function=lambda velocity, part=part: indenters.bore_of(pressure.bound, velocity)[part],
             equation=equation,
             long_name=f"steady {what} ({equation})",
             description=f"steady {what} as an integral over the pressure ({equation})",

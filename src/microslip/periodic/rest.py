@@ -15,9 +15,8 @@ import numpy as np
 from microslip.contact.contact import Body, March, StepFailure, forward_slip
 from microslip.contact.path import EULER, Path, make_path
 from microslip.contact.ring_contact import RingContact
-from microslip.periodic.budget import Effort
 from microslip.periodic.discretise import Resolution, path_of
-from microslip.periodic.run import Run, Settings, unsolved
+from microslip.periodic.run import Effort, Run, Settings, unsolved
 from microslip.periodic.search import PeriodMap
 from microslip.scene.motion import HALF_PERIOD
 from microslip.scene.problem import Problem

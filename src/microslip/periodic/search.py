@@ -21,8 +21,7 @@ from typing import NamedTuple, cast
 
 import numpy as np
 
-from microslip.contact.contact import Body, Contact, March, StepFailure, energy_norm
-from microslip.contact.coulomb import project
+from microslip.contact.contact import Body, Contact, March, StepFailure, energy_norm, project
 from microslip.contact.path import Path
 from microslip.contact.ring_contact import RingContact
 from microslip.periodic.anderson import DEPTH, accelerated, remember

@@ -1,5 +1,7 @@
 """One run at one resolution: build the contact and the path, then find the periodic state.
 
+The steady state of a motion without oscillation is the fixed point of a march over any stretch.
+
 The search for the state of a driven contact starts from the periodic state at a prescribed
 velocity: the velocity of the spring's far end, or an approximate velocity under the force.  The
 number of periods in a search does not depend on the number of steps, so a run with many steps
@@ -14,15 +16,22 @@ from typing import NamedTuple
 
 import numpy as np
 
-from microslip.contact.contact import Body, StepFailure, forward_slip
-from microslip.contact.coulomb import project
-from microslip.periodic.budget import Effort
-from microslip.periodic.discretise import Resolution, path_of
-from microslip.periodic.march_values import dissipated_energy, mean_forces
+from microslip.contact.contact import (
+    FORWARD,
+    TORQUE,
+    Body,
+    Contact,
+    StepFailure,
+    forward_slip,
+    project,
+)
+from microslip.contact.path import EULER, make_path
+from microslip.periodic.discretise import Resolution, dissipated_energy, mean_forces, path_of
 from microslip.periodic.rest import run_to_rest
 from microslip.periodic.run import (
     AS_SHIPPED,
     STEP_SHARE,
+    Effort,
     Run,
     Settings,
     failed_run,
@@ -39,10 +48,52 @@ from microslip.periodic.search import (
     PeriodMap,
     find_periodic_state,
 )
-from microslip.periodic.static_limit import SLOW_LOOP, limit_on_a_line, limit_on_a_loop
-from microslip.periodic.steady import steady_state
-from microslip.periodic.stick_edge import static_run
+from microslip.periodic.static_limit import SLOW_LOOP, limit_on_a_line, limit_on_a_loop, static_run
 from microslip.scene.problem import Problem
+
+STEADY_STRETCH = 8
+"""Number of steps in a stretch."""
+STEADY_TRAVEL = 0.5
+"""Largest rigid displacement of a steady motion in one step, in u_lim."""
+
+
+def steady_state(contact: Contact, problem: Problem, tolerance: float) -> Run:
+    """Find the steady state of a motion without oscillation.
+
+    Parameters
+    ----------
+    contact : contact.Contact
+        The contact, in full forward slip at the start.
+    problem : problem.Problem
+        The steady motion; its velocity sets the length of a step.
+    tolerance : float
+        Tolerance of the state, as a force divided by mu F_z.
+
+    Returns
+    -------
+    Run
+        Forces and tractions of the steady state.
+    """
+    step = STEADY_TRAVEL / max(1.0, problem.velocity)
+    path = make_path(problem.displacement, step * np.arange(STEADY_STRETCH + 1.0), EULER)
+    goal = Goal(tolerance, STEP_SHARE * tolerance)
+    steady = find_periodic_state(
+        PeriodMap(contact, path, mirror=False), forward_slip(contact), goal
+    )
+    march = steady.march
+    reason = unsolved(march.residual, march.solves, goal.step_tolerance)
+    return Run(
+        {
+            "friction": float(march.forces[-1, FORWARD]),
+            "torque": float(march.forces[-1, TORQUE]) / problem.pressure.torque,
+        },
+        distance=steady.distance,
+        residual=march.residual,
+        effort=Effort.of(steady.solves, steady.iterations, steady.start.size),
+        reason=reason if steady.converged else f"no steady state: {steady.distance:.1e} left",
+        state=march.state,
+    )
+
 
 SLOW_EXCESS, LARGEST_EXCESS = 4.0, 0.6
 """A search starts from the static limit plus a forward traction.  This traction is the friction
@@ -104,7 +155,7 @@ def simulate(
 
     Raises
     ------
-    budget.Spent
+    run.Spent
         If the budget is exceeded.
     """
     method, drive = settings.method, problem.drive

@@ -1,1 +1,1 @@
-"""Prescribed motions of the contact, each in its own file, and the class Problem."""
+"""Motions and pressures of the contact, and the class Problem."""

@@ -23,7 +23,7 @@ import numpy as np
 
 from microslip.foundation import spec
 from microslip.foundation.errors import InputError
-from microslip.pressures.pressure import Pressure
+from microslip.scene.pressure import Pressure
 from microslip.theory import hertz, masing, oscillating_load, paper
 
 FOCUS_RANGE = (0.05, 0.9995)

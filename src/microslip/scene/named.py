@@ -7,8 +7,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from microslip.foundation.errors import InputError
-from microslip.pressures.pressure import Pressure
 from microslip.scene.motion import Motion, Wave, within_rings
+from microslip.scene.pressure import Pressure
 
 
 @dataclass(frozen=True)

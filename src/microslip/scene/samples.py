@@ -17,8 +17,8 @@ import numpy as np
 
 from microslip.foundation.arguments import LARGEST
 from microslip.foundation.errors import InputError
-from microslip.pressures.pressure import Pressure
 from microslip.scene.motion import LOOP, NORMAL, PLANE, Motion, stick_focus, within_rings
+from microslip.scene.pressure import Pressure
 
 if TYPE_CHECKING:
     from scipy.interpolate import CubicSpline

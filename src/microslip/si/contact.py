@@ -15,11 +15,10 @@ import numpy as np
 
 from microslip.foundation.arguments import LARGEST
 from microslip.foundation.errors import InputError
-from microslip.pressures.by_name import pressure_named
-from microslip.pressures.ellipse import SMALLEST_RATIO
-from microslip.pressures.pressure import Pressure
-from microslip.scene.by_name import motion_named
+from microslip.scene.by_name import motion_named, pressure_named
+from microslip.scene.hertz import SMALLEST_RATIO
 from microslip.scene.motion import Motion
+from microslip.scene.pressure import Pressure
 from microslip.si.inputs import AT_REST, OSCILLATIONS, Inputs
 from microslip.theory import hertz
 

@@ -22,7 +22,7 @@ import numpy as np
 
 from microslip.foundation.arguments import count, real
 from microslip.foundation.errors import InputError
-from microslip.scene.from_file import COLUMNS, EVEN
+from microslip.scene.files import COLUMNS, EVEN
 from microslip.scene.samples import FEWEST_SAMPLES, NORMAL
 
 FEWEST_PERIODS, FEWEST_PER_PERIOD = 4, 4

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from microslip.answer.iwan import iwan
+from microslip.answer.along import iwan
 from microslip.foundation.errors import InputError
 from microslip.si.response import only_contact
-from microslip.theory.iwan import Iwan
+from microslip.theory.masing import Iwan
 
 
 def predict_iwan(

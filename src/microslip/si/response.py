@@ -21,7 +21,7 @@ import numpy as np
 from microslip.answer.along import response
 from microslip.foundation.csv_table import LABELS, table_of
 from microslip.foundation.errors import InputError, shown
-from microslip.scene.from_file import UNITS
+from microslip.scene.files import UNITS
 from microslip.si.contact import Contact, contact_of
 from microslip.si.inputs import Input, read_inputs, read_quantity
 from microslip.si.strokes import factors, scales

@@ -257,7 +257,7 @@ def _rest(contact: Contact) -> tuple[dict[str, Value], str]:
         return {}, "computed for a round contact only"
     settings: dict[str, Any] = {"poisson": float(contact.poisson), "pressure": contact.pressure}
     try:
-        from microslip.answer.shakedown import shakedown  # late: compiled code
+        from microslip.answer.force import shakedown  # late: compiled code
 
         rest = shakedown(
             contact.motion, float(contact.amplitude), float(drive["force"]), **settings

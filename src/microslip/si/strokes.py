@@ -4,7 +4,7 @@ time [ms],lateral [um],load [N]
 0,0,10
 0.1,0.62,10.3
 
-The format is that of scene/from_file.py, with a unit in each heading.
+The format is that of scene/files.py, with a unit in each heading.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ from microslip.foundation.csv_table import check_format, parsed_file
 from microslip.foundation.errors import InputError
 from microslip.foundation.named_files import FileReader, NamedFile
 from microslip.foundation.units import read
-from microslip.scene.from_file import COLUMNS, UNITS, read_period, read_samples
+from microslip.scene.files import COLUMNS, UNITS, read_period, read_samples
 from microslip.scene.samples import NORMAL, PLANE, Sampled
 
 USUAL_ROWS, MOST_ROWS = 2_000, 10_000

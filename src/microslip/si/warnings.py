@@ -14,7 +14,7 @@ from typing import NamedTuple
 import numpy as np
 
 from microslip.foundation.number_text import prefixed_text
-from microslip.pressures.axisymmetric_indenter import Indenter
+from microslip.scene.indenters import Indenter
 from microslip.si.contact import Contact
 
 YIELDS_AT = 0.57

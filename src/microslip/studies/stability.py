@@ -13,8 +13,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from microslip.foundation.canonical import number as text_of_number
-from microslip.periodic import method_names
-from microslip.periodic.method_names import SHIPPED
+from microslip.periodic.method import SHIPPED, declared, method_named, split
 from microslip.studies import requests as forms
 from microslip.studies.answers import Answers, Row, number
 from microslip.studies.requests import Point
@@ -59,8 +58,8 @@ def probe(study: Stability, method: str, block: Block, value: float) -> dict | N
     shipped method.
     """
     if block.quantity == "step" and method != SHIPPED:
-        name, numbers = method_names.split(method)
-        if "step" not in (method_names.declared(name, "parameters") or ()):
+        name, numbers = split(method)
+        if "step" not in (declared(name, "parameters") or ()):
             return None
         words = (f"{k}={text_of_number(n)}" for k, n in (numbers | {"step": value}).items())
         method = f"{name}:{','.join(words)}"
@@ -152,7 +151,7 @@ def values(study: Stability, answers: Answers) -> dict[str, Any]:
         "reason": [[result.get("reason") or "" for result in row] for row in results],
         "error": np.abs(numbers["mu_macro"] - mu),
         "method": study.methods,
-        "method_summary": [method_names.method_named(method).summary for method in study.methods],
+        "method_summary": [method_named(method).summary for method in study.methods],
         "reference": mu,
         "reference_error": error,
         "axis": list(blocks),

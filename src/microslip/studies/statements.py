@@ -21,7 +21,7 @@ import numpy as np
 
 from microslip.studies import verdicts
 from microslip.studies.static_limits import asymptote
-from microslip.theory import constant_stiffness, paper
+from microslip.theory import oscillating_load, paper
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -93,8 +93,8 @@ FORMULAS = {
     "eq33": _of(paper.static_bore, "amplitude"),
     "printed": _of(paper.static_bore_printed, "amplitude"),
     "asymptote": _of(asymptote, "amplitude"),
-    "eq37": _of(constant_stiffness.sum_of_powers, "amplitude", "velocity"),
-    "eq38": _of(constant_stiffness.single_power, "amplitude", "velocity"),
+    "eq37": _of(oscillating_load.sum_of_powers, "amplitude", "velocity"),
+    "eq38": _of(oscillating_load.single_power, "amplitude", "velocity"),
     "other": _of(np.asarray, "other"),
     "limit": _of(np.asarray, "limit"),
 }

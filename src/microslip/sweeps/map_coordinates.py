@@ -19,7 +19,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from microslip.foundation.canonical import canonical_json
-from microslip.theory.kinks import Kinks, kink_velocity
+from microslip.theory.exact import Kinks, kink_velocity
 
 DIGITS = 9
 """Number of significant digits in a node's coordinates."""
@@ -106,7 +106,7 @@ class MapCoordinates(NamedTuple):
         Smallest and largest velocity, above 0; () for a map of the static limit.
     amplitude : tuple of float
         Smallest and largest amplitude, at least 0.
-    kinks : theory.kinks.Kinks
+    kinks : theory.exact.Kinks
         Kinks of the motion.
     poisson : tuple of float
         Smallest and largest Poisson's ratio; () if Poisson's ratio is not a direction of the map.

@@ -29,7 +29,7 @@ from microslip.foundation import named_files
 from microslip.sweeps import batch
 from microslip.sweeps.map_coordinates import Box, MapCoordinates
 from microslip.sweeps.request import points_of, solver_names
-from microslip.theory.kinks import kinks_of
+from microslip.theory.exact import kinks_of
 
 SHARE = 0.1
 """Ratio of a cell's polynomial error to its surplus, calibrated by benchmarks/certified.py."""

@@ -82,8 +82,7 @@ def solver_names(sweep: Sweep) -> tuple[str, str]:
 
 @cache
 def _canonical_names(motion: str, pressure: str) -> tuple[str, str]:
-    from microslip.pressures.by_name import pressure_named
-    from microslip.scene.by_name import motion_named
+    from microslip.scene.by_name import motion_named, pressure_named
 
     return motion_named(motion).name, pressure_named(pressure).name
 

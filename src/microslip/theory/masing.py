@@ -1,17 +1,38 @@
-"""Friction under longitudinal oscillation in closed form, by Masing's rules.
+"""Masing's rules: friction under longitudinal oscillation in closed form, and the Iwan model.
 
 If the sphere moves along a line, the tangential force depends only on the history of its
 displacement. The force of the first loading is F(d), with d in u_lim and F in mu F_z. For a sphere
 it is 1 - (1 - d)^(3/2) (Cattaneo and Mindlin). After each turn, the force follows the same curve at
 twice the scale until it reaches the previous turn. Then it follows the older branch. This is exact
 for Poisson's ratio 0. Quantities are dimensionless as in `paper`.
+
+An Iwan model consists of parallel Jenkins elements, each a spring in series with a slider.  Let F
+be the force of the first loading along one line at nu = 0.  It is 1 minus the load at the
+indentation depth 1 - u.  Its slope is 2 G* c, where c is the contact radius at this depth.  If an
+Iwan model has sliders with the density rho over the slip displacement phi, its slope is
+Integral_u^1 rho dphi.  So
+
+    rho(phi) = -F''(phi) = 2 G* / h'(c)    at the depth h(c) = 1 - phi,
+
+which is 3/4 (1 - phi)^(-1/2) for a sphere.  The model is exact for every history of the
+displacement, because the model and the contact follow Masing's rules.  Under a punch, the sliders
+below the flat end slip together at phi = 1.
+
+The discrete model divides the contact radius into intervals.  In each interval, one element
+replaces all sliders.  It has their total stiffness and their total limit force.  So the model has
+the initial stiffness of the contact and the correct force at full slip.  The first loading of the
+model consists of tangents of F at the ends of the intervals, so the force is never below F.
 """
 
+from __future__ import annotations
+
 from collections.abc import Callable
+from dataclasses import dataclass
 
 import numpy as np
 
-from microslip.theory.hertz import checked, mindlin_force
+from microslip.foundation.errors import InputError
+from microslip.theory.hertz import IndenterPressure, checked, mindlin_force
 
 Function = Callable[[np.ndarray], np.ndarray]
 _HALVINGS = 60
@@ -155,3 +176,134 @@ def _integral(function: Function, start: np.ndarray, end: np.ndarray) -> np.ndar
     for node, weight in zip(_NODES, _WEIGHTS, strict=True):
         total += weight * function(start + node * (end - start))
     return total * (end - start)
+
+
+_GRID = 1.0 - np.linspace(0.0, 1.0, 4097)
+"""Contact radii in the table from which the ends of the intervals are interpolated."""
+LOOP_ERRORS = 3.0
+"""Largest error on loops, divided by the largest error e on the first loading.  A branch of a loop
+is F(u_max) - 2 F(x) + 2 F(y), and every F has an error from 0 to e."""
+
+
+@dataclass(frozen=True, eq=False)
+class Iwan:
+    """Parallel Jenkins elements whose forces add up to the tangential force.
+
+    In dimensionless form, displacements are divided by u_lim, forces by mu F_z and stiffnesses by
+    mu F_z / u_lim.  `microslip.predict_iwan` uses m, N and N/m.
+
+    Attributes
+    ----------
+    stiffness : np.ndarray, shape (elements,)
+        Stiffness of the springs, in the order in which the elements slip on the first loading.
+    limit_force : np.ndarray, shape (elements,)
+        Force at which each element slips.
+    force_error : np.ndarray, shape (elements,)
+        Largest error of the force on the first loading near the slip displacement of each element,
+        due to the finite number of elements.
+    poisson_error : float
+        Largest difference in force from the full contact due to Poisson's ratio, on a first loading
+        and on a loop between full slip in both directions.  It is 0 for nu = 0.
+    """
+
+    stiffness: np.ndarray
+    limit_force: np.ndarray
+    force_error: np.ndarray
+    poisson_error: float = 0.0
+
+    @property
+    def error(self) -> float:
+        """Error of the force on a first loading and on loops between any two displacements.
+
+        It is never above the error on any path, which is the smaller one with a single element.
+        """
+        on_loops = LOOP_ERRORS * float(self.force_error.max()) + self.poisson_error
+        return min(on_loops, self.error_on_any_path)
+
+    @property
+    def error_on_any_path(self) -> float:
+        """Error of the force on any path, which can have many nested loops.
+
+        The force of a slider is a Lipschitz function of its slip displacement, with the
+        constant 1.  Hence the error is at most the total variation of the error on the first
+        loading.
+        """
+        return 2.0 * float(self.force_error.sum()) + self.poisson_error
+
+    def force(self, displacement: np.ndarray) -> np.ndarray:
+        """Force along a path that begins at the displacement 0, without tangential force.
+
+        Parameters
+        ----------
+        displacement : array_like, shape (rows,)
+            Displacement at each row.  It changes linearly between rows.
+
+        Returns
+        -------
+        np.ndarray, shape (rows,)
+            Sum of the forces of the elements.
+
+        Raises
+        ------
+        InputError
+            If the displacement is not an array of finite numbers with one dimension.
+        """
+        try:
+            path = np.asarray(displacement, float)
+        except (TypeError, ValueError):
+            path = np.array(np.nan)
+        if path.ndim != 1 or not np.isfinite(path).all():
+            allowed = "allowed is an array of finite numbers with one dimension"
+            raise InputError("displacement", displacement, allowed)
+        forces, out = np.zeros_like(self.stiffness), []
+        for step in np.diff(path, prepend=0.0):
+            forces = np.clip(forces + step * self.stiffness, -self.limit_force, self.limit_force)
+            out.append(forces.sum())
+        return np.array(out)
+
+    def scaled(self, force: float, displacement: float) -> Iwan:
+        """Return a copy in other units.
+
+        force, displacement: the present units of force and displacement, in the new units.
+        """
+        return Iwan(
+            self.stiffness * (force / displacement),
+            self.limit_force * force,
+            self.force_error * force,
+            self.poisson_error * force,
+        )
+
+
+def with_elements(pressure: IndenterPressure, count: int) -> Iwan:
+    """Iwan model of an axisymmetric indenter at nu = 0 with `count` elements.
+
+    The intervals have nearly equal errors.  An interval with the stiffness k and the width w in
+    slip displacement has the error k w / 8, so sqrt(k w) is divided into equal parts.  The flat end
+    of a punch is a separate interval.
+    """
+    parts = np.sqrt(np.diff(pressure.depth(_GRID)) * np.diff(_GRID))
+    measure = np.concatenate([[0.0], np.cumsum(parts)])
+    stop = int(np.argmax(measure == measure[-1]))
+    flat = float(_GRID[stop])
+    ends = np.linspace(0.0, measure[-1], count + (flat == 0.0))
+    c = np.interp(ends, measure[: stop + 1], _GRID[: stop + 1])
+    if flat > 0.0:
+        c = np.append(c, 0.0)
+    slip, slope = 1.0 - pressure.depth(c), 2.0 * pressure.G_star * c
+    force = pressure.loading(slip)
+    stiffness, limit = -np.diff(slope), np.diff(force - slip * slope)
+    own = limit / stiffness  # slip displacement of an element
+    tangents = force[:-1] + slope[:-1] * (own - slip[:-1])
+    return Iwan(stiffness, limit, np.maximum(tangents - pressure.loading(own), 0.0))
+
+
+def with_tolerance(pressure: IndenterPressure, tolerance: float) -> Iwan:
+    """Create an Iwan model for nu = 0 whose `error` is at most the tolerance, with almost as few
+    elements as possible."""
+    model = with_elements(pressure, 1)
+    while model.error > tolerance:  # the error is proportional to count^-2
+        count = len(model.stiffness)
+        model = with_elements(
+            pressure, max(count + 1, int(count * np.sqrt(model.error / tolerance)))
+        )
+    return model

@@ -12,6 +12,11 @@ because at every tau the stretch is at most the yield stretch. Let phi(t) = d(t)
 yield stretch, the stretch at any x is phi(t) - min phi. The mean over the springs is an integral
 over T. This is exact for Poisson's ratio 0. Quantities are dimensionless, in the working units of
 an indenter's pressure.Pressure.
+
+A contact of constant stiffness under a sinusoidal indentation, for example a flat end, acts as a
+single spring. M. Popov (Front. Mech. Eng. 6:69, 2020) gives two empirical formulas, Eqs 37 and 38.
+Both depend on the ratio of the velocity to the amplitude. If the ratio is above 1, the contact
+slides all the time.
 """
 
 from __future__ import annotations
@@ -20,6 +25,7 @@ from collections.abc import Iterator, Sequence
 from itertools import pairwise
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from microslip.theory.hertz import IndenterPressure
 from microslip.theory.masing import clustered_rule, last_true
@@ -158,3 +164,29 @@ class _Motion:
         end = last_true(lambda t: self.phi(t) >= level, low, end)
         t = start[:, None] + (end - start)[:, None] * _NODES
         return lowest + (end - start) * ((self.phi(t) - level[:, None]) @ _WEIGHTS)
+
+
+def sum_of_powers(amplitude: ArrayLike, velocity: ArrayLike) -> np.ndarray:
+    """Compute the friction divided by mu times the mean load (Eq 37).
+
+    Parameters
+    ----------
+    amplitude : array_like
+        Amplitude of the indentation divided by its mean, 0 to 1.
+    velocity : array_like
+        Velocity divided by omega u_lim, where omega is the angular frequency.
+    """
+    left = _remainder(amplitude, velocity)
+    return 1.0 - np.asarray(amplitude) * (0.75 * left**2 + 0.25 * left**4)
+
+
+def single_power(amplitude: ArrayLike, velocity: ArrayLike) -> np.ndarray:
+    """Compute the friction divided by mu times the mean load (Eq 38).
+
+    The arguments are those of sum_of_powers.
+    """
+    return 1.0 - np.asarray(amplitude) * _remainder(amplitude, velocity) ** 2.4
+
+
+def _remainder(amplitude: ArrayLike, velocity: ArrayLike) -> np.ndarray:
+    return np.maximum(1.0 - np.asarray(velocity) / np.asarray(amplitude), 0.0)

@@ -1,1 +1,1 @@
-"""Methods for comparison with the shipped one.  Each method is one file, see method_names."""
+"""Methods for comparison with the shipped one.  Each method is one file, see periodic.method."""

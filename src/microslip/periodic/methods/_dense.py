@@ -6,7 +6,7 @@ The step solver is a function
 
 for the imposed displacement b and a guess q of the tractions, arrays of shape (2, K).  `settings`
 is the return value of `prepare(points, **parameters)`.  The residual is that of
-coulomb.coulomb_residual.
+contact.coulomb_residual.
 """
 
 from __future__ import annotations
@@ -16,10 +16,16 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from microslip.contact.contact import Contact, Guess, March, StepFailure
-from microslip.contact.coulomb import coulomb_residual
+from microslip.contact.contact import (
+    Contact,
+    Guess,
+    March,
+    Step,
+    StepFailure,
+    coulomb_residual,
+    march_by_steps,
+)
 from microslip.contact.path import Path
-from microslip.contact.step_march import Step, march_by_steps
 
 FAR_FROM_SOLVED = 1e-2
 """Residual of a step, divided by mu F_z, above which the solver is considered diverged."""
@@ -74,7 +80,7 @@ class DenseContact:
         return march_by_steps(self.contact, self, path, state, previous)
 
     def solve(self, b: np.ndarray, guess: np.ndarray) -> Step:
-        """Solve a step, see step_march.StepSolver.  The initial guess is the solution of the last
+        """Solve a step, see contact.StepSolver.  The initial guess is the solution of the last
         step, since some methods fail from an extrapolated guess."""
         try:
             q, slip, count, residual = self._solve(

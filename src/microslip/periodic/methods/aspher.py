@@ -26,13 +26,12 @@ import math
 
 import numpy as np
 
+from microslip.contact.contact import coulomb_residual
 from microslip.contact.convolution import square_convolution
-from microslip.contact.coulomb import coulomb_residual
 from microslip.contact.path import EULER, Path
-from microslip.periodic.budget import Effort
 from microslip.periodic.discretise import Resolution, path_of
 from microslip.periodic.method import Method
-from microslip.periodic.run import Run, failed_run
+from microslip.periodic.run import Effort, Run, failed_run
 from microslip.scene.problem import Problem
 from microslip.theory.hertz import G_STAR
 
@@ -72,7 +71,7 @@ class Solver:
     def step(self, forward: float, lateral: float) -> tuple[float, float]:
         """Move to a rigid displacement (in u_lim) and count the step, even if it fails.
 
-        Returns the forward force divided by mu F_z, and the residual, see coulomb.coulomb_residual.
+        Returns the forward force divided by mu F_z, and the residual, see contact.coulomb_residual.
         """
         step = self._solver.step(delta_t=(forward, lateral), tol_kkt=math.inf)
         self.iterations += step.tangential_iters

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from microslip.contact.coulomb import project
+from microslip.contact.contact import project
 from microslip.periodic.method import Method
 from microslip.periodic.methods._dense import Points, dense
 

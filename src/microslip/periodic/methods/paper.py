@@ -14,10 +14,9 @@ import numpy as np
 from microslip.contact.contact import FORWARD, March, forward_slip
 from microslip.contact.path import EULER, Path, make_path
 from microslip.contact.squares import CartesianContact
-from microslip.periodic.budget import Effort
 from microslip.periodic.discretise import Resolution
 from microslip.periodic.method import Method
-from microslip.periodic.run import Run
+from microslip.periodic.run import Effort, Run
 from microslip.scene.problem import Problem
 
 CELLS, STEPS_PER_PERIOD = 32, 100

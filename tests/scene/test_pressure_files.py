@@ -9,10 +9,10 @@ import microslip
 from microslip.app.cli import main
 from microslip.foundation import named_files
 from microslip.foundation.errors import InputError
-from microslip.pressures import grid_file
-from microslip.pressures.by_name import pressure_named
-from microslip.pressures.hertz import HERTZ
-from microslip.pressures.pressure import Measured
+from microslip.scene import files
+from microslip.scene.by_name import pressure_named
+from microslip.scene.hertz import HERTZ
+from microslip.scene.pressure import Measured
 
 AXIS = np.linspace(-1.25, 1.25, 51)
 HERTZIAN = np.sqrt(np.maximum(1.0 - AXIS[:, None] ** 2 - AXIS**2, 0.0))
@@ -361,7 +361,7 @@ def test_large_files_and_grids_are_refused_before_memory_is_used(tmp_path, monke
     monkeypatch.setattr(named_files, "MOST_BYTES", 20)
     assert "larger than" in refusal(text(tmp_path / "p.csv", PLAIN))
     monkeypatch.undo()
-    monkeypatch.setattr(grid_file, "MOST_POINTS", 10)  # n points on a diagonal: a grid of n x n
+    monkeypatch.setattr(files, "MOST_POINTS", 10)  # n points on a diagonal: a grid of n x n
     scattered = text(tmp_path / "p.csv", HEAD + "".join(f"{i},{i},1\n" for i in range(5)))
     assert "5 points for a grid of 5 x 5" in refusal(scattered)
 

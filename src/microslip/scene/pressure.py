@@ -26,8 +26,7 @@ import numpy as np
 
 from microslip.foundation import spec
 from microslip.foundation.errors import InputError
-from microslip.pressures.cell_loads import of_loads, round_loads
-from microslip.pressures.grid import (
+from microslip.scene.grid import (
     FINE,
     FINEST,
     READINGS,
@@ -37,6 +36,8 @@ from microslip.pressures.grid import (
     cropped,
     distances,
     largest_displacement,
+    of_loads,
+    round_loads,
 )
 
 Units = tuple[float | None, float | None]
@@ -48,7 +49,7 @@ NO_UNITS: Units = None, None
 class Pressure:
     """A distribution of the load over the contact, in working units (see the module pressure).
 
-    Each pressure is a subclass in its own file.  The fields of the class are the numbers that may
+    Each pressure is a subclass.  Its fields are the numbers that may
     follow its name in a text such as "power:exponent=1"; `str` returns this text.
 
     Attributes

@@ -15,11 +15,9 @@ from microslip.contact.path import EULER, make_path
 from microslip.contact.registry import MODELS
 from microslip.contact.rings import make_rings
 from microslip.foundation.errors import InputError
-from microslip.pressures.by_name import PRESSURES, pressure_named
-from microslip.pressures.ellipse import Ellipse
-from microslip.pressures.hertz import HERTZ
-from microslip.pressures.pressure import Pressure
-from microslip.scene.by_name import motion_named
+from microslip.scene.by_name import PRESSURES, motion_named, pressure_named
+from microslip.scene.hertz import HERTZ, Ellipse
+from microslip.scene.pressure import Pressure
 from microslip.scene.problem import Problem
 from microslip.theory import hertz, indenters, paper
 

@@ -1,0 +1,271 @@
+"""Hertz pressure on an ellipse, a circle and a ring.  The circle belongs to a sphere on a flat,
+which is the contact of the paper.
+
+Ring is a contact of the shape of a ring, for example of a torus or of a cup's rim.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+import scipy
+
+from microslip.foundation import spec
+from microslip.foundation.errors import InputError
+from microslip.scene.grid import of_corner_loads
+from microslip.scene.pressure import Pressure, RoundPressure
+from microslip.theory import hertz
+
+SMALLEST_RATIO = 0.05
+"""Smallest ratio of the semi-axes."""
+
+
+@dataclass(frozen=True)
+class Ellipse(Pressure):
+    """The pressure of an elliptic Hertz contact with the semi-axes a and `ratio` * a.
+
+    u_lim is the displacement at the centre under full slip.  Hence G* = 3 K / (2 pi), where K is
+    the complete elliptic integral of the eccentricity; this is 3/4 for a circle.
+
+    Parameters
+    ----------
+    ratio : float
+        Ratio of the semi-axes, 0.05 to 1.
+    across : int
+        0 if the long axis is forward, 1 if it is lateral.
+
+    Raises
+    ------
+    InputError
+        If the ratio is outside its range, or if `across` is neither 0 nor 1.
+    """
+
+    ratio: float = 0.5
+    across: int = 0
+
+    hertzian = True
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        limits = (SMALLEST_RATIO, 1.0)
+        spec.refuse_outside(self.name, "pressure", "ratio", self.ratio, limits)
+        if self.across not in (0, 1):
+            raise InputError("pressure", self.name, f"across = {self.across:g}: allowed is 0 or 1")
+
+    @property
+    def summary(self) -> str:
+        return f"a Hertz contact on an ellipse of ratio {self.ratio:g}"
+
+    @cached_property
+    def G_star(self) -> float:
+        return 1.5 / np.pi * float(scipy.special.ellipk(1.0 - self.ratio**2))
+
+    @cached_property
+    def torque(self) -> float:
+        """Mean distance from the centre, weighted by the pressure.
+
+        It is 3 pi/16 on the unit circle.  To obtain the ellipse, one axis of this circle is scaled
+        by the ratio.  This multiplies the distance along a ray at the angle t by hypot(cos t, ratio
+        sin t).
+        """
+        angle = (np.arange(512) + 0.5) * (np.pi / 1024)
+        stretch = np.hypot(np.cos(angle), self.ratio * np.sin(angle))
+        return hertz.TORQUE_FULL_SLIP * float(stretch.mean())
+
+    @property
+    def area(self) -> float:
+        return np.pi * self.ratio
+
+    @property
+    def largest(self) -> float:
+        return 1.5 / (np.pi * self.ratio)
+
+    @property
+    def half_widths(self) -> tuple[float, float]:
+        return (self.ratio, 1.0) if self.across else (1.0, self.ratio)
+
+    def cell_loads(self, cells: int) -> np.ndarray:
+        """Compute the load on each cell, (cells, cells)."""
+        return hertz_loads(cells)
+
+    def loading(self, displacement: np.ndarray | float) -> np.ndarray | float:
+        """Tangential force after a displacement from rest.  It is the same as for a sphere."""
+        return hertz.mindlin_force(displacement)
+
+
+def hertz_loads(cells: int) -> np.ndarray:
+    """Compute the load of Hertz pressure on each cell of the rectangle around the ellipse, (cells,
+    cells).  It does not depend on the ratio of the semi-axes."""
+    edges = np.arange(cells + 1) * 2.0 / cells - 1.0
+    x, y = edges[:, None], edges[None, :]
+    # load of the rectangle from the centre to (x, y), odd in both coordinates; the root is zero
+    # outside the disc, as the pressure is
+    root = np.sqrt(np.maximum(1.0 - x * x - y * y, 0.0))
+    load = x * y * root - np.arctan2(x * y, root)
+    load = load + 0.5 * x * (3.0 - x * x) * np.arctan2(y, root)
+    load = load + 0.5 * y * (3.0 - y * y) * np.arctan2(x, root)
+    return of_corner_loads(load / (2.0 * np.pi))
+
+
+@dataclass(frozen=True)
+class Hertz(Pressure):
+    """The pressure of a sphere on a flat."""
+
+    summary = "a sphere on a flat"
+    hertzian = True
+    G_star = hertz.G_STAR
+    torque = hertz.TORQUE_FULL_SLIP
+    largest = 1.5 / np.pi
+
+    def cell_loads(self, cells: int) -> np.ndarray:
+        """Compute the load on each square, (cells, cells)."""
+        return hertz_loads(cells)
+
+    def ring_means(self, psi: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Mean friction bound and lever arm of the rings with the edges r = sin(psi)."""
+        radii = np.sin(psi)
+        # the first moment of the bound is the integral of sin^2 cos^2 over each ring
+        moment = np.diff(psi / 8 - np.sin(4 * psi) / 32)
+        load = -np.diff(np.cos(psi) ** 3) / 3
+        return hertz.ring_bounds(np.minimum(radii, 1.0)), moment / load
+
+    def bound(self, r: np.ndarray | float, c: float = 1.0) -> np.ndarray:
+        """Friction bound at the radius r of a contact of radius c."""
+        return 1.5 / np.pi * np.sqrt(np.maximum((c - r) * (c + r), 0.0))
+
+    def depth(self, c: np.ndarray) -> np.ndarray:
+        """Indentation depth for the contact radius c."""
+        return c * c
+
+    def radius(self, depth: np.ndarray) -> np.ndarray:
+        """Contact radius at a depth."""
+        return np.sqrt(np.maximum(depth, 0.0))
+
+    def of_load(self, share: np.ndarray) -> np.ndarray:
+        """Depth at which the load is `share` times the mean load."""
+        return np.cbrt(share) ** 2
+
+    def load(self, r: np.ndarray | float, c: np.ndarray | float = 1.0) -> np.ndarray:
+        """Load within the radius r of a contact of radius c."""
+        return c**3 - np.maximum((c - r) * (c + r), 0.0) ** 1.5
+
+    def loading(self, displacement: np.ndarray | float) -> np.ndarray | float:
+        """Tangential force after a displacement from rest (Mindlin)."""
+        return hertz.mindlin_force(displacement)
+
+
+HERTZ = Hertz()
+
+
+HOLES = (0.05, 0.95)
+"""Range of the radius of the hole, divided by the outer radius."""
+_NODES, _WEIGHTS = np.polynomial.legendre.leggauss(12)
+
+
+@dataclass(frozen=True)
+class Ring(RoundPressure):
+    """A pressure proportional to sqrt((r - b)(1 - r)) on the ring from r = b = `inner` to r = 1.
+
+    This is the Hertz pressure of a line contact that is bent into a circle.  It is close to the
+    pressure of a slender torus; for a wide ring, it is an assumption.
+
+    Parameters
+    ----------
+    inner : float
+        Radius of the hole divided by the outer radius, 0.05 to 0.95.
+
+    Raises
+    ------
+    InputError
+        If the radius is outside its range.
+    """
+
+    inner: float = 0.5
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        kind = "a share of the outer radius"
+        spec.refuse_outside(self.name, "pressure", "inner", self.inner, HOLES, kind=kind)
+
+    @property
+    def summary(self) -> str:
+        return f"a ring-shaped contact with a hole of {self.inner:g} of its radius"
+
+    @property
+    def area(self) -> float:
+        return np.pi * (1.0 - self.inner**2)
+
+    @property
+    def _half(self) -> float:
+        return 0.5 * (1.0 - self.inner)
+
+    @property
+    def _middle(self) -> float:
+        return 0.5 * (1.0 + self.inner)
+
+    @property
+    def _top(self) -> float:
+        """Factor of the root, chosen such that the load is 1: 1 / Integral sqrt((r - b)(1 - r)) 2
+        pi r dr, with r = middle - half cos t."""
+        return 1.0 / (np.pi**2 * self._half**2 * self._middle)
+
+    def bound(self, r: np.ndarray) -> np.ndarray:
+        """Friction bound at a radius."""
+        r = np.asarray(r, float)
+        return self._top * np.sqrt(np.maximum((r - self.inner) * (1.0 - r), 0.0))[()]
+
+    def _ring_integrals(self, psi: np.ndarray, power: int) -> np.ndarray:
+        """Integrals of the bound times 2 pi r^power between the radii sin(psi)."""
+        at = np.arccos(np.clip((self._middle - np.sin(psi)) / self._half, -1.0, 1.0))
+        turn = at[:-1, None] + np.diff(at)[:, None] * 0.5 * (_NODES + 1.0)
+        r = self._middle - self._half * np.cos(turn)
+        values = self._top * self._half**2 * np.sin(turn) ** 2 * 2.0 * np.pi * r**power
+        return 0.5 * np.diff(at) * (values @ _WEIGHTS)
+
+    def ring_loads(self, psi: np.ndarray) -> np.ndarray:
+        return self._ring_integrals(psi, 1)
+
+    def ring_moments(self, psi: np.ndarray) -> np.ndarray:
+        return self._ring_integrals(psi, 2)
+
+    @property
+    def torque(self) -> float:
+        whole = np.linspace(np.arcsin(self.inner), np.pi / 2, 65)
+        return float(self.ring_moments(whole).sum())
+
+    @property
+    def largest(self) -> float:
+        return self._top * self._half
+
+    @cached_property
+    def G_star(self) -> float:
+        """G* in working units.  It equals the largest displacement under full slip for G* = 1.
+
+        Under a unit traction on a narrow ring of radius s, the displacement at the radius r is 4
+        s/(r + s) K(m)/pi per unit of the ring's width.  Here 1 - m = ((r - s)/(r + s))^2.
+        """
+        # imported here, because they take a third of a second to load
+        from scipy.integrate import quad
+        from scipy.optimize import minimize_scalar
+
+        inner, top = self.inner, self._top
+
+        def displacement(r: float) -> float:
+            def of_circle(s: float) -> float:
+                apart = max(((r - s) / (r + s)) ** 2, 1e-300)
+                kernel = 4.0 / np.pi * s / (r + s) * scipy.special.ellipkm1(apart)
+                return kernel * top * np.sqrt(max((s - inner) * (1.0 - s), 0.0))
+
+            parts = (inner, r), (r, 1.0)
+            settings = {"epsabs": 0.0, "epsrel": 1e-10, "limit": 200}
+            return sum(quad(of_circle, *part, **settings)[0] for part in parts)
+
+        best = minimize_scalar(
+            lambda r: -displacement(r),
+            bounds=(inner, 1.0),
+            method="bounded",
+            options={"xatol": 1e-7},
+        )
+        return float(-best.fun)
