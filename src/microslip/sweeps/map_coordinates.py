@@ -2,7 +2,7 @@
 
 The axes of a map are velocity and amplitude, and optionally Poisson's ratio; a map of the static
 limit has no velocity.  A map is divided into patches at the known kinks of the motion
-(theory.kinks).  Patches are boxes in scaled coordinates.  Below the velocity of the kink, the
+(theory.exact).  Patches are boxes in scaled coordinates.  Below the velocity of the kink, the
 scaled velocity is proportional to velocity^(1/3).  Friction approaches its static limit with twice
 this exponent.  In this range, amplitudes are divided at their kinks, and nodes are clustered at the
 kinks.  Above the velocity of the kink, the scaled velocity is logarithmic.  Where there are no
