@@ -260,7 +260,7 @@ def test_a_new_output_takes_one_line_in_the_table(monkeypatch, capsys, tmp_path)
     # the area is proportional to the load to the power 2/3
     assert result.contact_area_spread_m2 == pytest.approx(2.0 / 3.0 * 0.1 * area, rel=0.02)
     assert re.search(r"^contact area +\S+ m\^2: area of the contact$", str(result), re.M)
-    assert "| `contact_area_m2` | m^2 | area of the contact |" in output.reference_page()
+    assert "| `contact_area_m2` | area of the contact |" in output.reference_page()
     assert result.to_xarray().contact_area_m2.attrs["units"] == "m^2"
     assert cli.main(["predict", "continuous-bore", *options(**SPUN), "--json"]) == 0
     assert json.loads(capsys.readouterr().out)["contact_area_m2"] == pytest.approx(area)

@@ -375,12 +375,11 @@ def reference_page() -> str:
         "The inputs are arguments of `microslip.predict`, options of `microslip predict` (with `-`",
         "in place of `_`), and columns of a table of contacts.",
         "",
-        "| input | unit | range | meaning |",
-        "|---|---|---|---|",
+        "| input | values | meaning |",
+        "|---|---|---|",
     ]
     for name, one in INPUTS.items():
-        unit, range_ = ("text", "") if one.unit is None else (one.unit or "1", one.range)
-        text.append(f"| `{name}` | {unit} | {range_} | {one.help} |")
+        text.append(f"| `{name}` | {'text' if one.unit is None else one.range} | {one.help} |")
     text += [
         "",
         "The outputs are fields of the answer.  `NAME_error` is the numerical error estimate.  If",
@@ -389,8 +388,8 @@ def reference_page() -> str:
         "in `friction_force_error_N`.",
         "",
     ]
-    text += ["| output | unit | meaning |", "|---|---|---|"]
+    text += ["| output | meaning |", "|---|---|"]
     for name, output in OUTPUTS.items():
         meaning = output.sentence or name.replace("_", " ")
-        text.append(f"| `{column(name, output.unit)}` | {output.unit or '1'} | {meaning} |")
+        text.append(f"| `{column(name, output.unit)}` | {meaning} |")
     return "\n".join(text) + "\n"
