@@ -353,9 +353,9 @@ def _exceptions(lines):
     for line in lines:
         if not line["converged"]:
             text.append(f"\nNot converged: point {line['k']}: {line['reason']}.")
-    without = [str(line["k"]) for line in lines if not line["by"]]
+    without = sum(not line["by"] for line in lines)
     if without:
-        text.append(f"\nWithout a reference: points {', '.join(without)}.")
+        text.append(f"\nWithout a reference: {without} points.")
     for line in lines:
         if contradict(line):
             every = ", ".join(
