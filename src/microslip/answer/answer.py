@@ -251,7 +251,7 @@ class Result(Answer):
     def of(
         cls, problem: Problem, estimates: Mapping[str, Estimate], reason: str = "", **values: Any
     ) -> Result:
-        """Build a result.  Missing values are those of a closed form, see DEFAULTS."""
+        """Build a result.  DEFAULTS contains the values for a closed form."""
         known = {"mean_velocity": Estimate(problem.velocity), **estimates}
         return cls(problem, {**about(problem), **DEFAULTS, **values}, known, reason)
 

@@ -197,7 +197,8 @@ def _estimates(
     """Estimates of all values, and the observed order of convergence of the requested one.
 
     runs: at n/4, n/2 and n, and those of other interpolations at n.  goal: largest accepted
-    resolution error of the value `name`.  The other arguments are those of `refine`.
+    resolution error of the value `name`.  The other arguments have the same meaning as for
+    `refine`.
     """
     three, others, imposed = runs[:3], runs[3:], ladder.imposed > 0.0
     base = (0.0, 0.0, 1.0) if imposed else np.abs(WEIGHTS)

@@ -199,7 +199,7 @@ def runs(
     name : str
         Name of the value in run.Run.values.
     ladder : Ladder or None
-        Resolutions.  None means those of the problem.
+        Resolutions.  None means the values of the problem.
     share : float
         Tolerance of a run, divided by the tolerance.
     slope : float

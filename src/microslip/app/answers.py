@@ -220,8 +220,8 @@ def response(path: str, output: str | None = None, **arguments: Any) -> Answer:
     """Forces of a contact that follows the path of a file.
 
     Forces, torque, dissipated energy and stick fraction, with error estimates.  The columns of the
-    file are forward, lateral, angle, and load or indentation, with units as in forward [um].  The
-    load is that of the reference state.
+    file are forward, lateral, angle, and load or indentation, with units as in forward [um].
+    `load` is the load of the reference state.
     """
     import microslip
 

@@ -18,8 +18,8 @@ class Command(NamedTuple):
     Attributes
     ----------
     answer : callable
-        Function that computes the answer.  Its arguments are those of the command line, and its
-        docstring is the description of the command.
+        Function that computes the answer.  The command line gives its arguments, and its docstring
+        describes the command.
     places, options : dict of Option
         Positional arguments and options, by Python argument.
     inputs : str

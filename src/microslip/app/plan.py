@@ -34,7 +34,7 @@ BUILDERS = {
     "claims": ("studies", "report/claims_page.py", "report/claims.html"),
     "explorer": ("report/explorer", "sweeps/period_codec.py"),
 }
-"""Modules and folders that make a kind of product, besides those that they import."""
+"""Modules and folders that make a kind of product. Imported modules are added to them."""
 MAP_CODE = ("sweeps/map_refinement.py", "sweeps/map_coordinates.py")
 """Modules that choose the points of a certified map."""
 

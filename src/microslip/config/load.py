@@ -137,7 +137,7 @@ def read_yaml(path: str | os.PathLike) -> dict:
 
 
 def reread(config: dict, paths: Iterable[str | os.PathLike]) -> dict:
-    """Return a copy of a configuration in which values from files are those of `read_yaml`.
+    """Return a copy of a configuration in which `read_yaml` has read the values from files.
 
     Snakemake reads files as YAML 1.1, in which 1e-3 is a text and 010 is 8.
 

@@ -335,4 +335,4 @@ class RadialContact(RingContact):
 
 
 NO_DRIVE = np.zeros(6), np.zeros(0)
-"""Arguments `drive` and `lengths` of march.march without a driven body."""
+"""Values of the arguments `drive` and `lengths` of march.march if no body is driven."""

@@ -115,9 +115,8 @@ def _as_focus(focus: Focus | float) -> Focus:
 
 
 def _focused(count: int, places: np.ndarray, strength: float) -> np.ndarray:
-    """Edges (count + 1,) as angles psi, graded towards `places`.  Each place is an edge.
-
-    Between two places, the rings in the middle are the widest.
+    """Edges (count + 1,) as angles psi, graded towards `places`.  Each place is an edge between two
+    rings. The rings are widest half-way between two places.
     """
     edge = np.pi / 2
 

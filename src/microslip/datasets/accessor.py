@@ -213,7 +213,7 @@ def _block(
 ) -> tuple[np.ndarray, ...]:
     """Evaluate an interpolation at broadcast coordinates, after a check of their ranges.
 
-    The first `count` coordinates are those of the axes of the map.
+    The first `count` coordinates belong to the axes of the map.
     """
     arrays = np.broadcast_arrays(*parts)
     points = []

@@ -172,8 +172,9 @@ def parse(content: bytes, messages: bool) -> tuple[str, list[str]]:
 def _text(node: object, messages: bool) -> str:
     """Text of a syntax tree, without docstrings, line numbers and empty fields.
 
-    messages: False to leave out messages.  A string with a blank is a message, unless an attribute
-    of it is used, as in "a b".split().  All versions of Python give the same text, unlike ast.dump.
+    messages: False leaves out the messages.  A string with a blank is a message, unless an
+    attribute of it is used, as in "a b".split().  All versions of Python give the same text, unlike
+    ast.dump.
     """
     if isinstance(node, list):
         return f"[{''.join(_text(item, messages) for item in node if not _is_docstring(item))}]"

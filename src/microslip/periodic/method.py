@@ -33,7 +33,7 @@ from microslip.periodic import methods
 
 @dataclass(frozen=True)
 class Method:
-    """The parts of a method; the defaults are those of the shipped method.
+    """The parts of a method. By default, each part is the part of the shipped method.
 
     In the file of a method, `requires`, `resolution`, `turns`, `model` and `parameters` must be
     literals, since `declared` reads them without running the file.

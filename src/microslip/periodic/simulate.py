@@ -133,8 +133,8 @@ def simulate(
     Parameters
     ----------
     problem : problem.Problem
-        The problem, already checked.  With a spring, its velocity is that of the spring's far end.
-        Under a prescribed force, a velocity above 0 is an initial guess.
+        The problem, already checked.  With a spring, the prescribed velocity is the velocity of the
+        far end of the spring. Under a prescribed force, a velocity above 0 is an initial guess.
     model : str
         Name in contact.registry.MODELS.
     resolution : discretise.Resolution

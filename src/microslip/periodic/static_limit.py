@@ -527,8 +527,8 @@ def stick_edges(
 def _stick_radii(contact: Contact, sticks: np.ndarray | None) -> tuple[float, ...]:
     """Radii between rings that stick and rings that slip; a ring sticks if most of its points do.
 
-    Pairs closer than SLIVER are removed.  Returns only the outermost radius if there are more than
-    MOST_EDGES radii, and no radius if `sticks` is None.
+    Pairs of radii closer than SLIVER are removed.  Returns only the outermost radius if there are
+    more than MOST_EDGES radii, and no radius if `sticks` is None.
     """
     edges = contact.edges
     if sticks is None or edges is None:

@@ -51,8 +51,8 @@ def read_samples(
 ) -> tuple[Table, dict[str, np.ndarray]]:
     """Read the samples in a file: the table, and its columns as numbers in the units of the file.
 
-    The keywords are those of `csv_table.read_table`.  Raises ValueError if the content has another
-    format, or has no displacement or load.
+    The keyword arguments are passed to `csv_table.read_table`.  Raises ValueError if the content
+    has another format, or has no displacement or load.
     """
     form: dict = {"need_units": need_units, "decimal": decimal, "encoding": encoding}
     table = read_table(content, UNITS | {"time": "s"}, **form)

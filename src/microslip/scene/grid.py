@@ -158,8 +158,8 @@ class Grid(NamedTuple):
 
 
 def cropped(points: Sequence[np.ndarray], values: np.ndarray, reading: str) -> Grid:
-    """Create a Grid without the zeros around the pressure.  The arguments are those that `checked`
-    returns."""
+    """Create a Grid without the zeros around the pressure. Its arguments are the return values of
+    `checked`."""
     axes = []
     for number, places in enumerate(points):
         first, last = np.flatnonzero(values.any(axis=1 - number))[[0, -1]]

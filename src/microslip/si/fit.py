@@ -136,7 +136,7 @@ class Fit:
         return "\n".join(lines + [f"warning: {text}" for text in self.warnings])
 
     def to_dict(self) -> dict:
-        """All values, labels and rows.  Arrays and tuples become lists."""
+        """Return the values, labels and rows of the fit. Arrays and tuples become lists."""
         values = {n: list(x) if isinstance(x, tuple) else x for n, x in self.values.items()}
         rows = {name: array.tolist() for name, array in self.rows.items()}
         return values | {"labels": self.labels} | rows
@@ -311,8 +311,8 @@ class Rows:
         return load if self.quantity == "friction" else np.ones_like(load)
 
     def groups(self, conditions: Mapping[str, np.ndarray]) -> tuple[np.ndarray, np.ndarray]:
-        """Ratio of velocity to amplitude, dimensionless, and the amplitude divided by (load / mean
-        load)^(2/3), m, under some conditions."""
+        """Ratio of velocity to amplitude, dimensionless, and the amplitude in m divided by (load /
+        mean load)^(2/3)."""
         speed, amplitude, load, frequency = (conditions[name] for name in CONDITIONS)
         travel = 2.0 * math.pi * frequency * amplitude
         fast = np.full_like(travel, FASTEST)  # without vibration, the velocity has no effect

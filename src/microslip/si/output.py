@@ -325,7 +325,7 @@ def _columns(
 
 
 def _names() -> set[str]:
-    """All possible names of columns with numbers."""
+    """Names of all columns that may contain numbers."""
     units = [(name, one.unit) for name, one in OUTPUTS.items()]
     units += [(name, one.unit) for name, one in INPUTS.items() if one.unit is not None]
     units += [("amplitude", "rad"), ("amplitude_factor", "")]

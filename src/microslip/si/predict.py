@@ -156,7 +156,7 @@ def solved(
 
 
 def outputs(contact: Contact, answer: Answer) -> dict[str, Value]:
-    """The outputs in SI units, without those that the contact does not have."""
+    """Return the outputs of the contact in SI units."""
     factors, values = factors_of(contact, answer), {}
     for name, output in OUTPUTS.items():
         names = (output.factors or name).split()

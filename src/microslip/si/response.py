@@ -106,7 +106,7 @@ def predict_response(
         Progress callback; see `microslip.response`.
     **contact : quantity
         mu, load, radius, material and the other arguments of `microslip.predict` that describe a
-        contact.  The load is that of the reference state.
+        contact.  `load` is the load of the reference state.
 
     Returns
     -------

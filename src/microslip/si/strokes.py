@@ -4,7 +4,7 @@ time [ms],lateral [um],load [N]
 0,0,10
 0.1,0.62,10.3
 
-The format is that of scene/files.py, with a unit in each heading.
+The file has the format of scene/files.py, with a unit in each heading.
 """
 
 from __future__ import annotations

@@ -311,8 +311,9 @@ def with_interval(one: Value, draws: Any) -> Value:
 def probabilities(contact: Contact, answer: Answer) -> dict[str, Value]:
     """Probability of each outcome under a force, with its error estimate; empty without a force.
 
-    The error is that of the threshold, or the difference between the even and the odd draws.  It is
-    at least log(DRAWS) / DRAWS, the order of the sequence's discrepancy.
+    The error estimate follows from the error of the threshold, or from the difference between the
+    even and the odd draws. It is at least log(DRAWS) / DRAWS, the order of the sequence's
+    discrepancy.
 
     contact, answer: those of Draws.
     """

@@ -12,7 +12,7 @@ from microslip.foundation.canonical import canonical_json
 
 Row = dict[str, Any]
 """An answer: the entries of the request and of its result, and the name `key` of the result.
-An entry of the result replaces that of the request."""
+An entry of the result replaces the entry of the request with the same name."""
 MOTIONS = ("transverse", "bore")
 """Motions that replace {motion} in the tables of variables and groups."""
 

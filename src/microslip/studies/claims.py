@@ -192,9 +192,9 @@ def _patches(study: Claims, answers: Answers) -> dict:
 def _edges(amplitude: float, moments: np.ndarray) -> dict:
     """Return the theoretical edges of the stick zone for v -> 0 at the moments of the patches.
 
-    The moments are those of stick_area.patches.  Next to a turning point, the stick zone is a leaf
-    on one side of the contact, where |cos angle| >= tau/g.  A point inside the leaf slips only at
-    the other turning point.  In mid-stroke, the stick zone is a circle.  Its radius depends on the
+    stick_area.patches returns the moments.  Next to a turning point, the stick zone is a leaf on
+    one side of the contact, where |cos angle| >= tau/g.  A point inside the leaf slips only at the
+    other turning point.  In mid-stroke, the stick zone is a circle.  Its radius depends on the
     rotation since the last turning point.
     """
     c = paper.bore_stick_radius(amplitude)

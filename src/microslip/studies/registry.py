@@ -2,7 +2,7 @@
 
 A study is a module with four functions and two texts:
 
-- requests(settings): pairs of a job and a request.  A job is a tuple; those that begin with a
+- requests(settings): pairs of a job and a request.  A job is a tuple. Jobs that begin with a
   smaller number start earlier;
 - values(settings, answers): values of the variables of the dataset, computed from answers;
 - report(dataset): lines of text that summarise the dataset;

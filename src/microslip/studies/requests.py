@@ -177,7 +177,7 @@ def probe(
 
 
 def solve(point: AnyPoint, tolerance: float, model: str = "auto", cells: int | None = None) -> dict:
-    """Return the request for a point, which equals that of a sweep.
+    """Return the request for a point. A sweep has an equal request for this point.
 
     cells: imposed number of rings or squares.  If None, it follows from the tolerance.
     """

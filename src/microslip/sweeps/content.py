@@ -15,7 +15,8 @@ from pathlib import Path
 from microslip.sweeps import batch
 
 GAPS = ".gaps"
-"""Ending of a marker beside a dataset in which points have failed.  Each run makes it again."""
+"""Ending of a marker file beside a dataset in which points have failed. Each run makes this dataset
+again."""
 
 
 def is_whole(path: Path) -> bool:
@@ -63,7 +64,8 @@ def _copied(file: Path, plain: Path) -> Iterator[Path]:
 
 
 def remove_others(path: Path) -> None:
-    """Remove the damaged files that a new file replaces: those with another number at the end."""
+    """Remove the damaged files that a new file replaces. Only the number at the end of their names
+    differs."""
     stem, ending = path.name.partition("-")[0].removesuffix(path.suffix), path.suffix
     for other in path.parent.glob(f"{stem}*{ending}"):
         same = other.stem.partition("-")[0] == stem

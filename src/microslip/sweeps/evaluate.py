@@ -49,8 +49,8 @@ def computed(request: dict) -> dict:
 
 
 def request_of(kind: str, **arguments: Any) -> dict:
-    """Return a request.  The arguments are those of the function that computes it, and numbers
-    become canonical texts."""
+    """Return a request with the arguments of the function that computes it. Numbers become
+    canonical texts."""
     texts = {name: number(v) for name, v in arguments.items() if name in REALS and v is not None}
     return {"kind": kind} | arguments | texts
 
@@ -178,7 +178,7 @@ _KINDS: dict[str, Callable[..., dict]] = {
 def _refusal(*place: Any, **settings: Any) -> dict:
     """Return the result for a model or a method that does not apply, and an empty dict otherwise.
 
-    The arguments are those of point.applies.
+    The function has the same arguments as point.applies.
     """
     from microslip.answer import point
 

@@ -99,7 +99,7 @@ def longitudinal_energy(
     """Dissipated energy per period of the motion in `longitudinal`, divided by mu F_z u_lim.
 
     The sphere slides forward over its net advance, and the backward and forward strokes form a
-    loop. The arguments are those of `longitudinal`, as floats.
+    loop. The arguments have the same meaning as for `longitudinal`, but must be floats.
     """
     stroke = 0.0
     if velocity < amplitude:

@@ -183,7 +183,7 @@ def sum_of_powers(amplitude: ArrayLike, velocity: ArrayLike) -> np.ndarray:
 def single_power(amplitude: ArrayLike, velocity: ArrayLike) -> np.ndarray:
     """Compute the friction divided by mu times the mean load (Eq 38).
 
-    The arguments are those of sum_of_powers.
+    The function has the same arguments as sum_of_powers.
     """
     return 1.0 - np.asarray(amplitude) * _remainder(amplitude, velocity) ** 2.4
 

@@ -353,8 +353,8 @@ def bore_drift(force: np.ndarray | float, amplitude: np.ndarray | float) -> np.n
 
     It is (2/pi) E^-1(P), where E is the friction of Eq 21 as a function of velocity. The velocity
     is in units of Omega phi0 a. This unit is proportional to the amplitude, so the result does not
-    depend on the amplitude. The arguments and exceptions are those of `transverse_drift`; forces
-    between 1 - 1e-13 and 1 raise InputError.
+    depend on the amplitude. The function has the same arguments and exceptions as
+    `transverse_drift`; forces between 1 - 1e-13 and 1 raise InputError.
     """
     steady = np.vectorize(_steady_bore, otypes=[float])(checked("force", force))
     return np.broadcast_arrays(2.0 / np.pi * steady, checked("amplitude", amplitude))[0].copy()

@@ -1,7 +1,7 @@
 """Pack the data of the form for a real contact: fields, units, materials, rules, and tables of
 friction.
 
-The rules and their texts are those of si.warnings. A table has friction on a regular grid, from a
+si.warnings contains the rules and their texts. A table has friction on a regular grid, from a
 certified map, so that the page needs no formula of a map.
 """
 

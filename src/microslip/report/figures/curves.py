@@ -59,7 +59,8 @@ class Line(NamedTuple):
 
 
 def closed_forms(dataset: xr.Dataset) -> list[ClosedForm]:
-    """Return the closed forms that a dataset contains, those of its motion first."""
+    """Return the closed forms that a dataset contains. The closed forms of its motion come
+    first."""
     motion = dataset.attrs.get("motion", "").partition(":")[0]
     every = {name: form for forms in FORMS.values() for name, form in forms.items()}
     every = FORMS.get(motion, {}) | {

@@ -38,11 +38,12 @@ POINTS: look.Ink = {"ls": "none", "marker": "o", "ms": 3.0, "color": look.BLACK}
 POINTS |= {"mec": "white", "mew": 0.4, "clip_on": False, "gid": "points"}
 BARE: look.Ink = {"marker": "o", "s": 22.0, "edgecolors": look.BLACK, "linewidths": 0.8}
 BARE |= {"clip_on": False, "zorder": 6, "gid": "bare-points"}
-"""Points beside cells without a colour. Their own colour is that of their value."""
+"""Points beside cells without a colour. The colour of such a point shows its value."""
 OUTLINE = 3.0
-"""Line width of the outline of numbers, in points. Half of the line is outside the digits."""
+"""Width of the outline of a number, in points. Half of this width is outside the digits."""
 LONG = 3.0
-"""Distance of a number from the ends of its contour, divided by that from other contours."""
+"""Distance of a number from the ends of its contour, divided by its distance from other
+contours."""
 HATCHED: look.Ink = {"fc": (1.0, 1.0, 1.0, 0.45), "ec": look.BLACK, "lw": 0.0, "hatch": 6 * "/"}
 REST: look.Ink = {"facecolor": look.PALE, "edgecolor": "none", "gid": "rest"}
 THRESHOLD: look.Ink = {"color": look.BLACK, "lw": 1.3, "gid": "mu_static"}
