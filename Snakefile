@@ -153,8 +153,7 @@ use rule make_dataset as make_page with:
 # A plain name, such as results/bore.nc, as a target.
 rule link_file:
     input:
-        file=lambda wildcards: file_of_link(wildcards.plain),
-        again=lambda wildcards: again_of_link(wildcards.plain),
+        unpack(lambda wildcards: inputs_of_link(wildcards.plain)),
     output:
         f"{RESULTS}/{{plain}}",
     log:

@@ -125,7 +125,7 @@ def test_results_that_cannot_be_made_end_a_run_before_its_first_job(tmp_path):
     ended = snakemake(folder, "-j1", *GIVEN)
     assert ended.returncode == 1
     line = ended.stderr.strip().splitlines()[-1]
-    message = "results: cannot write /proc/none/here/data/.again: .*make room or set perm"
+    message = "results: cannot write to /proc/none/here: .*make room or set perm"
     assert re.match(f"Error in given.yaml: {message}", line)
     assert "Traceback" not in ended.stderr
     assert not list((folder / ".snakemake" / "locks").glob("*"))  # no lock prevents the next run

@@ -369,7 +369,7 @@ def test_a_dry_run_changes_no_content(project):
     results = project.folder / "results"
 
     def contents():
-        files = (path for path in results.rglob("*") if path.is_file() and path.name != ".again")
+        files = (path for path in results.rglob("*") if path.is_file())
         return {path: path.read_bytes() for path in files}
 
     before = contents()

@@ -88,7 +88,6 @@ in_place = update if HERE else str  # keeps the old file until a job has written
 IS_JOB = "--target-jobs" in sys.argv  # on another machine
 WHOLE = IS_JOB or not HERE or "--report" in sys.argv
 """True to apply the rules to all files, and not only to missing ones."""
-AGAIN = ".again"  # newer than each link to another file than that of this configuration
 MARKER = f"{RESULTS}/data/{os.urandom(8).hex()}.made"
 PRODUCT_OF = {}  # name of a product by the stem of its files
 
@@ -106,7 +105,6 @@ def look(place):
             load.refuse_unsolvable(CONFIGURATION, state.missing, source=ORIGIN)
         if HERE:
             state.link()
-            state.date_links(state.folder / "data" / AGAIN)
     return state
 
 
@@ -143,17 +141,14 @@ def everything(wildcards):
     return [MARKER, *files_of(*(name for name in PLAN.products if name not in STATE.missing))]
 
 
-def file_of_link(plain):
-    """Return the file to which a plain name refers.  It is ancient if the link is right, see
-    `look`."""
+def inputs_of_link(plain):
+    """Return the file to which a plain name refers, and for a link to another file the folder,
+    which is newer than the link, see `Results.link`."""
     name, file = STATE.plain()[plain]
-    return (str if name in STATE.missing else ancient)(f"{RESULTS}/{file}")
-
-
-def again_of_link(plain):
-    """Return the file AGAIN, which is ancient if the link is right."""
-    right = STATE.plain()[plain][0] not in STATE.missing
-    return [(ancient if right else str)(f"{RESULTS}/data/{AGAIN}")] * HERE
+    if name not in STATE.missing:
+        return {"file": ancient(f"{RESULTS}/{file}")}
+    folder = f"{RESULTS}/data"
+    return {"file": f"{RESULTS}/{file}", "folder": [folder] * (HERE and os.path.isdir(folder))}
 
 
 def make_ready():

@@ -19,7 +19,6 @@ from typing import NamedTuple
 from microslip.config.settings import Configuration
 from microslip.foundation import source_digest
 from microslip.foundation.canonical import canonical_json, fingerprint
-from microslip.foundation.files import write_atomically
 from microslip.report.explorer import explorer
 from microslip.report.figures import drawing
 from microslip.studies import registry
@@ -193,10 +192,18 @@ class Results:
         return paths
 
     def link(self) -> None:
-        """Let the plain names of products refer to their files, if these exist."""
+        """Let the plain names of products refer to their files, if these exist.
+
+        The other links are dated back, since Snakemake replaces a link only if an input is newer.
+        """
         for plain, (_, path) in self.plain().items():
+            link = self.folder / plain
             if (self.folder / path).exists():
-                content.link(self.folder / path, self.folder / plain)
+                content.link(self.folder / path, link)
+            elif link.exists():
+                os.utime(link, (1, 1), follow_symlinks=False)
+            elif link.is_symlink():
+                link.unlink()  # its file is gone, for which Snakemake fails
 
     def stems_of(self, rule: str) -> list[str]:
         """Names without ending of the missing files that a rule makes."""
@@ -226,22 +233,6 @@ class Results:
     def orders(self, *names: str) -> str:
         """JSON text of the products that a job makes, see products.make_products."""
         return canonical_json([[name, self.stems[name], self.missing[name]] for name in names])
-
-    def date_links(self, again: Path) -> None:
-        """Make the links of missing products older than the file `again`, which gets new content.
-
-        Snakemake runs the job of an existing link only if an input is newer, and differs from the
-        input of the last run.
-        """
-        names = (plain for name in self.missing for plain in self.plan.products[name].links)
-        old = [link for plain in names if os.path.lexists(link := self.folder / plain)]
-        for link in old:
-            if link.exists():
-                os.utime(link, (1, 1), follow_symlinks=False)
-            else:
-                link.unlink()  # its file is gone, for which Snakemake fails
-        if old or not again.exists():
-            write_atomically(again, os.urandom(16).hex().encode())
 
     def plain(self) -> dict[str, tuple[str, str]]:
         """Names of products and paths of their files, by the plain name of the file."""

@@ -6,7 +6,8 @@ by Numba's settings and by a listener to Numba's events:
 - Numba notices an edit of the file of a function, but not an edit of another file that the function
   uses.  So the name of the folder contains a digest of all kernels and of what they import.
 - Numba raises an error for a folder that is read-only or full.  So the folder is checked once.  If
-  it is not usable, another folder is used, or compiled code is not stored.
+  it is not usable, another folder is used, or compiled code is not stored.  If storing fails later,
+  the code is used anyway.
 - Numba raises an error for a damaged file.  So the folder contains a list of checksums, which is
   written after each compilation.  At the start of a process, other files are removed.
 - Two processes that compile one function at the same time can mix up the codes of its signatures.
@@ -31,7 +32,7 @@ from typing import IO
 
 import numba
 import scipy
-from numba.core import caching, event
+from numba.core import caching, dispatcher, event
 from platformdirs import user_cache_path
 
 from microslip.foundation.errors import CacheError, InputError
@@ -64,7 +65,7 @@ def _usable_folder() -> Path | None:
     """Folder for the compiled code of the running sources; None if no folder is usable."""
     chosen = [Path(place) for place in [os.environ.get("NUMBA_CACHE_DIR")] if place]
     places = [*chosen, LOADED.folder / "__pycache__", user_cache_path("microslip")]
-    problems = []
+    problems: list[str] = []
     digest = LOADED.digest(LOADED.kernels)[:16]
     for place in places:
         folder = place / f"compiled-{digest}"
@@ -74,16 +75,34 @@ def _usable_folder() -> Path | None:
                 file.write(bytes(65536))
             if shutil.disk_usage(folder).free < ROOM:
                 raise OSError(errno.ENOSPC, f"less than {ROOM / 1e6:g} MB are free")
-            break
         except OSError as error:
             problems.append(f"{place} ({error.strerror})")
-    is_stored = len(problems) < len(places)
-    if problems and (chosen or not is_stored) and not os.environ.get(REPORTED):
+            continue
+        if problems and chosen:
+            _report(problems, f"it is stored in {place}")
+        return folder
+    _report(problems)
+    return None
+
+
+def _report(problems: list[str], remedy: str = "each process compiles it again") -> None:
+    """Name the folders that cannot be used, once for this process and its jobs."""
+    if not os.environ.get(REPORTED):
         os.environ[REPORTED] = "1"
-        other = f"it is stored in {place}" if is_stored else "each process compiles it again"
-        line = f"compiled code cannot be stored in {' or '.join(problems)}; {other}"
+        line = f"compiled code cannot be stored in {' or '.join(problems)}; {remedy}"
         print(f"microslip: {line}; NUMBA_CACHE_DIR names another folder", file=sys.stderr)
-    return folder if is_stored else None
+
+
+class Store(caching.FunctionCache):
+    """Numba's cache of a function.  A folder that cannot be written to does not fail a call."""
+
+    def save_overload(self, sig: object, data: object) -> None:
+        """Store the compiled code of a signature, or report the folder and use the code anyway."""
+        try:
+            super().save_overload(sig, data)
+        except OSError as error:
+            self.disable()
+            _report([f"{FOLDER} ({error.strerror})"])
 
 
 class Locator(getattr(caching, "UserProvidedCacheLocator", object)):  # type: ignore[misc]
@@ -184,13 +203,19 @@ def kernel(function: Callable | None = None, **options: object) -> Callable:
     """
     if function is None:
         return lambda function: kernel(function, **options)
-    config = numba.config
-    before = config.CACHE_DIR, getattr(config, "CACHE_LOCATOR_CLASSES", "")
-    config.CACHE_DIR, config.CACHE_LOCATOR_CLASSES = str(FOLDER), f"{__name__}.Locator"
+    settings = [
+        (numba.config, "CACHE_DIR", str(FOLDER)),
+        (numba.config, "CACHE_LOCATOR_CLASSES", f"{__name__}.Locator"),
+        (dispatcher, "FunctionCache", Store),
+    ]
+    before = [(place, name, getattr(place, name, "")) for place, name, _ in settings]
+    for setting in settings:
+        setattr(*setting)
     try:
         return numba.njit(cache=FOLDER is not None, **(OPTIONS | options))(function)
     finally:
-        config.CACHE_DIR, config.CACHE_LOCATOR_CLASSES = before
+        for setting in before:
+            setattr(*setting)
 
 
 def _import_blas() -> None:
