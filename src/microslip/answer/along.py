@@ -318,8 +318,8 @@ def response(
     poisson : float
         Poisson's ratio, 0 to 0.5.
     tolerance : float
-        Largest accepted error of the forces divided by mu F_z, and of the torque divided by its
-        value at full slip.
+        Largest accepted error. It applies to the forces divided by mu F_z, and to the torque
+        divided by its value at full slip.
     progress : callable or None
         Called as `progress(rows, total)` during the marches.
 

@@ -222,7 +222,7 @@ def least_load(problem: Problem) -> float:
 
 
 def runs_away(problem: Problem) -> str:
-    """Reason why a contact under a force has no mean velocity; empty if it has one."""
+    """Reason why a contact under a force has no mean velocity; empty if it has a mean velocity."""
     drive = problem.drive
     if drive is None or drive.force is None:
         return ""

@@ -306,7 +306,8 @@ def _points(contact: PolarContact) -> dict[str, np.ndarray]:
 
 
 def _whole_disc(contact: PolarContact, field: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Forward and lateral components, shape (n, points), of a field (n, 2, M, N) on the whole disc.
+    """Forward and lateral components of a field (n, 2, M, N) on the whole disc. Each has the shape
+    (n, points).
 
     For a rotation, the other half is the mirror image across the lateral axis.  For a translation,
     it is the first half rotated by 180 degrees.

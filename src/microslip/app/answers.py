@@ -68,7 +68,8 @@ def point_motions() -> dict[str, str]:
 
 
 def predict(motion: str, table: str | None = None, **arguments: Any) -> Answer:
-    """Friction of a real contact, of each contact in a table, or over ranges, in SI units.
+    """Friction of a real contact in SI units. The contacts can also be the rows of a table, or an
+    input can be a range.
 
     The answer has error estimates, and warnings where the theory does not apply.  Every quantity
     has a unit.  mu_macro is a ratio: friction with vibration divided by friction without.
@@ -165,7 +166,7 @@ def _predictions(cases: Cases, table: str | None = None) -> Answer:
 
 
 def _solved(cases: Cases, **options: Any) -> list[Any]:
-    """The Prediction of each contact, or the reason why it has none."""
+    """The Prediction of each contact, or the reason why there is no prediction."""
     from microslip.si.table import predictions
 
     answers = []

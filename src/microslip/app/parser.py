@@ -64,8 +64,8 @@ class Parser(argparse.ArgumentParser):
         self.print_help()
 
     def parse(self, words: list[str]) -> argparse.Namespace:
-        """Parse words.  The attribute `spellings` of the result contains the option, as it is
-        written on the command line, of each argument."""
+        """Parse words.  The attribute `spellings` of the result contains the option of each
+        argument as it is written on the command line."""
         options, others = self.parse_known_args(_joined(words))
         for word in others:
             if word.startswith("-"):

@@ -202,8 +202,8 @@ def from_mapping(
     Returns
     -------
     Configuration
-        Files of motions and pressures are named by their content.  The solver has not been asked,
-        see `refuse_unsolvable`.
+        Files of motions and pressures are named by their content.  `refuse_unsolvable` checks
+        whether the solver accepts the points.
 
     Raises
     ------

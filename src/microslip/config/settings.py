@@ -437,7 +437,7 @@ class Figure(Settings):
     sweep: Annotated[
         tuple[str, ...], Allowed("the name of a sweep, or a list of names", _names)
     ] = ()
-    """Sweeps to draw. Figures of a study have none."""
+    """Sweeps to draw. A figure of a study has no sweep."""
     velocity: Annotated[float | None, _number(0, LARGEST["velocity"], above=True)] = None
     """Velocity of the single run."""
     amplitude: Annotated[float | None, _number(0, LARGEST["amplitude"])] = None

@@ -1,8 +1,8 @@
 """Closed forms for each motion, with their limits, ranges of validity and names.
 
-The catalogue is used for datasets, figures and the study of the paper's claims.  The forms apply to
-Hertz pressure; for other pressures see datasets.pressure_limits.  The solver uses exact.py instead,
-so editing a name here does not change stored results.
+The catalogue is used for datasets, figures and the study of the paper's statements.  The forms
+apply to Hertz pressure; for other pressures see datasets.pressure_limits.  The solver uses exact.py
+instead, so editing a name here does not change stored results.
 
 The table catalogue.csv has a row for each form, in the order in which datasets list them.  The
 column `function` is a function of microslip.theory, and `properties` lists properties that are

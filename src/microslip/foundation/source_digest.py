@@ -1,10 +1,10 @@
 """Digests of the code that computes results and makes products.
 
-The name of a result contains the digest of the solver: the code of all rooms that make numbers, and
-of the file of a comparison method.  The name of a dataset, page or figure contains the digest of
-its builder: its modules, and what they import from the outer rooms.  The name of a motion or a
-pressure in a user's file contains the digest of this file and of what it imports from its folder.
-Comments, docstrings and layout do not count, and messages count only for products.
+The name of a result contains the digest of the solver. It covers the code of all rooms that make
+numbers, and the file of a comparison method.  The name of a dataset, page or figure contains the
+digest of its builder: its modules, and what they import from the outer rooms.  The name of a motion
+or a pressure in a user's file contains the digest of this file and of what it imports from its
+folder. Comments, docstrings and layout do not count, and messages count only for products.
 
 Files are read when a digest is first needed.
 """
@@ -68,7 +68,7 @@ class Sources:
         return _sha256(json.dumps(code).encode())
 
     def closure(self, names: Iterable[str], inside: Callable[[str], bool] = bool) -> set[str]:
-        """Paths of files, and of all modules that they import directly or indirectly.
+        """Paths of these files and of all modules that they import directly or indirectly.
 
         A table module.csv belongs to the module module.py.
 
@@ -89,7 +89,7 @@ class Sources:
 
     @property
     def kernels(self) -> set[str]:
-        """Paths of the files with compiled functions, and of all modules that these import."""
+        """Paths of the files with compiled functions and of all modules that they import."""
         physics = filter(is_physics, self.names)
         kernels = (name for name in physics if b"compiled import kernel" in self.content(name))
         return self.closure(kernels, is_physics)
@@ -107,7 +107,7 @@ class Sources:
         return code | tables & {*self.names}
 
     def _imports(self, modules: Iterable[str]) -> list[str]:
-        """Paths of the modules with these names, and of the packages that contain them."""
+        """Paths of the modules with these names and of the packages that contain them."""
         parts = [
             n.removeprefix(self.prefix).split(".") for n in modules if n.startswith(self.prefix)
         ]

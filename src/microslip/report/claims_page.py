@@ -85,7 +85,7 @@ def _runs(dataset: xr.Dataset) -> dict[str, SimpleNamespace]:
 
 
 def _parts(dataset: xr.Dataset, runs: dict[str, SimpleNamespace]) -> list[SimpleNamespace]:
-    """Return the parts of all claims, each with its checks and the decisive check."""
+    """Return the parts of all statements, each with its checks and the decisive check."""
     checks, parts = _records(dataset, "check"), _records(dataset, "part")
     for check in checks:
         check.run, check.other_run = runs[check.run], runs.get(check.other_run)

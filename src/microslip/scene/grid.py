@@ -1,5 +1,5 @@
-"""Loads on the cells of a regular grid: of a pressure that depends on the radius alone, and of
-values on another grid, from a sensor or from another program.
+"""Loads on the cells of a regular grid. The pressure depends on the radius alone, or its values are
+given on another grid, from a sensor or another program.
 """
 
 from __future__ import annotations

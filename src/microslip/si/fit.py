@@ -5,11 +5,11 @@ does not depend on u_lim, so mu_macro of a row is a function of ln u_lim alone, 
 linear in mu.  For each u_lim, mu follows by linear least squares.
 
 The confidence region contains the pairs (u_lim, mu) whose sum of squares is at most a threshold.
-The threshold is the least sum plus a quantile: of the chi-square distribution if the rows have
-errors, else of the F distribution times the mean square residual.  For each u_lim, the region is an
-interval of mu, because the sum is quadratic in mu.  The interval of a parameter is its range in the
-region, as in a profile likelihood.  It does not depend on the parametrisation, and may be infinite
-on one side.
+The threshold is the least sum plus a quantile. If the rows have errors, this is a quantile of the
+chi-square distribution. Otherwise, it is a quantile of the F distribution times the mean square
+residual.  For each u_lim, the region is an interval of mu, because the sum is quadratic in mu.  The
+interval of a parameter is its range in the region, as in a profile likelihood.  It does not depend
+on the parametrisation, and may be infinite on one side.
 
 Without a map, the solver computes a coarse map first.  It gives the change of friction between two
 guesses.  The rows are then solved at the best guess, which corrects the map there.  At the end, the
@@ -47,7 +47,7 @@ UNITS = {"speed": "m/s", "amplitude": "m", "frequency": "Hz", "load": "N"}
 UNITS |= {"friction": "N", "friction_error": "N", "mu": "", "mu_error": ""}
 """SI units of the allowed columns."""
 PARAMETERS = {"mu": ("", ""), "u_lim": ("_m", "m"), "shear_modulus": ("_Pa", "Pa")}
-"""Suffix of the name in a Fit, and SI unit, of each parameter."""
+"""For each parameter: the suffix of its name in a Fit, and its SI unit."""
 MOST_ROWS, MOST_SOLVED = 10_000, 200
 """Largest number of rows with a map, and without."""
 TOLERANCE, LARGEST_TOLERANCE, CONFIDENCE = 1e-3, 0.02, 0.95
@@ -88,7 +88,7 @@ class Fit:
     ----------
     values : dict
         Numbers and texts by name, in the order of `to_dict`; the page docs/reference/fields.md
-        explains them.  u_lim_m, for example, is u_lim in m, and told contains the names of the
+        explains them.  u_lim_m, for example, is u_lim in m, and `told` contains the names of the
         parameters that the rows determine.
     rows : dict of np.ndarray, shape (n,)
         Conditions, measured and fitted values of each row.

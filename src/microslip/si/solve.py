@@ -246,7 +246,8 @@ def _outcome(contact: Contact, result: Result) -> str:
 
 
 def _rest(contact: Contact) -> tuple[dict[str, Value], str]:
-    """The displacement until the contact rests and the number of cycles, or why they are unknown.
+    """Displacement until the contact rests and number of cycles, or the reason why they are
+    unknown.
 
     They are computed for round contacts only, because other contacts would take minutes.
     """

@@ -84,7 +84,7 @@ class Cases:
 
 
 Answers = Sequence[Prediction | InputError | str]
-"""The prediction of each contact, or the reason why it has none."""
+"""The prediction of each contact, or the reason why there is no prediction."""
 
 
 def predict_table(
@@ -250,7 +250,7 @@ def _short(text: Any) -> str:
 
 
 def predictions(cases: Cases, *, need_all: bool = False) -> Iterator[Prediction | InputError | str]:
-    """Yield the prediction of each contact in turn, or the reason why it has none.
+    """Yield the prediction of each contact in turn, or the reason why there is no prediction.
 
     All contacts are checked before the first one is solved.  A search without a solution gives a
     Prediction that is not converged.

@@ -44,8 +44,8 @@ STEEP = 0.2
 smaller radius, or by the radius R of relative curvature.  Hertz's theory assumes a << R1, R2 and a
 << R (K. L. Johnson, Contact Mechanics, 4.2)."""
 AGREES = 0.01
-"""Largest relative difference between two sizes or loads that count as equal.  It allows for
-rounding to two or three digits."""
+"""Largest relative difference between two sizes or loads that count as equal.  This ratio allows
+for rounding to two or three digits."""
 RADII = np.geomspace(1e-3, 1e3, 3001)
 """Contact radii, divided by that under the load, among which the contact pulls off.  Neighbours
 differ by 0.5 %, which changes the largest force by less than a digit that is printed."""

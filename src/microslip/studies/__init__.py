@@ -1,1 +1,1 @@
-"""Studies of accuracy and cost, stability of methods, and claims of the paper."""
+"""Studies of accuracy and cost, failures of methods, and statements of the paper."""

@@ -53,7 +53,7 @@ class Answers:
 
 
 def number(row: Row, name: str) -> float:
-    """Return a number of a row, or NaN if the row has none."""
+    """Return a number of a row, or NaN if the row lacks this number."""
     value = row.get(name)
     return math.nan if value is None else float(value)
 

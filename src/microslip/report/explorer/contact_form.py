@@ -113,10 +113,10 @@ def table(dataset: xr.Dataset) -> dict:
     """Pack friction of a certified map, and its error bound, on a regular grid.
 
     The page interpolates linearly along the logarithm of the velocity, the amplitude and Poisson's
-    ratio. The error of a cell is the largest one of the map in the cell, plus twice the largest
-    difference between the interpolation and the map at the midpoints of the cell, of its edges and
-    of its faces. Twice the difference at a midpoint bounds the error of the interpolation of a
-    parabola, and of a function with a kink.
+    ratio. The error of a cell is the largest error of the map in the cell plus twice the largest
+    difference between the interpolation and the map. The differences are computed at the midpoints
+    of the cell, its edges and its faces. For a parabola and for a function with a kink, twice the
+    difference at a midpoint bounds the interpolation error.
     """
     ends = {name: (float(dataset[name].min()), float(dataset[name].max())) for name in COUNTS}
     axes = {

@@ -18,7 +18,7 @@ SCRIPTS = "data charts disc sweeps contact form link page"
 ASSETS = ("page.html", "style.css", *(f"{name}.js" for name in SCRIPTS.split()))
 """Files of the page, besides the data and plotly.js. The scripts run in this order."""
 MAPS = ("transverse", "bore")
-"""Motions of the sweeps with stored periods, and of the form for a real contact."""
+"""Motions for which periods are stored. The form for a real contact has the same motions."""
 CELLS, ANGLES, STEPS = 10, 12, 32
 """Resolution of a stored period: number of rings, points on half a ring, and steps. It is
 sufficient for a picture of 300 pixels."""

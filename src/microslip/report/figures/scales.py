@@ -44,7 +44,8 @@ class Scale:
     label : str
         Label of the colour bar.
     fills, lines, ticks : ndarray
-        Levels of the bands, of the contours, and ticks of the colour bar, ascending.
+        Levels of the bands, levels of the contours, and ticks of the colour bar, in ascending
+        order.
     colours, norm : Colormap, Normalize
         Colours of the values.
     text : callable

@@ -74,7 +74,8 @@ MODELS = {
 """Colour, marker and two-letter abbreviation of each contact model, coarsest first."""
 
 SMALLEST, HEADING, LABEL = 7.0, 8.0, 8.5
-"""Font sizes in points: the smallest one, of the headings of panels, and of the labels of axes."""
+"""Font sizes in points: the smallest size, the size of panel headings, and the size of axis
+labels."""
 LONGEST = 100
 """Maximum number of characters of a title from the configuration."""
 DPI = 300
