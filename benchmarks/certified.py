@@ -190,7 +190,7 @@ def main():
         for dataset in maps:
             judgements.append(judged(dataset, points, truth))
             grids.append(of_map(dataset))
-            if not dataset["poisson"].ndim:
+            if dataset.error == least and not dataset["poisson"].ndim:
                 grids += [of_uniform_grid(dataset, count) for count in UNIFORM]
     text = (JUDGEMENTS, tables.markdown(judgements), GRIDS, tables.markdown(grids))
     tables.publish("\n\n".join(text), options)

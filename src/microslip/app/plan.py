@@ -46,7 +46,7 @@ class Product(NamedTuple):
     kind : str
         Key of BUILDERS, or a kind of figure.
     rule : str
-        Rule that makes it: "dataset", "figure" or "explorer".
+        Rule that makes the product: "dataset", "figure" or "explorer".
     stem : str
         Name of the files without ending: the name of the product and the hash of its content.
     links : dict of str to str

@@ -49,11 +49,11 @@ def main(arguments: list[str]) -> int:
     It runs in the current folder and writes datasets to results/, and figures to results/figures/.
     Existing results are not computed again.  A CONFIGURATION is a name in the folder config, here
     or in the package; the default is config/config.yaml.  A TARGET is a dataset or a figure of the
-    configuration, such as bore, or a file, such as results/bore.nc; all of them are made without
-    one.  All other options are passed to Snakemake, see snakemake --help; default options are in
-    profiles/default.  The exit code is 2 for bad input, and otherwise the exit code of Snakemake.
-    Examples: microslip sweep --cores 2; microslip sweep extended --dry-run; microslip sweep
-    --configfile mine.yaml --config points_per_job=10.
+    configuration, such as bore, or a file, such as results/bore.nc; without a TARGET, all of them
+    are made.  All other options are passed to Snakemake, see snakemake --help; default options are
+    in profiles/default.  The exit code is 2 for bad input, and otherwise the exit code of
+    Snakemake. Examples: microslip sweep --cores 2; microslip sweep extended --dry-run; microslip
+    sweep --configfile mine.yaml --config points_per_job=10.
     """
     if {"-h", "--help"} & set(arguments):
         usage = "microslip sweep [CONFIGURATION | TARGET ...] [--dry-run] [options of Snakemake]"

@@ -578,7 +578,8 @@ class Block(Settings):
     steps: Annotated[tuple[int, ...], _axis(8, LARGEST["steps"], step=2)] = ()
     """Imposed number of time steps in a period. By default, it follows from the tolerance."""
     step: PositiveAxis = ()
-    """Parameter `step` of the methods that have it. Other methods are left out of the block."""
+    """Parameter `step`, for methods with this parameter. Other methods are left out of the
+    block."""
     title: Title = None
     """Heading of the block. The default is the name of the varied quantity."""
 

@@ -255,7 +255,7 @@ class RingContact(Contact):
         """Mean friction bound of each ring at each depth, shape (len(depths), cells).
 
         edge: radii (len(depths),) inside which rings are in contact; None for the contact radii.
-        Load outside these rings is added to the outermost of them.
+        The load outside these rings is added to the outermost ring.
         """
         growth = self._checked_growth
         load_within = growth.load_within(growth.pressure, growth.edges, depths)

@@ -94,8 +94,8 @@ def make_rings(count: int, focus: Focus | float | None = None, pressure: Pressur
 
 
 def _of_edges(psi: np.ndarray, pressure: Pressure) -> Rings:
-    """Create the Rings from edges for a contact without a hole.  The edges are mapped to a contact
-    with a hole if the pressure has one."""
+    """Create the Rings from edges for a contact without a hole.  If the contact has a hole, the
+    edges are mapped to the ring outside the hole."""
     if pressure.inner > 0.0:
         hole = pressure.inner**2
         psi = np.arcsin(np.sqrt(hole + (1.0 - hole) * np.sin(psi) ** 2))

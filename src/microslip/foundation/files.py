@@ -138,8 +138,8 @@ def clear_abandoned(folder: Path) -> list[Path]:
 def _advice(verb: str, path: Path) -> Iterator[None]:
     """Context manager that converts errors of the operating system to CacheError.
 
-    HDF5 reports a full disk as "Permission denied", "HDF error" or RuntimeError.  The cause is the
-    error of a second attempt to write to the folder.
+    HDF5 reports a full disk as "Permission denied", "HDF error" or RuntimeError.  A second attempt
+    to write to the folder gives the true cause.
     """
     try:
         yield

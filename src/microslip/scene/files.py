@@ -115,8 +115,8 @@ LEAST_COORDINATES = 4
 """Smallest number of evenly spaced values that count as coordinates.  Three pressures can be evenly
 spaced by chance."""
 EVEN = 0.05
-"""Largest difference between the steps of evenly spaced coordinates, divided by the first step.  It
-allows for coordinates rounded to 1/40 of their step."""
+"""Largest difference between the steps of evenly spaced coordinates, divided by the first step.
+This value allows for coordinates rounded to 1/40 of their step."""
 PITCH = re.compile(r"\d+\.?\d*(?:[eE][+-]?\d+)?|\.\d+", re.A)
 ALLOWED_PITCH = "allowed: a length such as 0.5 mm, or forward x lateral as in 0.5 mm x 0.6 mm"
 NETCDF = (".nc", ".nc4", ".cdf")

@@ -137,7 +137,7 @@ class Problem:
     ------
     InputError
         If an argument has another type, if a number is not finite, if the amplitude is missing, or
-        if a steady motion has one.
+        if a steady motion has an amplitude.
     """
 
     motion: Motion

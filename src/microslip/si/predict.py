@@ -80,7 +80,7 @@ predict.__doc__ = f"{predict.__doc__}{_table_of_inputs()}"
 
 
 def checked_inputs(motion: Any, **given: Any) -> Inputs:
-    """Inputs of a prediction.  Raises InputError for everything that is known before a solve."""
+    """Inputs of a prediction.  Raises InputError if the inputs are invalid."""
     inputs = read_inputs(motion, **given)
     placeholders = {"amplitude": 0.0, "speed": 0.0, "load": REFERENCE_LOAD}
     contact_of(inputs.at(**{n: x for n, x in placeholders.items() if n == inputs.search}))

@@ -159,8 +159,8 @@ def _threshold(contact: Contact, limit: Result | None) -> Estimate | None:
 
     The threshold equals the static limit if the oscillation exerts no forward force.  Otherwise, a
     contact without mass follows the forward oscillation, and the threshold is the static limit of
-    the other components, or 1 without any.  This limit is computed only if a force is prescribed.
-    The threshold is None if it is unknown.
+    the other components, or 1 if there are no other components.  This limit is computed only if a
+    force is prescribed. The threshold is None if it is unknown.
     """
     if limit is None:
         return Estimate(0.0)  # under a steady spin any force moves the contact

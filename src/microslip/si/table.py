@@ -341,7 +341,8 @@ def table_text(cases: Cases, answers: Answers) -> str:
     cells: list[tuple[str, Callable[[Prediction], str]]] = []
 
     def add(title: str, value: Callable[[Prediction], Value | None]) -> None:
-        """Add columns for a value, its error and its standard uncertainty, if there is one."""
+        """Add columns for a value and its error, and a column for its standard uncertainty if an
+        input is uncertain."""
         numbers = [one for one in map(value, predicted) if one is not None]
         titles = [title] if numbers else []
         titles += ["+-"] * any(one.error for one in numbers)

@@ -75,8 +75,8 @@ class _Line(NamedTuple):
     place_at: Callable[[float], float]
 
     def add(self, nodes: dict, level: float, value: Callable[[Inputs], float]) -> None:
-        """Add the value at a level to the nodes, or the value nearer to the centre if there is
-        none.  nodes: level, place and value, keyed by the requested level."""
+        """Add the value at a level to the nodes. If this level has no value, a level nearer to the
+        centre is used. nodes: level, place and value, keyed by the requested level."""
         for factor in NEARER:
             try:
                 number = value(self.inputs_at(factor * level))
@@ -155,8 +155,8 @@ class Draws:
         return {name: _clipped(self._inputs, name, normal[..., k]) for k, name in names}
 
     def _solution(self, inputs: Inputs) -> dict[str, float]:
-        """The answer for other inputs; empty without one.  "root" is the logarithm of the result of
-        a search.  Raises InputError."""
+        """The answer for other inputs; empty if nothing was solved.  "root" is the logarithm of the
+        result of a search.  Raises InputError."""
         key = tuple(float(one.si) for one in inputs.quantities.values())
         if key not in self._solutions:
             self._solutions[key] = {}

@@ -1,4 +1,4 @@
-"""The static limit of the two oscillating motions, and the paper's formulas for it.
+"""The static limit of the two oscillating motions, and the paper's formulas for this limit.
 
 The paper's formulas count the whole friction bound inside the stick zone, although the oscillation
 uses a part of it (see microslip.periodic.static_limit).  The paper's own runs do not show the

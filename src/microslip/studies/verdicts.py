@@ -96,7 +96,7 @@ def where(checks: pd.DataFrame) -> str:
 
 
 def _stretches(labels: Iterable[tuple[float, object]]) -> Iterable[tuple]:
-    """Yield each label with the stretch of consecutive values that have it, such as "1 to 3".
+    """Yield each label with the range of consecutive values with this label, such as "1 to 3".
 
     labels: pairs of a value and its label.
     """

@@ -189,8 +189,9 @@ class MapCoordinates(NamedTuple):
 
     @property
     def _bands(self) -> list[Band]:
-        """Bands of the map: the one above the velocity of the kink, if there is one, then one for
-        each range of amplitudes.  A point at the border of two bands belongs to the later one."""
+        """Bands of the map: first the band above the velocity of the kink, if a kink exists, then a
+        band for each range of amplitudes.  A point at the border of two bands belongs to the later
+        one."""
         low, high = self.amplitude
         borders = (low, *(a for a in self.kinks.amplitudes if low < a < high), high)
         slowest, fastest = self.velocity or (0.0, 0.0)

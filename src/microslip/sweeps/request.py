@@ -122,7 +122,7 @@ def points_of(sweep: Sweep) -> Batch:
 def runs_of(configuration: Configuration, name: str) -> list[dict]:
     """Return the requests for the single runs in the dataset of the sweep `name`.
 
-    Figures of the kinds history, field and transients ask for them.
+    Figures of the kinds history, field and transients need these runs.
     """
     requests = []
     for figure in configuration.figures.values():

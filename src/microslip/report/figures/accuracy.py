@@ -32,7 +32,7 @@ ACROSS, WIDTH, ROW, LINE = 3, 1.95, 1.95, 0.15
 MOST = 1e6
 """Largest ratio of the upper to the lower end of the axis of errors."""
 EDGE = 0.06
-"""Distance between the range of the values and a value outside of it, divided by the range."""
+"""Distance between the range of the values and a value outside this range, divided by the range."""
 MOTIONS = ("transverse", "bore")
 
 FRONT: look.Ink = {"color": "#EBD9A0", "lw": 5.0, "solid_capstyle": "round", "zorder": 1}

@@ -30,7 +30,7 @@ CURVES = {
     "slider": "mu_static_slider",
     "zone_printed": "mu_static_stick_zone_printed",
 }
-"""Variables of the curves, and their closed forms. A motion has some of them."""
+"""Variables of the curves, and their closed forms. A motion has some of these variables."""
 LIGHTEST = 0.82
 """Upper end of the colour map for lines. Lines in lighter colours have too little contrast."""
 PIXELS = 401

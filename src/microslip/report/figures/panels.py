@@ -90,7 +90,7 @@ def colour_bar(
 
 
 def ticks_outside(axes: Axes) -> None:
-    """Move the ticks of a filled panel outside, below and left of it."""
+    """Move the ticks of a filled panel to its outside, at the bottom and the left."""
     axes.tick_params(which="both", direction="out", top=False, right=False)
 
 
@@ -161,7 +161,8 @@ def computed(axes: Axes, x: np.ndarray, *points: np.ndarray, label: str = "", **
 
 
 def once(axes: Axes, label: str) -> str:
-    """Return the label, prefixed with "_" (hidden in legends) if the panel already has it."""
+    """Return the label, prefixed with "_" (hidden in legends) if the panel already has this
+    label."""
     return "_" + label if label in axes.get_legend_handles_labels()[1] else label
 
 
