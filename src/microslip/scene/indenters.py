@@ -24,9 +24,10 @@ import numpy as np
 
 from microslip.foundation import spec
 from microslip.scene.pressure import RoundPressure
+from microslip.theory.hertz import unit_rule
 
-_NODES, _WEIGHTS = np.polynomial.legendre.leggauss(128)
-_NODES, _WEIGHTS = 0.5 * (_NODES + 1.0), 0.5 * _WEIGHTS
+_NODES = 128
+"""Number of nodes of a Gauss rule."""
 SMALLEST_RADIUS = 1e-7
 """Smallest radius divided by the contact radius.  Smaller radii are replaced by this value, because
 the friction bound of some indenters is infinite at the centre."""
@@ -67,8 +68,9 @@ class Indenter(RoundPressure):
     @cached_property
     def G_star(self) -> float:
         # x = flat + (1 - flat) s^2 removes the square root of the slope at the edge of a flat end
-        x = self.flat + (1.0 - self.flat) * _NODES**2
-        step = (1.0 - self.flat) * 2.0 * _NODES * _WEIGHTS
+        nodes, weights = unit_rule(_NODES)
+        x = self.flat + (1.0 - self.flat) * nodes**2
+        step = (1.0 - self.flat) * 2.0 * nodes * weights
         return 0.5 / float(np.sum(step * x * self.slope(x)))
 
     def _rule(
@@ -83,8 +85,9 @@ class Indenter(RoundPressure):
         length = np.arccosh(np.maximum(contact / radii, 1.0)) - first
         # nodes are clustered at both ends: the slope starts like a square root at a flat end, and
         # rises only near the edge if the indenter is nearly flat
-        eta = first + length * np.sin(0.5 * np.pi * _NODES) ** 2
-        step = length * 0.5 * np.pi * np.sin(np.pi * _NODES) * _WEIGHTS
+        nodes, weights = unit_rule(_NODES)
+        eta = first + length * np.sin(0.5 * np.pi * nodes) ** 2
+        step = length * 0.5 * np.pi * np.sin(np.pi * nodes) * weights
         return radii * np.cosh(eta), step, radii, radii * np.sinh(eta)
 
     def bound(self, r: np.ndarray, c: float = 1.0) -> np.ndarray:

@@ -26,8 +26,13 @@ G_STAR = 0.75
 TORQUE_FULL_SLIP = 3 * np.pi / 16
 """Torque of a contact that rotates about its centre and slips everywhere, in mu*F_z*a."""
 
-_NODES, _WEIGHTS = np.polynomial.legendre.leggauss(48)
-_UNIT_NODES, _UNIT_WEIGHTS = (_NODES + 1) / 2, _WEIGHTS / 2
+
+@cache
+def unit_rule(count: int) -> tuple[np.ndarray, np.ndarray]:
+    """Gauss-Legendre nodes and weights on 0..1.  They are computed at the first use, since this
+    takes as long as the import of a module."""
+    nodes, weights = np.polynomial.legendre.leggauss(count)
+    return (nodes + 1) / 2, weights / 2
 
 
 def checked(
@@ -245,8 +250,9 @@ def lubkin_torque(stick_radius: np.ndarray | float) -> np.ndarray | float:
     # at 0, is weak enough for a fixed Gauss rule.
     start = np.sqrt(c)
     length = (1 - c) / (1 + start)
-    t = start + length * _UNIT_NODES
+    nodes, weights = unit_rule(48)
+    t = start + length * nodes
     integral = np.sum(
-        _UNIT_WEIGHTS * 2 * t**5 * scipy.special.ellipe((1 - t) * (1 + t) * (1 + t * t)), axis=-1
+        weights * 2 * t**5 * scipy.special.ellipe((1 - t) * (1 + t) * (1 + t * t)), axis=-1
     )
     return 4 / np.pi * length[..., 0] * integral

@@ -28,6 +28,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import cache
 
 import numpy as np
 
@@ -38,6 +39,7 @@ Function = Callable[[np.ndarray], np.ndarray]
 _HALVINGS = 60
 
 
+@cache
 def clustered_rule(count: int) -> tuple[np.ndarray, np.ndarray]:
     """Gauss rule (nodes, weights) on 0..1, clustered at both ends, for half-integer powers."""
     nodes, weights = np.polynomial.legendre.leggauss(count)
@@ -53,9 +55,6 @@ def last_true(condition: Function, low: np.ndarray, high: np.ndarray) -> np.ndar
         still = condition(middle)
         low, high = np.where(still, middle, low), np.where(still, high, middle)
     return 0.5 * (low + high)
-
-
-_NODES, _WEIGHTS = clustered_rule(48)
 
 
 def longitudinal(
@@ -173,7 +172,7 @@ def _turned(curve: Function, travel: np.ndarray) -> np.ndarray:
 
 def _integral(function: Function, start: np.ndarray, end: np.ndarray) -> np.ndarray:
     total = np.zeros_like(start)
-    for node, weight in zip(_NODES, _WEIGHTS, strict=True):
+    for node, weight in zip(*clustered_rule(48), strict=True):
         total += weight * function(start + node * (end - start))
     return total * (end - start)
 

@@ -30,7 +30,8 @@ from numpy.typing import ArrayLike
 from microslip.theory.hertz import IndenterPressure
 from microslip.theory.masing import clustered_rule, last_true
 
-_NODES, _WEIGHTS = clustered_rule(64)
+_NODES = 64
+"""Number of nodes of a Gauss rule."""
 _SAMPLES = 2001
 """Number of points in half a period at which the sign of phi' is computed."""
 
@@ -52,8 +53,9 @@ def mean_load(amplitude: float, by_load: bool, pressure: IndenterPressure) -> fl
     if by_load:
         return float(loss + amplitude * np.sin(loss)) / np.pi
     # near loss of contact the load has the power 3/2, so the nodes are clustered twice
-    t = np.pi - loss * _NODES**2
-    return float(loss * (2.0 * _NODES * _WEIGHTS) @ pressure.total(motion.depth(t))) / np.pi
+    nodes, weights = clustered_rule(_NODES)
+    t = np.pi - loss * nodes**2
+    return float(loss * (2.0 * nodes * weights) @ pressure.total(motion.depth(t))) / np.pi
 
 
 def friction(velocity: float, amplitude: float, by_load: bool, pressure: IndenterPressure) -> float:
@@ -73,6 +75,7 @@ def friction(velocity: float, amplitude: float, by_load: bool, pressure: Indente
     motion = _Motion(velocity, amplitude, by_load, pressure)
     if velocity == 0.0:
         return float(pressure.total(motion.depth(np.array(0.0)))) / mean
+    nodes, weights = clustered_rule(_NODES)
     lacking, before = 0.0, 0.0
     rises = motion.rises()
     for i, (low, high) in enumerate(rises):
@@ -83,8 +86,8 @@ def friction(velocity: float, amplitude: float, by_load: bool, pressure: Indente
         lacking += (start - before) * motion.lack(np.array([low]), high, later)[0]
         for one, other in pairwise([start, *motion.kinks(low, high, later), end]):
             width = other - one
-            when = np.clip(motion.touched(one + width * _NODES), low, high)
-            lacking += width * float(_WEIGHTS @ motion.lack(when, high, later))
+            when = np.clip(motion.touched(one + width * nodes), low, high)
+            lacking += width * float(weights @ motion.lack(when, high, later))
         before = end
     return 1.0 - pressure.stiffness * lacking / (2.0 * np.pi) / mean
 
@@ -162,8 +165,9 @@ class _Motion:
             lowest = np.where(falls_short, beyond, lowest)
             low, end = np.where(falls_short, high, low), np.where(falls_short, other, end)
         end = last_true(lambda t: self.phi(t) >= level, low, end)
-        t = start[:, None] + (end - start)[:, None] * _NODES
-        return lowest + (end - start) * ((self.phi(t) - level[:, None]) @ _WEIGHTS)
+        nodes, weights = clustered_rule(_NODES)
+        t = start[:, None] + (end - start)[:, None] * nodes
+        return lowest + (end - start) * ((self.phi(t) - level[:, None]) @ weights)
 
 
 def sum_of_powers(amplitude: ArrayLike, velocity: ArrayLike) -> np.ndarray:

@@ -20,10 +20,7 @@ import scipy
 
 from microslip.foundation.errors import InputError
 from microslip.theory import hertz
-from microslip.theory.hertz import checked
-
-_NODES, _WEIGHTS = np.polynomial.legendre.leggauss(64)
-_NODES, _WEIGHTS = (_NODES + 1) / 2, _WEIGHTS / 2  # on 0..1
+from microslip.theory.hertz import checked, unit_rule
 
 
 # Transverse oscillation
@@ -209,11 +206,12 @@ def _slow_mean(velocity: np.ndarray) -> np.ndarray:
     # has half-integer powers at s = 1, and the root is singular near s = 1. The substitution
     # 1 - s = (1/v - 1) sinh(h)^2 removes both.
     h_end = np.arcsinh(np.sqrt(v / (1 - v)))
-    sinh = np.sinh(h_end[..., None] * _NODES)
+    nodes, weights = unit_rule(64)
+    sinh = np.sinh(h_end[..., None] * nodes)
     gap, v_col = (1 - v)[..., None], v[..., None]
     s = np.clip(1 - gap / v_col * sinh**2, 0.0, 1.0)
     integrand = 2 * np.sqrt(gap) * sinh * _fast_forward(s) / np.sqrt(1 + v_col * s)
-    sliding = h_end * np.sum(_WEIGHTS * integrand, axis=-1)
+    sliding = h_end * np.sum(weights * integrand, axis=-1)
     return 2 / np.pi * (rotating + sliding)
 
 
@@ -309,8 +307,9 @@ def _stick_zone_rule(
     # Smaller amplitudes change friction by less than the rounding error.
     complement = np.maximum(complement, 1e-8)
     end = np.arcsinh(c / complement)[..., None]
-    eta = end * np.sin(np.pi / 2 * _NODES) ** 2
-    step = end * np.pi / 2 * np.sin(np.pi * _NODES) * _WEIGHTS
+    nodes, weights = unit_rule(64)
+    eta = end * np.sin(np.pi / 2 * nodes) ** 2
+    step = end * np.pi / 2 * np.sin(np.pi * nodes) * weights
     return step, complement[..., None] * np.cosh(eta), complement[..., None] * np.sinh(eta)
 
 
