@@ -14,7 +14,6 @@ import argparse
 from pathlib import Path
 
 from microslip import __version__
-from microslip.app import sweep
 from microslip.app.commands import COMMANDS
 from microslip.app.parser import Parser, option, with_options
 from microslip.app.terminal import complain
@@ -39,6 +38,8 @@ def main(words: list[str]) -> int:
         Snakemake.
     """
     if words[:1] == ["sweep"]:
+        from microslip.app import sweep  # late, as it imports what other commands do not need
+
         return sweep.main(words[1:])
     name = next((one for one in COMMANDS if words[: one.count(" ") + 1] == one.split()), None)
     if name is None:
@@ -52,6 +53,8 @@ def main(words: list[str]) -> int:
 
 def _without_command(words: list[str]) -> int:
     """Print the list of commands, or refuse the words."""
+    from microslip.app import sweep
+
     functions = {name: one.answer for name, one in COMMANDS.items()} | {"sweep": sweep.main}
     commands = {name: str(one.__doc__).partition("\n")[0] for name, one in functions.items()}
     usage = "%(prog)s [-h] [--version] COMMAND ..."

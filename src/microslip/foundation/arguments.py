@@ -48,11 +48,6 @@ def is_real(value: object) -> TypeGuard[float]:
     return isinstance(value, np.integer | np.floating) and not isinstance(value, np.timedelta64)
 
 
-def is_whole(value: object) -> TypeGuard[int]:
-    """True for values of an integer type."""
-    return is_real(value) and isinstance(value, Integral)
-
-
 def real(name: str, value: object, low: float, high: float = math.inf) -> float:
     """Convert a finite number between `low` and `high` to a float.  Raises InputError for anything
     else."""
@@ -73,7 +68,7 @@ def count(name: str, value: object, low: int, *, most: float, even: bool = False
     """Convert an integer between `low` and `most` to an int.  Raises InputError for anything
     else."""
     value = without_array(value)
-    if not is_whole(value) or not low <= value <= most:
+    if not (is_real(value) and isinstance(value, Integral) and low <= value <= most):
         kind = "an even whole number" if even else "a whole number"
         raise InputError(name, value, f"allowed is {kind} of at least {low} and at most {most:g}")
     if even and value % 2:

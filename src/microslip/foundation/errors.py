@@ -5,7 +5,6 @@ from __future__ import annotations
 
 import errno
 import os
-from traceback import extract_tb
 
 NO_WRITING = (errno.ENOSPC, errno.EDQUOT, errno.EROFS)
 """Operating system errors whose message already makes the remedy clear."""
@@ -69,6 +68,8 @@ def shown(value: object) -> str:
 def described(error: BaseException, path: str | os.PathLike) -> str:
     """One line with the type of an error, the line number in the file at `path`, and the
     message."""
+    from traceback import extract_tb  # late, since its import takes a while
+
     frames = (f for f in extract_tb(error.__traceback__) if f.filename == str(path))
     lines, message = [frame.lineno for frame in frames], str(error)
     if isinstance(error, SyntaxError) and error.filename == str(path):

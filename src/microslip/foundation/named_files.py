@@ -26,13 +26,15 @@ from dataclasses import dataclass, field, fields, replace
 from functools import lru_cache
 from pathlib import Path
 from types import ModuleType
-from typing import Any, Generic, TypeGuard, TypeVar, cast
+from typing import TYPE_CHECKING, Any, Generic, TypeGuard, TypeVar, cast
 
 from microslip.foundation import spec
 from microslip.foundation.csv_table import check_format
 from microslip.foundation.errors import InputError, described
-from microslip.foundation.files import MOST_BYTES, content_of
-from microslip.foundation.source_digest import Sources
+from microslip.foundation.files import content_of
+
+if TYPE_CHECKING:
+    from microslip.foundation.source_digest import Sources
 
 T = TypeVar("T")
 
@@ -90,20 +92,20 @@ class NamedFile:
     def name(self) -> str:
         """The name in results.  It does not contain the folder, so that files with equal content
         have equal names."""
-        return self._text("", os.path.basename(self.path))
+        return self._text(os.path.basename(self.path) if self.path.endswith(".py") else "")
 
     @property
     def placed(self) -> str:
         """The name with the path and the digest, for another process that reads the file."""
-        return self._text(f"{self.path},", self.path)
+        return self._text(self.path)
 
-    def _text(self, data: str, module: str) -> str:
+    def _text(self, path: str) -> str:
         sha256 = f"sha256={self.digest}"
         if self.path.endswith(".py"):
-            return f"{module}:{sha256}{self.numbers and f',{self.numbers}'}"
-        options = {one.name: one.default for one in fields(self)[3:]}
-        unusual = (f",{k}={getattr(self, k)}" for k, v in options.items() if getattr(self, k) != v)
-        return f"{PREFIX}{data}{sha256}{''.join(unusual)}"
+            return f"{path}:{','.join(filter(None, [sha256, self.numbers]))}"
+        options = {one.name: (one.default, getattr(self, one.name)) for one in fields(self)[3:]}
+        words = [f"{name}={value}" for name, (usual, value) in options.items() if value != usual]
+        return PREFIX + ",".join(filter(None, [path, sha256, *words]))
 
 
 def speaks_of_file(name: object) -> TypeGuard[str]:
@@ -121,9 +123,9 @@ def parse(name: str, argument: str = "file") -> NamedFile:
     form."""
     if match := PYTHON.fullmatch(name):
         words = (match[2] or "").split(",")
-        digest = next((w.removeprefix("sha256=") for w in words if w.startswith("sha256=")), "")
-        numbers = ",".join(word for word in words if not word.startswith("sha256="))
-        return NamedFile(match[1], digest, numbers)
+        digests = [word for word in words if word.startswith("sha256=")]
+        numbers = ",".join(word for word in words if word not in digests)
+        return NamedFile(match[1], "".join(digests[:1]).removeprefix("sha256="), numbers)
     path, options = name.removeprefix(PREFIX), {}
     while match := OPTIONS.search(path):
         if match[1] in options:
@@ -160,11 +162,12 @@ def read(
         tried.
     """
     file = parse(name, argument)
-    place = _place(name, argument, file, folders)
+    place = PLACES.get(file.digest) if not os.path.isabs(file.path) else None
+    place = place or _found(name, argument, file, folders)
     try:
         if not place.is_file():  # a pipe might never end
             raise ValueError("a folder" if place.is_dir() else "not a regular file")
-        content = content_of(place, MOST_BYTES)
+        content = content_of(place)
     except (OSError, ValueError) as error:
         reason = getattr(error, "strerror", None) or error
         raise InputError(argument, name, f"{place} cannot be read: {reason}") from None
@@ -179,25 +182,8 @@ def read(
     return replace(file, path=str(place), digest=digest), content
 
 
-def remember(names: Iterable[str]) -> None:
-    """Store the file paths from names that contain a path and a digest.  Other names are
-    ignored."""
-    for file in (parse(name) for name in names if speaks_of_file(name) or speaks_of_module(name)):
-        if file.digest and os.path.isabs(file.path):
-            PLACES[file.digest] = Path(file.path)
-
-
-def base_name(name: str) -> str:
-    """Base name of a file, for messages; "" if this process has not stored the path."""
-    if not (speaks_of_file(name) or speaks_of_module(name)):
-        return ""
-    file = parse(name)
-    return Path(file.path or PLACES.get(file.digest, "")).name
-
-
-def _place(name: str, argument: str, file: NamedFile, folders: Iterable[str | os.PathLike]) -> Path:
-    if file.digest in PLACES and not os.path.isabs(file.path):
-        return PLACES[file.digest]
+def _found(name: str, argument: str, file: NamedFile, folders: Iterable[str | os.PathLike]) -> Path:
+    """Path of a file in the folders or in the working directory."""
     if not file.path:
         problem = "no file with this content is known here; allowed is its path"
         raise InputError(argument, name, f"{problem}, as in file:measured.csv")
@@ -208,11 +194,26 @@ def _place(name: str, argument: str, file: NamedFile, folders: Iterable[str | os
         with suppress(OSError, ValueError):  # a name that the system does not accept
             if os.path.lexists(place):
                 return place
-    looked = ", ".join(str(place) for place in places)
+    problem = f"{file.path} cannot be read: No such file; looked for {', '.join(map(str, places))}"
     hint = f"; allowed after the path: {HINT}" if "," in file.path else ""
-    raise InputError(
-        argument, name, f"{file.path} cannot be read: No such file; looked for {looked}{hint}"
-    )
+    raise InputError(argument, name, f"{problem}{hint}")
+
+
+def _files_in(names: Iterable[str]) -> Iterator[NamedFile]:
+    """The names of files among texts."""
+    return (parse(name) for name in names if speaks_of_file(name) or speaks_of_module(name))
+
+
+def remember(names: Iterable[str]) -> None:
+    """Store the file paths from names that contain a path and a digest.  Other names are
+    ignored."""
+    files = (file for file in _files_in(names) if file.digest and os.path.isabs(file.path))
+    PLACES.update((file.digest, Path(file.path)) for file in files)
+
+
+def base_name(name: str) -> str:
+    """Base name of a file, for messages; "" if this process has not stored the path."""
+    return "".join(Path(f.path or PLACES.get(f.digest, "")).name for f in _files_in([name]))
 
 
 # Data files
@@ -258,6 +259,8 @@ class FileReader(Generic[T]):
 
 def _imports_of(path: Path) -> tuple[Sources, set[str]]:
     """The files of a folder; and the names of a file and of the files there that it imports."""
+    from microslip.foundation.source_digest import Sources  # late, since it imports ast
+
     sources = Sources(path.parent, "")
     return sources, sources.closure([path.name])
 
@@ -290,8 +293,7 @@ def _importing_from(path: Path) -> Iterator[None]:
 
 @lru_cache(maxsize=32)
 def _class_in(file: NamedFile, base: type) -> type:
-    """The subclass of `base` in a Python file.  Raises ValueError if there is none, or if there are
-    several."""
+    """The subclass of `base` in a Python file.  Raises ImportError unless there is one."""
     path = Path(file.path)
     name = f"microslip_{file.digest}_{path.stem}"
     module = sys.modules[name] = ModuleType(name)
@@ -300,14 +302,14 @@ def _class_in(file: NamedFile, base: type) -> type:
         with _importing_from(path):
             exec(compile(path.read_bytes(), path, "exec"), module.__dict__)
     except (Exception, SystemExit) as error:  # a user's code may raise anything
-        raise ValueError(f"cannot be imported: {described(error, path)}") from error
+        raise ImportError(f"cannot be imported: {described(error, path)}") from error
     own = [one for one in vars(module).values() if isinstance(one, type)]
     own = [one for one in own if issubclass(one, base) and one.__module__ == name]
     last = [one for one in own if not any(one in other.__mro__[1:] for other in own)]
     if len(last) != 1:
         names = f": {', '.join(one.__name__ for one in last)}" if last else ""
         problem = f"it has {len(last)} subclasses of microslip.{base.__name__}{names}"
-        raise ValueError(f"{problem}; allowed is one in a file")
+        raise ImportError(f"{problem}; allowed is one in a file")
     setattr(last[0], spec.TEXT_NAME, file.name)
     return last[0]
 
@@ -315,7 +317,7 @@ def _class_in(file: NamedFile, base: type) -> type:
 # Both, and the classes of the package
 
 
-class Family(Generic[T]):
+class Family(FileReader[T]):
     """Motions or pressures by their texts.
 
     Parameters
@@ -342,9 +344,9 @@ class Family(Generic[T]):
         classes: Iterable[type[T]],
         create: Callable[[NamedFile, bytes], T],
     ):
-        self.argument, self.base = argument, base
+        super().__init__(argument, create)
+        self.base = base
         self.classes = {spec.name_of(one): one for one in classes}
-        self._read_data = FileReader(argument, create)
 
     def __call__(self, text: str) -> T:
         """Return the object for a text such as "power:exponent=1" or "file:measured.csv".
@@ -356,19 +358,18 @@ class Family(Generic[T]):
             refuses its value.
         """
         if speaks_of_file(text):
-            return self._read_data(text)
+            return super().__call__(text)
         names = [*self.classes, "file:NAME", "NAME.py"]
         if not isinstance(text, str) or text == "file":
             raise InputError(self.argument, text, f"allowed is one of {', '.join(names)}")
-        path: str | Path = ""
+        path = ""
         if speaks_of_module(text):
             file, _ = read(text, self.argument)
-            path, words = file.path, file.numbers
+            path, words, example = file.path, file.numbers, f"{Path(file.path).name}:key=0.5"
             try:
                 cls: Any = _class_in(replace(file, numbers=""), cast(type, self.base))
-            except ValueError as error:
-                raise InputError(self.argument, text, f"{path}: {error}") from None
-            example = f"{Path(path).name}:key=0.5"
+            except ImportError as error:
+                raise InputError(self.argument, text, f"{path}: {error}") from error
             numbers = spec.numbers_in(words, text, self.argument, example) if words else {}
         else:
             name, numbers = spec.split(text, self.argument, names)

@@ -48,7 +48,8 @@ class Sources:
     def __init__(self, folder: str | Path = PACKAGE, prefix: str | None = None):
         self.folder = Path(folder)
         self.prefix = f"{self.folder.name}." if prefix is None else prefix
-        self.content, self._parsed = cache(self._read), cache(self._read_parsed)
+        self.content = cache(lambda name: (self.folder / name).read_bytes())
+        self._parsed = cache(self._read_parsed)
         self._store = self.folder / f"__pycache__/sources.{sys.implementation.cache_tag}.json"
 
     @cached_property
@@ -102,9 +103,9 @@ class Sources:
         files: modules and folders of the package.
         """
         starts = {n for n in self.names for f in files if n == f or n.startswith(f"{f}/")}
-        code = self.closure(starts, lambda n: not (is_physics(n) or n.startswith("foundation/")))
-        tables = {f"{name.removesuffix('.py')}.csv" for name in code}
-        return code | tables & {*self.names}
+        return self.closure(
+            starts, lambda name: not (is_physics(name) or name.startswith("foundation/"))
+        )
 
     def _imports(self, modules: Iterable[str]) -> list[str]:
         """Paths of the modules with these names and of the packages that contain them."""
@@ -114,9 +115,6 @@ class Sources:
         paths = {"/".join(one[:end]) for one in parts for end in range(1, len(one) + 1)}
         files = (file for path in paths for file in (f"{path}.py", f"{path}/__init__.py"))
         return [file for file in files if (self.folder / file).is_file()]
-
-    def _read(self, name: str) -> bytes:
-        return (self.folder / name).read_bytes()
 
     # Parsing takes a second for the package, so the results are stored in __pycache__.
 

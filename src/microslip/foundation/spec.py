@@ -42,16 +42,13 @@ def read(argument: str, text: str, whole: bool = False) -> float | int:
         If the text is not such a number, or the number is outside the range of floats.
     """
     plain = text.strip().replace(MINUS, "-", 1)
-    if (WHOLE if whole else NUMBER).fullmatch(plain):
-        return int(plain) if whole else _float(argument, text, plain)
-    hint = plain.replace(",", ".")
-    if not whole and "," in plain and NUMBER.fullmatch(hint):
-        raise InputError(argument, text, f"allowed is a number with a point: {hint}")
-    raise InputError(argument, text, f"allowed is a {'whole ' if whole else ''}number")
-
-
-def _float(argument: str, text: str, plain: str) -> float:
-    """Convert the text `plain` to a float.  Raises InputError if it is out of range."""
+    if not (WHOLE if whole else NUMBER).fullmatch(plain):
+        point = plain.replace(",", ".")
+        is_comma = not whole and point != plain and NUMBER.fullmatch(point)
+        kind = "whole number" if whole else f"number{f' with a point: {point}' if is_comma else ''}"
+        raise InputError(argument, text, f"allowed is a {kind}")
+    if whole:
+        return int(plain)
     number, digits = float(plain), plain.lower().partition("e")[0]
     if number == 0.0 and re.search("[1-9]", digits):
         problem = "nearer 0 than floating-point numbers can be"
@@ -62,22 +59,17 @@ def _float(argument: str, text: str, plain: str) -> float:
     return number
 
 
-HALVES = {
-    "diameter": "radius",
-    "counter_diameter": "counter_radius",
-    "contact_diameter": "contact_radius",
-    "stroke": "amplitude",
-    "peak_to_peak": "amplitude",
-}
-"""Names of arguments that are half of another quantity, keyed by this quantity."""
+HALVES = {"diameter": "radius", "stroke": "amplitude", "peak_to_peak": "amplitude"}
+"""Quantities that are half of another one, keyed by words in the name of the latter."""
 
 
 def near_miss(name: object, names: Iterable[str]) -> str:
     """'did you mean NAME? ' for the most similar name, or '' if there is none.  If the name is
     twice an argument, the text says so."""
-    half = HALVES.get(str(name).lstrip("-").replace("-", "_"), "")
+    word = str(name).lstrip("-").replace("-", "_")
+    half = re.sub("|".join(HALVES), lambda match: HALVES[match[0]], word)
     for one in names:
-        if half and one.lstrip("-").replace("-", "_") == half:
+        if half != word and half == one.lstrip("-").replace("-", "_"):
             return f"{one} is half of it; "
     near = difflib.get_close_matches(str(name), names, n=1)
     return f"did you mean {near[0]}? " if near else ""
