@@ -1,4 +1,4 @@
-"""Requests, and the runs that answer them.
+"""Requests, and the runs that compute their results.
 
 A run that does not converge is repeated.  The slower the forward motion, the longer its transients.
 In long transients, even small errors of the steps accumulate to a wrong state, and the search needs

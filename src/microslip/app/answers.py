@@ -240,7 +240,7 @@ def response(path: str, output: str | None = None, **arguments: Any) -> Answer:
 
 
 def fold(record: str, output: str = "", rows: int = 32, **arguments: str) -> Answer:
-    """One period of a motion from a long record, such as that of a vibrometer.
+    """One period of a motion from a long record, such as the record of a vibrometer.
 
     The slow drift is removed, and the periods are averaged.  The standard error covers the scatter
     between the periods and a slow drift of the frequency.  The columns of the record are time and

@@ -54,7 +54,8 @@ SPELL = 1.0
 """Seconds without compilation after which the next compilation is announced again.  Between the
 kernels of one solution, milliseconds pass."""
 LONGEST_WAIT = 120.0
-"""Seconds that a process waits in total while others compile; one of them can be suspended."""
+"""Longest time in seconds that a process waits while others compile. The limit is necessary because
+another process can be suspended."""
 PAUSE = 0.05
 """Seconds between two attempts to lock the folder."""
 REPORTED = "MICROSLIP_SAID_UNSTORED"

@@ -572,8 +572,8 @@ class Profile:
         return float(one.x if one.fun < sums[k] else self.x[k])
 
     def ends(self, x: float, allowed: float) -> list[float]:
-        """Ends of the values around x with a sum of squares of at most `allowed`; infinite if all
-        tabulated values on that side are among them."""
+        """Ends of the interval around x in which the sum of squares is at most `allowed`. An end is
+        infinite if the interval reaches the end of the table."""
         from scipy.optimize import brentq
 
         ends = []

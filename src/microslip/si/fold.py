@@ -1,4 +1,4 @@
-"""One period of a motion from a long record, such as that of a laser vibrometer.
+"""One period of a motion from a long record, such as the record of a laser vibrometer.
 
 A record contains many periods, noise, and a slow drift.  The drift is the moving mean over one
 period.  For a periodic motion it is constant.  The difference from the drift is averaged over all

@@ -67,7 +67,8 @@ def find_reduction(inputs: Inputs) -> tuple[Contact, Value]:
     reduction, and this quantity in its SI unit.
 
     If the solver fails, the contact is that at which it failed, and the error is NaN.  Raises
-    NoSolutionError if the reduction is outside the range of the search, and InputError.
+    NoSolutionError if the reduction is outside the range of the search, and InputError if an input
+    is invalid.
     """
     from scipy.optimize import brentq
 

@@ -255,7 +255,7 @@ def predictions(cases: Cases, *, need_all: bool = False) -> Iterator[Prediction 
     All contacts are checked before the first one is solved.  A search without a solution gives a
     Prediction that is not converged.
 
-    need_all: True to raise InputError if any contact is invalid.
+    need_all: If True, any invalid contact raises InputError.
     """
     checked: list[Inputs | InputError | str] = []
     for case in range(len(cases.names)):
