@@ -14,7 +14,6 @@ import numpy as np
 import pandas as pd
 import pytest
 import xarray as xr
-from bad_input_tables.bad_predictions import GOOD, PREDICTIONS
 from stubs import certified_stub
 from stubs.eq6_map import eq6_map
 from stubs.in_process import run
@@ -202,18 +201,6 @@ def test_a_terminal_shows_the_progress_in_a_line_that_goes(monkeypatch):
             assert text == ""
 
 
-# Predict
-
-
-@pytest.mark.parametrize(("changed", "part"), PREDICTIONS, ids=repr)
-def test_a_contact_is_refused_before_any_work(changed, part, monkeypatch):
-    monkeypatch.setattr("microslip.si.solve.solve", None)
-    settings = {"motion": "transverse"} | GOOD | changed
-    words = [f"--{name.replace('_', '-')}={text}" for name, text in settings.items() if text]
-    line = refusal(shlex.join(["predict", settings["motion"], *words[1:]]))
-    assert part in line
-
-
 # Response
 
 
@@ -235,24 +222,6 @@ def test_the_response_is_printed_or_written(tmp_path):
     with xr.open_dataset(tmp_path / "a.nc") as dataset:
         for own in (dataset.force_forward.values, written["force_forward [N]"]):
             assert list(own) == values["force_forward"]
-
-
-@pytest.mark.parametrize(
-    ("text", "parts"),
-    [
-        ("forward [um]\n0\nabc\n", ("line 3", "abc")),
-        ("forward [um],load [N]\n0,1\n1,\n", ("line 3", "load")),
-        ("forward [N]\n0\n1\n", ("forward [N]: the unit is N",)),
-        ("speed\n0\n1\n", ("'speed'", "as in forward [um]")),
-        ("forward [um],load [N]\n0,1\n1,-2\n", ("load = -2 N (-0.2 times 10 N)", ">= 0")),
-        ("forward [um]\n0\n", ("2 rows",)),
-        ("forward\n0\n1\n", ("unit",)),
-    ],
-)
-def test_a_bad_path_is_one_line(tmp_path, text, parts):
-    (tmp_path / "a.csv").write_text(text)
-    line = refusal(f"response {tmp_path / 'a.csv'} {CONTACT}")
-    assert all(part in line for part in parts)
 
 
 # Export
@@ -324,29 +293,6 @@ def test_interpolated_friction_is_within_the_stated_difference():
     fine = microslip.predict_grid("transverse", **contact, speed=0.01, amplitude=middle)
     miss = fine.mu_apparent.values - np.interp(middle, amplitude, friction)
     assert np.abs(miss).max() <= float(stated)
-
-
-STEEL = "iwan --material steel --mu 0.3 --radius '5 mm' --load '1 N'"
-STILL = f"{VIBRATED} --load '10 N' --speed '1 mm/s'"
-
-
-@pytest.mark.parametrize(
-    ("command", "parts"),
-    [
-        (f"{STEEL} --elements 2 --tolerance 1e-2", ("--elements", "without")),
-        (f"{STEEL} --radius-across '8 mm'", ("--radius-across", "nu = 0")),
-        (f"table transverse {STILL}", ("--amplitude", "range")),
-        (f"table transverse {VIBRATED} --load '10 N' --amplitude '0..1 um'", ("--speed",)),
-        (f"table sideways {STILL} --amplitude '0..1 um'", ("MOTION = 'sideways'",)),
-        (f"table transverse {STILL} --amplitude '-1..1 um, 3'", ("3': at amplitude -1 um",)),
-        (f"table transverse {STILL} --amplitude '1e-7..1 m, 2'", ("2': at amplitude 1 m",)),
-        (f"table transverse {STILL} --amplitude '0..1 um' --mass '1 g'", ("--drive-stiffness",)),
-    ],
-)
-def test_a_bad_export_is_one_line_before_any_work(monkeypatch, command, parts):
-    monkeypatch.setattr("microslip.si.table.predict_inputs", None)
-    line = refusal(f"export {command}")
-    assert all(part in line for part in parts)
 
 
 def test_a_table_with_a_point_outside_a_map_is_not_written(tmp_path, monkeypatch):

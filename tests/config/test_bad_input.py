@@ -1,65 +1,11 @@
-"""Bad input of the command line and configurations: one line, before any work starts."""
+"""Bad configurations: one line that begins with the file and the key."""
 
 import re
-import shlex
 
 import pytest
-from bad_input_tables.bad_command_lines import COMMAND_LINES
 from bad_input_tables.bad_configurations import FILES, KEYS, STUDIES, TOGETHER, changed
 
-from microslip.app import cli
 from microslip.config import load
-
-
-@pytest.fixture
-def nothing_runs(monkeypatch):
-    """Functions of the solver that fail the test."""
-
-    def work(*_, **__):
-        raise AssertionError("work has started")
-
-    for name in ("refine.refine", "request.no_vibration", "request.closed_form"):
-        monkeypatch.setattr(f"microslip.answer.{name}", work)
-
-
-@pytest.fixture
-def there(tmp_path, monkeypatch):
-    """The working directory, with targets of bad input; commands must not change it."""
-    (tmp_path / "a-file").write_text("kept\n")
-    monkeypatch.chdir(tmp_path)
-    before = sorted(tmp_path.rglob("*"))
-    yield tmp_path
-    assert sorted(tmp_path.rglob("*")) == before
-    assert (tmp_path / "a-file").read_text() == "kept\n"
-
-
-def refused(arguments):
-    """Exit code of a command line, run in this process."""
-    try:
-        return cli.main(shlex.split(arguments))
-    except SystemExit as error:
-        return error.code
-
-
-@pytest.mark.parametrize(("arguments", "parts"), [(first, rest) for first, *rest in COMMAND_LINES])
-def test_a_bad_command_line_is_one_line(arguments, parts, nothing_runs, there, capfd):
-    assert refused(arguments) == 2
-    out, line = capfd.readouterr()
-    assert out == ""
-    assert re.fullmatch(r"microslip[^\n]*: [^\n]+\n", line)
-    assert [part for part in parts if part not in line] == []
-
-
-def test_every_option_is_given_a_bad_value():
-    """Every option occurs in COMMAND_LINES."""
-    options = {
-        option for option in cli.parser_of("point")._option_string_actions if option[1] == "-"
-    }
-    tested = {word for first, *_ in COMMAND_LINES for word in re.findall(r"--[a-z-]+", first)}
-    assert options - tested == {"--help"}
-
-
-# Configurations
 
 
 def refusal(path):
