@@ -130,7 +130,7 @@ def test_verdict_is_that_of_the_plain_map(name):
 
 
 def test_run_reports_what_was_not_reached(monkeypatch):
-    monkeypatch.setattr("microslip.periodic.simulate._Search.most_marches", 2)
+    monkeypatch.setattr("microslip.periodic.simulate.MOST_MARCHES", 2)
     for motion, model, angles in ((Bore(), "polar", 4), (Transverse(), "radial", 1)):
         problem = Problem(motion, 0.1, 1.0, 0.0)
         run = simulate(problem, model, Resolution(6, angles, 8), TOLERANCE)

@@ -205,7 +205,7 @@ def history(
     phases = np.linspace(0.0, end, count + 1)
     path = make_path(problem.displacement, phases, depth=problem.depth)
     march, _, _ = along(contact, path, tractions_at_start(contact, start), STEP_TOLERANCE)
-    failure = unsolved(march.residual, march.solves, STEP_TOLERANCE)
+    failure = unsolved(march, STEP_TOLERANCE)
     if failure:
         raise StepFailure(f"velocity = {velocity!r}: {failure}")
     place = {"phase": path.phase, "displacement_forward": path.positions[:, 0]}

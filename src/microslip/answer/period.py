@@ -143,7 +143,7 @@ def period(
     assert isinstance(contact, PolarContact)
     path = path_of(problem, contact, steps // 2)
     march, tractions, bounds = along(contact, path, run.state, STEP_TOLERANCE, slice(None))
-    failure = unsolved(march.residual, march.solves, STEP_TOLERANCE)
+    failure = unsolved(march, STEP_TOLERANCE)
     phase, forces, bounds = path.phase, march.forces, np.broadcast_to(bounds, tractions[:, 0].shape)
     # slip in every step: rigid minus elastic displacement
     elastic = np.array([contact.displacement(change) for change in np.diff(tractions, axis=0)])

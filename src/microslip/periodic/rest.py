@@ -102,7 +102,7 @@ def run_to_rest(
                 break
             look = round(look * LOOKS[look % 3 == 0])
     residual, period = walk.residual / contact.stiffness, interval / (2.0 * np.pi)
-    reason = unsolved(walk.residual, walk.solves, walk.step_tolerance)
+    reason = unsolved(walk, walk.step_tolerance)
     if remaining > tolerance:
         reason = (
             f"still moves after {count * period:g} periods, by {ways[-1]:.1e} in the last march"

@@ -94,12 +94,6 @@ class Budget:
         self.exhausted = ""
         self._began: float | None = None
 
-    def renewed(self) -> Budget:
-        """A new Budget with the same limits and start time, but without effort."""
-        other = Budget(self.most_work, self.time_limit)
-        other._began = self._began
-        return other
-
     def metered(self, contact: Contact) -> Contact:
         """Wrap a contact so that its marches are counted, and start the clock."""
         self.start()
@@ -245,37 +239,25 @@ class Run:
         return self.values["friction"]
 
 
-def unsolved(residual: float, solves: int, step_tolerance: float) -> str:
+def unsolved(steps: Any, tolerance: float) -> str:
     """Reason why the stages are not solved to their tolerance, otherwise empty.
 
     Parameters
     ----------
-    residual : float
-        Residual of the step solver summed over the stages, as a force divided by mu F_z.
-    solves : int
-        Number of stages.
-    step_tolerance : float
+    steps : March, or another object with the same attributes
+        `residual`, the residual of the step solver summed over the stages, as a force divided by mu
+        F_z, and `solves`, the number of stages.
+    tolerance : float
         Tolerance of each stage, as a force divided by mu F_z.
     """
-    if residual <= solves * step_tolerance:
+    if steps.residual <= steps.solves * tolerance:
         return ""
-    return f"a step was left unsolved: residual {residual:.1e}"
+    return f"a step was left unsolved: residual {steps.residual:.1e}"
 
 
 def failed_run(reason: str) -> Run:
     """The Run for a failed march.  Its numbers are NaN or infinite."""
     return Run(dict.fromkeys(NAMES, np.nan), np.inf, np.inf, reason=reason)
-
-
-def step_share(force_rate: float, steps: int, tighter: bool) -> float:
-    """Ratio of the step tolerance to the tolerance of the periodic state.
-
-    `force_rate` is the rise of the force per radian of phase, divided by mu F_z, for a contact
-    without slip.
-    """
-    slow_share = force_rate * np.pi * STEP_SHARE
-    floor = TIGHTER * SLOW_STEP_SHARE if tighter else SLOW_STEP_SHARE
-    return min(max(slow_share, floor), STEP_SHARE, MARCH_SHARE / steps)
 
 
 def periods_of(marches: int, problem: Problem) -> float:

@@ -25,6 +25,7 @@ from microslip.contact.contact import Body, Contact, March, StepFailure, energy_
 from microslip.contact.path import Path
 from microslip.contact.ring_contact import RingContact
 from microslip.periodic.anderson import DEPTH, accelerated, remember
+from microslip.periodic.run import Effort
 
 MOST_MARCHES = 200
 """Default limit on the number of marches in a search."""
@@ -102,9 +103,9 @@ class PeriodicState:
     converged: bool
 
     @property
-    def solves(self) -> int:
-        """Number of stages, summed over all marches."""
-        return self.marches * self.march.solves
+    def effort(self) -> Effort:
+        """Effort of all marches."""
+        return Effort.of(self.marches * self.march.solves, self.iterations, self.start.size)
 
 
 @dataclass(frozen=True)

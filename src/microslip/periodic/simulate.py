@@ -30,13 +30,15 @@ from microslip.periodic.discretise import Resolution, dissipated_energy, mean_fo
 from microslip.periodic.rest import run_to_rest
 from microslip.periodic.run import (
     AS_SHIPPED,
+    MARCH_SHARE,
+    SLOW_STEP_SHARE,
     STEP_SHARE,
+    TIGHTER,
     Effort,
     Run,
     Settings,
     failed_run,
     periods_of,
-    step_share,
     unsolved,
 )
 from microslip.periodic.search import (
@@ -81,7 +83,7 @@ def steady_state(contact: Contact, problem: Problem, tolerance: float) -> Run:
         PeriodMap(contact, path, mirror=False), forward_slip(contact), goal
     )
     march = steady.march
-    reason = unsolved(march.residual, march.solves, goal.step_tolerance)
+    reason = unsolved(march, goal.step_tolerance)
     return Run(
         {
             "friction": float(march.forces[-1, FORWARD]),
@@ -89,7 +91,7 @@ def steady_state(contact: Contact, problem: Problem, tolerance: float) -> Run:
         },
         distance=steady.distance,
         residual=march.residual,
-        effort=Effort.of(steady.solves, steady.iterations, steady.start.size),
+        effort=steady.effort,
         reason=reason if steady.converged else f"no steady state: {steady.distance:.1e} left",
         state=march.state,
     )
@@ -169,8 +171,7 @@ def simulate(
             return static_run(problem, model, resolution, tolerance, settings)
         if problem.velocity == 0.0 and drive is not None and drive.force is not None:
             return run_to_rest(problem, model, resolution, tolerance, settings)
-        kind = _Prescribed if drive is None else _Driven
-        return kind(problem, model, resolution, tolerance, settings).run(guess)
+        return _Search(problem, model, resolution, tolerance, settings).run(guess)
     except StepFailure as failure:
         return failed_run(str(failure))
 
@@ -199,102 +200,101 @@ class Start(NamedTuple):
 class _Search:
     """Search for the periodic state of one run, trying several initial states in turn.
 
-    `unit` is the force, divided by mu F_z, that corresponds to an error of 1 in the result.
+    `unit` is the force, divided by mu F_z, that corresponds to an error of 1 in the result.  On a
+    spring, the result is a force, as at a prescribed velocity.  For a prescribed force, the result
+    is a velocity, and there are two estimates of its unit.  The first divides the force by the
+    stiffness and by the length of the interval.  The second divides the unbalanced force by the
+    rise of friction with the velocity.  The smaller force is used.
     """
-
-    most_marches = MOST_MARCHES
-    body: Body | None = None
 
     def __init__(
         self,
         problem: Problem,
         model: str,
         resolution: Resolution,
-        tolerance: float,
+        relative: float,
         settings: Settings,
     ):
         self.problem, self.model, self.resolution = problem, model, resolution
-        self.settings, self.method, self.relative = settings, settings.method, tolerance
+        self.settings, self.relative, drive = settings, relative, problem.drive
         self.contact = settings.contact(problem, model, resolution)
-        self.path = path_of(problem, self.contact, resolution.steps, self.method.integrator)
+        self.path = path_of(problem, self.contact, resolution.steps, settings.method.integrator)
         self.interval = self.path.phase[-1] - self.path.phase[0]
         self.rate = self.contact.stiffness * problem.drift
-        self.unit = problem.mean_load
+        self.unit, self.most_marches = problem.mean_load, MOST_MARCHES
+        self.force, self.body = None, None
+        if drive is not None:
+            self.most_marches = DRIVEN_MARCHES
+            self.force = None if drive.force is None else drive.force * problem.mean_load
+            constant = (self.force or 0.0) - drive.damping * problem.drift
+            self.body = Body(drive.stiffness, drive.damping, drive.mass, constant)
+        if self.force is not None:
+            stuck = self.contact.stiffness * self.interval * problem.unit_drift
+            self.unit = min(stuck, settings.slope * problem.mean_load)
+        floor = TIGHTER * SLOW_STEP_SHARE if settings.tighter else SLOW_STEP_SHARE
+        share = min(max(self.rate * np.pi * STEP_SHARE, floor), STEP_SHARE)
+        self.tolerance = relative * self.unit
+        self.step_tolerance = min(share, MARCH_SHARE / resolution.steps) * self.tolerance
         self.static_force = self.least = np.nan
         self.searches: list[PeriodicState] = []
         self.earlier: list[Run] = []
 
     def run(self, guess: Run | None) -> Run:
-        """Search from one initial state after the other, and return the Run."""
-        find = self.method.search or find_periodic_state
-        tolerance = self.relative * self.unit
-        share = step_share(self.rate, self.resolution.steps, self.settings.tighter)
-        self.tolerance, self.step_tolerance = tolerance, share * tolerance
-        for start in self.starts(guess):
+        """Search from one initial state after the other, and return the Run of the last search,
+        with the effort of all searches."""
+        problem, find = self.problem, self.settings.method.search or find_periodic_state
+        for start in (self.prescribed if self.body is None else self.driven)(guess):
             most = MARCHES_FROM_COARSER if start.near else self.most_marches
-            goal = Goal(tolerance, self.step_tolerance, most, start.near)
+            goal = Goal(self.tolerance, self.step_tolerance, most, start.near)
             self.searches.append(find(self.map(start), start.state, goal, start.place))
             if self.searches[-1].converged:
                 break
-        return self.result()
-
-    def starts(self, guess: Run | None) -> Iterator[Start]:
-        """Initial states, best first."""
-        raise NotImplementedError
-
-    def map(self, start: Start) -> PeriodMap:
-        """The map for a search from a start."""
-        full, drift_rate, slope = self.problem.mean_load, None, np.inf
-        if self.body is None or self.body.stiffness > 0.0:  # the velocity is known
-            gain = self.rate * self.interval
-            drift_rate = DriftRate(self.static_force, full, gain, self.least)
-        if self.body is not None and self.body.stiffness > 0.0:
-            # 1 - mu decreases at most as fast as 1 / velocity^2, the rate at large velocities
-            slope = 2.0 * (1.0 - start.friction) * full / (self.problem.drift * self.interval)
-        mirror = self.problem.half_period_mirror
-        return PeriodMap(self.contact, self.path, drift_rate, mirror, self.body, slope)
-
-    def values(self, periodic: PeriodicState) -> dict[str, float]:
-        """Values of a Run."""
-        mean = mean_forces(self.contact, self.problem, self.path, periodic.march.forces)
-        return {
-            "friction": float(mean[0]) / self.problem.mean_load,
-            "torque": float(mean[2]) / self.problem.pressure.torque,
-            "dissipation": dissipated_energy(self.contact, self.path, periodic.march),
-        }
-
-    def result(self) -> Run:
-        """The Run of the last search, with the effort of all searches."""
         periodic, march = self.searches[-1], self.searches[-1].march
-        periods = periods_of(sum(one.marches for one in self.searches), self.problem)
-        reason = unsolved(march.residual, self.path.solves, self.step_tolerance)
+        periods = periods_of(sum(one.marches for one in self.searches), problem)
+        reason = unsolved(march, self.step_tolerance)
         if not periodic.converged:
             reason = f"no periodic state within {periods:g} periods: {periodic.distance:.1e} left"
-        solves = sum(one.solves for one in self.searches)
-        iterations = sum(one.iterations for one in self.searches)
-        effort = Effort.of(solves, iterations, periodic.start.size)
+        efforts = [one.effort for one in self.searches] + [one.effort for one in self.earlier]
+        mean = mean_forces(self.contact, problem, self.path, march.forces)
+        values = {
+            "friction": float(mean[0]) / problem.mean_load,
+            "torque": float(mean[2]) / problem.pressure.torque,
+            "dissipation": dissipated_energy(self.contact, self.path, march),
+        }
+        if self.body is not None:
+            rate = float(march.body[-1, 0] - march.body[0, 0]) / self.interval
+            values["velocity"] = problem.velocity + rate / problem.unit_drift
         return Run(
-            self.values(periodic),
+            values,
             distance=periodic.distance / self.unit,
             residual=march.residual / self.unit,
             periods=periods + sum(one.periods for one in self.earlier),
-            effort=sum((one.effort for one in self.earlier), effort),
+            effort=sum(efforts, Effort()),
             reason=reason,
             state=periodic.start,
             place=march.body[0] if len(march.body) else AT_REST,
             static_force=self.static_force,
         )
 
+    def map(self, start: Start) -> PeriodMap:
+        """The map for a search from a start."""
+        full, drift_rate, slope = self.problem.mean_load, None, np.inf
+        if self.force is None:  # the velocity is known
+            gain = self.rate * self.interval
+            drift_rate = DriftRate(self.static_force, full, gain, self.least)
+            if self.body is not None:
+                # 1 - mu decreases at most as fast as 1 / velocity^2, the rate at large velocities
+                slope = 2.0 * (1.0 - start.friction) * full / (self.problem.drift * self.interval)
+        mirror = self.problem.half_period_mirror
+        return PeriodMap(self.contact, self.path, drift_rate, mirror, self.body, slope)
 
-class _Prescribed(_Search):
-    """Search at a prescribed velocity."""
-
-    def starts(self, guess: Run | None) -> Iterator[Start]:
+    def prescribed(self, guess: Run | None) -> Iterator[Start]:
+        """Initial states at a prescribed velocity, best first."""
         # for motions on a line a prepared search computes the limit;
         # for slow loops the limit only sets `least`
         if self.problem.straight or not self.contact.sticks:
             self.static_force = 0.0
-        problem, contact, start = self.problem, self.contact, None
+        problem, contact, method = self.problem, self.contact, self.settings.method
         if guess is not None and guess.state is not None and guess.converged:
             near = guess.state.shape != (2, *contact.forward_position.shape)
             start = contact.prolonged(guess.state) if near else guess.state
@@ -302,82 +302,51 @@ class _Prescribed(_Search):
                 self.static_force = guess.static_force
                 yield Start(project(start, contact.bound) if near else start, near=near)
         slipping = forward_slip(contact)
-        if self.method.prepared:
+        if method.prepared:
             start, rise = slipping, problem.drift ** (2.0 / 3.0)
             if contact.sticks and problem.straight:
                 limit = limit_on_a_line(contact, problem.oscillation, self.step_tolerance)
-                if not unsolved(limit.solver_residual, limit.solves, self.step_tolerance):
+                if not unsolved(limit.march, self.step_tolerance):
                     self.static_force = limit.force
                 excess = min(SLOW_EXCESS * rise, LARGEST_EXCESS)
                 start = limit.shift + limit.oscillating + excess * slipping
             elif contact.sticks and problem.drift < SLOW_LOOP:
+                # the limit is computed with reduced accuracy, according to the rise of friction
+                # above it, so its force only sets `least`
+                rest, tolerance = replace(problem, velocity=0.0), max(rise, self.tolerance)
+                path = path_of(rest, contact, self.resolution.steps, method.integrator)
+                limit = limit_on_a_loop(contact, rest, path, tolerance, STEP_SHARE * tolerance)
+                assert limit.periodic is not None  # true for a loop
+                self.searches.append(limit.periodic)
+                self.least = limit.force
                 # a factor of SLOW_EXCESS would prevent convergence at the smallest drifts
-                start = self._limit_of_a_loop(rise) + rise * slipping
+                start = limit.oscillating + limit.shift + rise * slipping
             yield Start(project(start, contact.bound))
         yield Start(slipping)
 
-    def _limit_of_a_loop(self, rise: float) -> np.ndarray:
-        """Tractions of the static limit, computed with reduced accuracy.
-
-        The accuracy is chosen according to the rise of friction above the limit.  Because of the
-        reduced accuracy, the limit's force only sets `least`.
-        """
-        rest = replace(self.problem, velocity=0.0)
-        path = path_of(rest, self.contact, self.resolution.steps, self.method.integrator)
-        tolerance = max(rise, self.tolerance)
-        limit = limit_on_a_loop(self.contact, rest, path, tolerance, STEP_SHARE * tolerance)
-        assert limit.periodic is not None  # true for a loop
-        self.searches.append(limit.periodic)
-        self.least = limit.force
-        return limit.oscillating + limit.shift
-
-
-class _Driven(_Search):
-    """Search under a prescribed force or on a spring.
-
-    For a spring, the result is a force.  For a prescribed force, the result is a velocity, and
-    there are two estimates of its unit.  The first divides the force by the stiffness and by the
-    length of the interval.  The second divides the unbalanced force by the rise of friction with
-    the velocity.  The smaller force is used.
-    """
-
-    most_marches = DRIVEN_MARCHES
-    body: Body
-
-    def __init__(
-        self,
-        problem: Problem,
-        model: str,
-        resolution: Resolution,
-        tolerance: float,
-        settings: Settings,
-    ):
-        super().__init__(problem, model, resolution, tolerance, settings)
-        drive, load = problem.drive, problem.mean_load
-        assert drive is not None  # true for all driven contacts
-        self.force = None if drive.force is None else drive.force * load
-        constant = (self.force or 0.0) - drive.damping * problem.drift
-        self.body = Body(drive.stiffness, drive.damping, drive.mass, constant)
-        if self.force is not None:
-            stuck = self.contact.stiffness * self.interval * problem.unit_drift
-            self.unit = min(stuck, settings.slope * load)
-
-    def starts(self, guess: Run | None) -> Iterator[Start]:
-        slipping = forward_slip(self.contact)
+    def driven(self, guess: Run | None) -> Iterator[Start]:
+        """Initial states under a prescribed force or on a spring, best first."""
+        contact, problem, slipping = self.contact, self.problem, forward_slip(self.contact)
         for one in self._similar_runs(guess):
             if one.converged and one.state is not None and one.state.shape == slipping.shape:
                 self.static_force = one.static_force
                 yield Start(one.state, one.place, friction=one.mu)
-        there = replace(self.problem, drive=None)
-        share = max(self.tolerance, LOOSEST_START) / self.problem.mean_load
-        prescribed = simulate(there, self.model, self.resolution, share, settings=self.settings)
-        self.earlier.append(prescribed)
-        self.static_force = prescribed.static_force
-        if prescribed.state is not None:
-            mean = prescribed.mu * self.problem.mean_load
-            yield self._start(prescribed.state, mean, prescribed.mu)
-        full = float(np.sum(self.contact.weight * slipping[0]))
-        yield self._start(slipping, full, prescribed.mu)
+        share = max(self.tolerance, LOOSEST_START) / problem.mean_load
+        run = self._earlier_run(replace(problem, drive=None), self.resolution, share)
+        self.static_force = run.static_force
+        # tractions at a prescribed velocity, and their mean force over a period
+        starts = [(slipping, float(np.sum(contact.weight * slipping[0])))]
+        if run.state is not None:
+            starts.insert(0, (run.state, run.mu * problem.mean_load))
+        body, force = self.body, self.force
+        assert body is not None
+        for tractions, mean in starts:
+            if force is not None:
+                if mean > 0.0 and 0.0 <= force < MOST_SCALED * mean:
+                    tractions = tractions * (force / mean)
+                tractions = project(tractions, contact.bound)
+            place = (body.load - mean) / body.stiffness if body.stiffness else 0.0
+            yield Start(tractions, np.array([place, 0.0]), friction=run.mu)
 
     def _similar_runs(self, guess: Run | None) -> Iterator[Run]:
         """The guess, and a Run with COARSENING times fewer steps."""
@@ -385,22 +354,9 @@ class _Driven(_Search):
             yield guess
         if self.resolution.steps >= PREPARED_FROM:
             fewer = replace(self.resolution, steps=self.resolution.steps // COARSENING)
-            place = self.problem, self.model, fewer, self.relative
-            self.earlier.append(simulate(*place, settings=self.settings))
-            yield self.earlier[-1]
+            yield self._earlier_run(self.problem, fewer, self.relative)
 
-    def _start(self, tractions: np.ndarray, mean: float, friction: float) -> Start:
-        """Build a Start from tractions whose mean force over a period is about `mean`."""
-        if self.force is not None:
-            if mean > 0.0 and 0.0 <= self.force < MOST_SCALED * mean:
-                tractions = tractions * (self.force / mean)
-            tractions = project(tractions, self.contact.bound)
-        body = self.body
-        place = (body.load - mean) / body.stiffness if body.stiffness else 0.0
-        return Start(tractions, np.array([place, 0.0]), friction=friction)
-
-    def values(self, periodic: PeriodicState) -> dict[str, float]:
-        moved = periodic.march.body[:, 0]
-        rate = float(moved[-1] - moved[0]) / self.interval
-        velocity = self.problem.velocity + rate / self.problem.unit_drift
-        return super().values(periodic) | {"velocity": velocity}
+    def _earlier_run(self, problem: Problem, resolution: Resolution, tolerance: float) -> Run:
+        run = simulate(problem, self.model, resolution, tolerance, settings=self.settings)
+        self.earlier.append(run)
+        return run

@@ -35,6 +35,7 @@ import numpy as np
 from microslip.contact.contact import (
     FORWARD,
     Contact,
+    March,
     StepFailure,
     forces,
     full_slip,
@@ -107,11 +108,8 @@ class StaticLimit(NamedTuple):
         Tractions of the oscillation alone at the start of a period.
     force : float
         Mean forward force, divided by mu F_z.
-    solver_residual : float
-        Residual of the step solver summed over the stages of the last march, as a force divided by
-        mu F_z.
-    solves : int
-        Number of stages in this march.
+    march : March
+        Last march.
     periodic : search.PeriodicState or None
         The periodic state of the oscillation alone; None for a motion on a line.
     """
@@ -119,8 +117,7 @@ class StaticLimit(NamedTuple):
     shift: np.ndarray
     oscillating: np.ndarray
     force: float
-    solver_residual: float
-    solves: int
+    march: March
     periodic: PeriodicState | None = None
 
 
@@ -150,7 +147,7 @@ def limit_on_a_line(contact: Contact, oscillation: Callable, step_tolerance: flo
     march = contact.march(_quarter(oscillation), start, step_tolerance)
     shift = lens_corner(-march.state, contact.bound)
     force = float(forces(contact, shift)[FORWARD])
-    return StaticLimit(shift, -march.state, force, march.residual, march.solves)
+    return StaticLimit(shift, -march.state, force, march)
 
 
 def lens_corner(oscillating: np.ndarray, bound: np.ndarray) -> np.ndarray:
@@ -243,7 +240,7 @@ def limit_on_a_loop(
             tractions = np.concatenate([tractions, [contact.mirrored(q) for q in tractions]])
         shift = largest_shift(tractions, bounds)
         force += float(np.sum(contact.weight * shift[FORWARD]))
-    return StaticLimit(shift, start, force, march.residual, march.solves, periodic)
+    return StaticLimit(shift, start, force, march, periodic)
 
 
 def largest_shift(tractions: np.ndarray, bounds: np.ndarray) -> np.ndarray:
@@ -312,51 +309,39 @@ def limit_run(
     sticks : np.ndarray or None
         Mask of the points that stick; None if it is unknown.
     """
-    load, sticks = problem.mean_load, None
+    sticks = None
     if at_turning_points(problem):
-        limit, inner = None, STEP_SHARE * tolerance
+        displacement, inner = problem.displacement, STEP_SHARE * tolerance
+        if not contact.sticks:
+            energy = loop_energy(contact, displacement)
+            return Run({"friction": 0.0, "dissipation": energy}, distance=0.0, residual=0.0), None
+        limit = limit_on_a_line(contact, displacement, inner)
+        energy = loop_energy(contact, displacement, limit.oscillating)
+        sticks = np.hypot(*limit.shift) > LARGEST_SHIFT * np.max(contact.bound)
+        # the limit needs a march of a quarter period and no search, so there are no periods
+        distance, periods = 0.0, 0.0
+        effort = Effort.of(limit.march.solves, 0, limit.shift.size)
+        reason = unsolved(limit.march, inner)
+    else:
+        path = path_of(problem, contact, resolution.steps, settings.method.integrator)
+        accuracy = tolerance / FELT
+        inner = min(LOOP_STEP_SHARE, MARCH_SHARE / path.steps) * accuracy
+        limit = limit_on_a_loop(contact, problem, path, accuracy, inner)
+        periodic = limit.periodic
+        assert periodic is not None  # true for a loop
+        # a constant traction does no work over a closed loop
+        energy = dissipated_energy(contact, path, periodic.march)
         if contact.sticks:
-            limit = limit_on_a_line(contact, problem.displacement, inner)
-            sticks = np.hypot(*limit.shift) > LARGEST_SHIFT * np.max(contact.bound)
-        solves, residual = (limit.solves, limit.solver_residual) if limit else (0, 0.0)
-        oscillating = limit.oscillating if limit else None
-        run = Run(
-            {
-                "friction": (limit.force if limit else 0.0) / load,
-                "dissipation": loop_energy(contact, problem.displacement, oscillating),
-            },
-            distance=0.0,
-            residual=residual / load,
-            # the limit needs a march of a quarter period and no search, so there are no periods
-            effort=Effort.of(solves, 0, 2 * contact.forward_position.size),
-            reason=unsolved(residual, solves, inner),
-        )
-        return run, None if run.reason else sticks
-    path = path_of(problem, contact, resolution.steps, settings.method.integrator)
-    distance = tolerance / FELT
-    inner = min(LOOP_STEP_SHARE, MARCH_SHARE / path.steps) * distance
-    limit = limit_on_a_loop(contact, problem, path, distance, inner)
-    periodic = limit.periodic
-    assert periodic is not None  # true for a loop
-    if contact.sticks:
-        sticks = limit.shift[FORWARD] > LARGEST_SHIFT * bounds_at_phases(contact, path).max()
-    periods = periods_of(periodic.marches, problem)
-    reason = unsolved(limit.solver_residual, limit.solves, inner)
-    if periodic.distance > ENOUGH * distance:  # the distance is part of the error
-        reason = f"no periodic state within {periods:g} periods: {periodic.distance:.1e} left"
-    run = Run(
-        {
-            "friction": limit.force / load,
-            # a constant traction does no work over a closed loop
-            "dissipation": dissipated_energy(contact, path, periodic.march),
-        },
-        distance=FELT * periodic.distance / load,
-        residual=limit.solver_residual / load,
-        periods=periods,
-        effort=Effort.of(periodic.solves, periodic.iterations, periodic.start.size),
-        reason=reason,
-    )
-    return run, None if run.reason else sticks
+            sticks = limit.shift[FORWARD] > LARGEST_SHIFT * bounds_at_phases(contact, path).max()
+        distance, effort = FELT * periodic.distance, periodic.effort
+        periods, reason = periods_of(periodic.marches, problem), unsolved(limit.march, inner)
+        if periodic.distance > ENOUGH * accuracy:  # the distance is part of the error
+            reason = f"no periodic state within {periods:g} periods: {periodic.distance:.1e} left"
+    load = problem.mean_load
+    values = {"friction": limit.force / load, "dissipation": energy}
+    residual = limit.march.residual / load
+    run = Run(values, distance / load, residual, periods, effort, reason)
+    return run, None if reason else sticks
 
 
 SLOW_LINE = 0.01
