@@ -20,16 +20,15 @@ import numpy as np
 from microslip.answer import limits
 from microslip.answer.answer import Answer
 from microslip.answer.ladder import LOAD, ladder_for
-from microslip.answer.limits import within
 from microslip.answer.refine import READING_SAFETY, SMALLEST_SHARE, WEIGHTS, extrapolate
-from microslip.contact.contact import Contact, March, StepFailure, forward_slip, full_slip, project
-from microslip.contact.path import LONG_STROKE, Path, make_path
+from microslip.contact.contact import Contact, StepFailure, forward_slip, full_slip
+from microslip.contact.path import LONG_STROKE, make_path
 from microslip.foundation.errors import InputError
-from microslip.periodic.discretise import Resolution, bounds_at_phases, contact_of
+from microslip.periodic.discretise import Resolution, contact_of, tractions_at_phases
 from microslip.periodic.run import unsolved
 from microslip.scene.by_name import pressure_named
 from microslip.scene.hertz import HERTZ
-from microslip.scene.motion import Motion
+from microslip.scene.motion import NORMAL, PLANE, Motion
 from microslip.scene.pressure import Pressure
 from microslip.scene.problem import Problem
 from microslip.scene.samples import SampledPath
@@ -54,45 +53,15 @@ MOST_VALUES = 2e7
 PATH_STEPS = LOAD.steps / 2.0
 """Number of time steps for a path of length u_lim, divided by the level.  For a stroke of u_lim,
 half a period is 2 u_lim long and has as many steps as in LOAD, the ladder for oscillating loads."""
+FORCES = ("force_forward", "force_lateral", "torque")
+"""Names of the forces in a History, a Response and a Period."""
+COLUMNS = (
+    *(*FORCES, "force_error", "torque_error"),
+    *("dissipated_energy", "dissipated_energy_error", "stick_fraction"),
+)
+"""Names of the columns of a Response."""
 ENERGY, RESIDUAL, STICK = 3, 4, 5
 """Columns of a response march after the three forces."""
-
-
-def along(
-    contact: Contact,
-    path: Path,
-    state: np.ndarray,
-    tolerance: float,
-    rows: np.ndarray | slice = slice(0),
-) -> tuple[March, np.ndarray, np.ndarray]:
-    """March a contact along a path, and compute its tractions at chosen phases.
-
-    Parameters
-    ----------
-    contact : contact.Contact
-        The contact.  If phases are chosen, its marches must have `fields`.
-    path : path.Path
-        The path.
-    state : np.ndarray
-        Tractions at the first phase.
-    tolerance : float
-        Tolerance of a step, as a force divided by mu F_z.
-    rows : np.ndarray or slice
-        Indices of the chosen phases; by default, no phase.
-
-    Returns
-    -------
-    tuple
-        The March, the tractions at the chosen phases, shape (rows, 2, ...), and the friction bounds
-        at these phases, shape (rows, ...), or (1, ...) if they are constant.
-    """
-    march, tractions = contact.march(path, state, tolerance), state[None][:0]
-    bounds = bounds_at_phases(contact, path)
-    bounds = bounds if len(bounds) == 1 else bounds[rows]
-    if march.fields is not None:
-        fields = np.moveaxis(march.fields[:: path.stages.shape[1]][rows], 1, 0)
-        tractions = np.moveaxis(project(fields, bounds), 1, 0)
-    return march, tractions, bounds
 
 
 def tractions_at_start(contact: Contact, start: str) -> np.ndarray:
@@ -137,8 +106,7 @@ class History(Answer):
         """Number of steps, range of the phase, and forces at the end."""
         first, last = self.phase[0], self.phase[-1]
         lines = [f"{len(self.phase) - 1} steps from phase {first:.6g} to {last:.6g}; at the end:"]
-        names = ("force_forward", "force_lateral", "torque")
-        return "\n".join(lines + [f"{name} = {self.values[name][-1]:.6g}" for name in names])
+        return "\n".join(lines + [f"{name} = {self.values[name][-1]:.6g}" for name in FORCES])
 
 
 def history(
@@ -204,7 +172,7 @@ def history(
     end, count = (2 * np.pi * periods, steps * periods) if periodic else (travel / velocity, steps)
     phases = np.linspace(0.0, end, count + 1)
     path = make_path(problem.displacement, phases, depth=problem.depth)
-    march, _, _ = along(contact, path, tractions_at_start(contact, start), STEP_TOLERANCE)
+    march = contact.march(path, tractions_at_start(contact, start), STEP_TOLERANCE)
     failure = unsolved(march, STEP_TOLERANCE)
     if failure:
         raise StepFailure(f"velocity = {velocity!r}: {failure}")
@@ -215,8 +183,7 @@ def history(
 def named_forces(problem: Problem, forces: np.ndarray) -> dict[str, np.ndarray]:
     """Forces by name, with the torque divided by its full-slip value."""
     forward, lateral, torque = forces.T
-    torque = torque / problem.pressure.torque
-    return {"force_forward": forward, "force_lateral": lateral, "torque": torque}
+    return dict(zip(FORCES, (forward, lateral, torque / problem.pressure.torque), strict=True))
 
 
 # Responses
@@ -259,13 +226,9 @@ class Response(Answer):
 
         The column `force_error` is the larger error of the two force components.
         """
-        errors = {"force_error": self.force_error[:, :2].max(axis=1)}
-        errors |= {"torque_error": self.force_error[:, 2]}
-        forces = ("force_forward", "force_lateral", "torque")
-        rest = ("dissipated_energy", "dissipated_energy_error", "stick_fraction")
-        columns = {name: self.values[name] for name in forces} | errors
-        columns |= {name: self.values[name] for name in rest}
-        return {name: ("1", values) for name, values in columns.items()}
+        errors = self.force_error
+        values = {"force_error": errors[:, :2].max(axis=1), "torque_error": errors[:, 2]}
+        return {name: ("1", {**self.values, **values}[name]) for name in COLUMNS}
 
     @property
     def attributes(self) -> dict[str, object]:
@@ -334,15 +297,8 @@ def response(
     InputError
         If an argument is invalid.  The message names the argument.
     """
-    path = SampledPath.of_columns(
-        {
-            "forward": forward,
-            "lateral": lateral,
-            "angle": angle,
-            "load": load,
-            "indentation": indentation,
-        }
-    )
+    columns = forward, lateral, angle, load, indentation
+    path = SampledPath.of_columns(dict(zip((*PLANE, *NORMAL), columns, strict=True)))
     first, start = 0, STARTS[0] if state is None else state
     if isinstance(state, Response):
         path, first, start = _joined(state, path)
@@ -379,7 +335,7 @@ def response(
             reason = f"the file's own resolution leaves {apart[:, :ENERGY].max():.1e} open"
     finest = ladder.resolution(level)
     values = {
-        **dict(zip(("force_forward", "force_lateral", "torque"), limit.value.T, strict=False)),
+        **dict(zip(FORCES, limit.value.T, strict=False)),
         "force_error": error[:, :ENERGY],
         "dissipated_energy": limit.value[:, ENERGY],
         "dissipated_energy_error": error[:, ENERGY],
@@ -444,7 +400,8 @@ def _marched(
         parts = [first + k + np.arange(1, n + 1) / n for k, n in enumerate(between)]
         phases = np.concatenate([[first], *parts])
         piece = make_path(problem.displacement, phases, depth=problem.depth)
-        march, tractions, bounds = along(contact, piece, state, step_tolerance, ends)
+        march = contact.march(piece, state, step_tolerance)
+        tractions, bounds = tractions_at_phases(contact, piece, march, ends)
         mean_forces = 0.5 * (march.forces[1:] + march.forces[:-1])
         works = np.sum(mean_forces * np.diff(piece.positions, axis=0), axis=1)
         works = work + np.concatenate([[0.0], np.cumsum(works)])[ends]
@@ -475,7 +432,6 @@ def _pieces(counts: np.ndarray, size: int) -> Iterator[tuple[int, int]]:
 def _stick_fraction(contact: Contact, tractions: np.ndarray, bounds: np.ndarray) -> np.ndarray:
     """Fraction of the contact area whose tractions are below the friction bound."""
     size = np.hypot(tractions[:, 0], tractions[:, 1])
-    bounds = np.broadcast_to(bounds, size.shape)
     area = np.where(bounds > 0.0, contact.weight, 0.0)
     sticking = np.where(size < ON_BOUND * bounds, area, 0.0)
     axes = tuple(range(1, size.ndim))
@@ -528,7 +484,7 @@ def iwan(
         If an argument is invalid.
     """
     record = pressure if isinstance(pressure, Pressure) else pressure_named(pressure)
-    poisson = within("poisson", poisson)
+    poisson = limits.within("poisson", poisson)
     if not (record.is_indenter or (record.hertzian and not poisson)):
         allowed = (
             "allowed is an axisymmetric indenter (hertz, power, punch), or an ellipse at nu = 0"
@@ -538,10 +494,10 @@ def iwan(
     if elements is not None and tolerance is not None:
         raise InputError("elements", elements, "allowed only without a tolerance")
     if elements is not None:
-        model = with_elements(shape, within("elements", elements))
+        model = with_elements(shape, limits.within("elements", elements))
     else:
         accepted = TOLERANCE if tolerance is None else tolerance
-        model = with_tolerance(shape, within("tolerance", accepted, high=1.0))
+        model = with_tolerance(shape, limits.within("tolerance", accepted, high=1.0))
     if not poisson:
         return model
     return dataclasses.replace(model, poisson_error=_poisson_error(shape, poisson))

@@ -72,8 +72,10 @@ AT_REST, UNBOUNDED = Estimate(0.0, {"model": 0.0}), Estimate(math.nan, {"model":
 
 def under_force(request: Request) -> Result:
     """Compute the Result of a contact under a prescribed force."""
-    problem, force, periodic = request.problem, _force(request), request.problem.motion.periodic
-    if periodic and not about(problem)["mass"]:
+    problem, periodic = request.problem, request.problem.motion.periodic
+    force = problem.force
+    assert force is not None
+    if periodic and not (problem.drive and problem.drive.mass):
         problem = limits.without_forward_motion(problem)
         request = replace(request, problem=problem)
     if force < 0.0 and not problem.propels:  # solved as the mirror image of a forward force
@@ -113,12 +115,6 @@ def under_force(request: Request) -> Result:
     return answer
 
 
-def _force(request: Request) -> float:
-    drive = request.problem.drive
-    assert drive is not None and drive.force is not None
-    return drive.force
-
-
 def _under(force: float, request: Request) -> Request:
     """Copy a request and replace its force."""
     drive = request.problem.drive
@@ -134,7 +130,7 @@ def _without_runs(
     **values: Any,
 ) -> Result:
     """Build a Result without a run, from a velocity and a dissipated energy."""
-    own: dict = {"mean_velocity": velocity, "friction": Estimate(_force(request))}
+    own: dict = {"mean_velocity": velocity, "friction": Estimate(request.problem.force or 0.0)}
     if energy is not None and request.problem.motion.periodic:
         own["dissipation"] = energy
     return request.result(own, reason, periodic=not reason).changed(**values)
@@ -152,7 +148,7 @@ def _steady_velocity(problem: Problem, force: float) -> float:
 
     def imbalance(velocity: float) -> float:
         exact = closed_form(replace(problem, velocity=velocity, drive=None), 0.0)
-        assert exact is not None  # checked by limits.contradictions
+        assert exact is not None  # checked by limits.refuse
         return exact["friction"].value - force
 
     high = 1.0
@@ -196,7 +192,7 @@ def _moving(request: Request, moving_force: float) -> Result:
     The runs use `moving_force`, under which the contact certainly moves.  If this force is larger
     than the requested force, the velocity lies between 0 and the velocity in the runs.
     """
-    force, original = _force(request), request
+    force, original = request.problem.force or 0.0, request
     request = _under(moving_force, request)
     try:
         near, slope = _velocity_near(request)
@@ -233,7 +229,7 @@ def _velocity_near(request: Request) -> tuple[float, float]:
     from microslip.periodic.run import Settings
     from microslip.periodic.simulate import simulate
 
-    force, moving = _force(request), replace(request.problem, velocity=FIRST_VELOCITY)
+    force, moving = request.problem.force or 0.0, replace(request.problem, velocity=FIRST_VELOCITY)
     ladder = ladder_of(replace(request, problem=moving), COARSE_TOLERANCE)
     coarse = ladder.resolution(ladder.levels(COARSE_TOLERANCE)[0])
     settings, unit = (
@@ -376,10 +372,27 @@ def shakedown(
         away += "below"
         if force > limit.value + limit.error:
             away = f"drifts on for ever: the force is above the threshold, {limit.value:.4g}"
-    own: dict[str, Any] = {name: about(problem)[name] for name in ("motion", "pressure")}
-    own |= {"amplitude": problem.amplitude, "poisson": poisson, "force": force}
+    names = ("motion", "pressure", "amplitude", "poisson", "force")
+    own: dict[str, Any] = {name: about(problem)[name] for name in names}
     own |= {"threshold": limit.value, "threshold_error": limit.error}
-    return _to_rest(request, own, away)
+    endless = {"displacement": Estimate(math.inf, {"model": math.inf})}
+    answer = Answer(problem, {"imposed": False}, endless, away)
+    if not away:
+        planned = replace(request, problem=replace(problem, velocity=PLANNED_VELOCITY))
+        ladder = ladder_of(planned, request.accuracy)
+        # the contact must come to rest in the coarsest run too
+        ladder, share = replace(ladder, start=2 * ladder.start), REST_SHARE * RUN_SHARE
+        answer = runs(request, request.accuracy, "displacement", ladder=ladder, share=share)
+    still = {"friction": Estimate(force)}
+    result = result_of_runs(request, answer, request.tolerance, "displacement", **still)
+    displacement = answer.displacement
+    own |= {name: getattr(result, name) for name in SHARED} | dict.fromkeys(ERRORS.values(), 0.0)
+    if not away:
+        own |= {ERRORS[source]: error for source, error in displacement.by_source.items()}
+    finest = answer.finest.values if "finest" in answer.values else {}
+    own |= {name: finest.get(name, math.nan) for name in ("pushed", "most_after")}
+    own |= {"displacement": displacement.value, "displacement_error": displacement.error}
+    return Shakedown(problem, own | {"work": result.effort.work}, reason=result.reason)
 
 
 def _threshold(request: Request) -> tuple[Estimate, str]:
@@ -394,28 +407,3 @@ def _threshold(request: Request) -> tuple[Estimate, str]:
     still = replace(problem, drive=None)
     changes: dict[str, Any] = {"problem": still, "chosen": True, "tolerance": tolerance}
     return answer_of(replace(request, **changes)).friction, ""
-
-
-def _to_rest(request: Request, own: dict[str, Any], away: str) -> Shakedown:
-    """Run the contact to rest, unless it moves away.  `own`: values of the Shakedown."""
-    endless = {"displacement": Estimate(math.inf, {"model": math.inf})}
-    answer = Answer(request.problem, {"imposed": False}, endless, away)
-    if not away:
-        planned = replace(request.problem, velocity=PLANNED_VELOCITY)
-        ladder = ladder_of(replace(request, problem=planned), request.accuracy)
-        # the contact must come to rest in the coarsest run too
-        ladder = replace(ladder, start=2 * ladder.start)
-        share = REST_SHARE * RUN_SHARE
-        settings: dict[str, Any] = {"ladder": ladder, "share": share}
-        answer = runs(request, request.accuracy, "displacement", **settings)
-    still = {"friction": Estimate(own["force"])}
-    result = result_of_runs(request, answer, request.tolerance, "displacement", **still)
-    displacement, run = answer.estimates["displacement"], answer.values.get("finest")
-    errors = {name: displacement.by_source.get(one, 0.0) for one, name in ERRORS.items()}
-    if away:
-        errors = dict.fromkeys(errors, 0.0)
-    own |= {name: getattr(result, name) for name in SHARED} | errors
-    finest = {} if run is None else run.values
-    own |= {name: finest.get(name, math.nan) for name in ("pushed", "most_after")}
-    own |= {"displacement": displacement.value, "displacement_error": displacement.error}
-    return Shakedown(request.problem, own | {"work": result.effort.work}, reason=result.reason)

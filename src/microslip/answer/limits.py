@@ -5,7 +5,7 @@ Every request is checked here.  An error message names the argument, its value a
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from dataclasses import replace
 from typing import Any, NamedTuple
 
@@ -223,13 +223,13 @@ def least_load(problem: Problem) -> float:
 
 def runs_away(problem: Problem) -> str:
     """Reason why a contact under a force has no mean velocity; empty if it has a mean velocity."""
-    drive = problem.drive
-    if drive is None or drive.force is None:
+    drive, force = problem.drive, problem.force
+    if drive is None or force is None:
         return ""
-    if abs(drive.force) >= 1.0:
-        return f"runs away: the force {drive.force:g} is at least full friction"
+    if abs(force) >= 1.0:
+        return f"runs away: the force {force:g} is at least full friction"
     least = least_load(problem)
-    if drive.mass == 0.0 and drive.force >= least:
+    if drive.mass == 0.0 and force >= least:
         return (
             f"runs away: without mass it slides off at the least normal load, {least:.3g} of the "
             "mean, which limits the friction"
@@ -310,13 +310,7 @@ def method_refusal(problem: Problem, model: str, method: str) -> str:
 
 
 def refuse(problem: Problem, model: str, method: str = SHIPPED) -> None:
-    """Raise InputError for the first of the `contradictions`."""
-    for argument, value, allowed in contradictions(problem, model, method):
-        raise InputError(argument, value, allowed)
-
-
-def contradictions(problem: Problem, model: str, method: str) -> Iterator[tuple[str, object, str]]:
-    """Arguments that contradict each other: name, value, and what is allowed.
+    """Raise InputError if arguments contradict each other.
 
     Parameters
     ----------
@@ -330,33 +324,37 @@ def contradictions(problem: Problem, model: str, method: str) -> Iterator[tuple[
     motion, drive, periodic = problem.motion, problem.drive, problem.motion.periodic
     shipped, lack = method == SHIPPED, missing(method)
     if lack:
-        yield "method", method, lack
+        raise InputError("method", method, lack)
     refusal = method_refusal(problem, model, method)
     if not (refusal or shipped) and method_named(method).run is not None:
         refusal = "it is one run, which cannot be refined"
     if refusal:
-        yield "method", method, f"does not apply to {motion.name}, model {model}: {refusal}"
+        raise InputError(
+            "method", method, f"does not apply to {motion.name}, model {model}: {refusal}"
+        )
     if drive is None:
         return
     force, pulls = drive.force, "stiffness" if drive.force is None else "force"
     if force is not None and force < 0.0 and not problem.propels:
-        yield "force", force, f"allowed is a number of at least 0: {motion.name} propels nothing"
+        raise InputError(
+            "force", force, f"allowed is a number of at least 0: {motion.name} propels nothing"
+        )
     if not MODELS[model].drivable:
-        yield "model", model, f"supports no {pulls}, only a prescribed velocity"
+        raise InputError("model", model, f"supports no {pulls}, only a prescribed velocity")
     if not shipped:
-        yield "method", method, f"allowed is {SHIPPED} with a {pulls}"
+        raise InputError("method", method, f"allowed is {SHIPPED} with a {pulls}")
     if force is None:
         if periodic and problem.velocity == 0.0 and not is_even(problem):
             allowed = f"allowed is a number above 0 for {motion.name} with a spring"
-            yield "velocity", 0.0, allowed
+            raise InputError("velocity", 0.0, allowed)
         return
     if not periodic and (motion.name != "continuous-bore" or not problem.pressure.is_round):
         place = f"{motion.name} under {problem.pressure.name}"
-        yield "force", force, f"allowed is none for {place}, which has no closed form"
+        raise InputError("force", force, f"allowed is none for {place}, which has no closed form")
     closest = CLOSEST_FORCE if periodic else CLOSEST_STEADY_FORCE
     if closest <= abs(force) < 1.0 and not runs_away(problem):
         moving = problem if drive.mass or not periodic else without_forward_motion(problem)
         if not periodic or oscillates(moving):
             allowed = f"allowed is a force below {closest:.9g} (of mu times the mean normal load), "
             allowed += "or from 1 on, where the contact runs away; in between the velocity is too "
-            yield "force", force, allowed + "large to be computed"
+            raise InputError("force", force, allowed + "large to be computed")

@@ -5,12 +5,12 @@ from __future__ import annotations
 import numpy as np
 
 from microslip.answer import limits
-from microslip.answer.along import ANGLES, CELLS, ON_BOUND, STEP_TOLERANCE, along, named_forces
+from microslip.answer.along import ANGLES, CELLS, ON_BOUND, STEP_TOLERANCE, named_forces
 from microslip.answer.answer import Answer
 from microslip.contact.contact import StepFailure, rigid_displacement
 from microslip.contact.modes import PolarContact
 from microslip.foundation.errors import InputError, SolverError
-from microslip.periodic.discretise import Resolution, contact_of, path_of
+from microslip.periodic.discretise import Resolution, contact_of, path_of, tractions_at_phases
 from microslip.periodic.run import unsolved
 from microslip.periodic.simulate import simulate, steady_state
 from microslip.scene.hertz import HERTZ
@@ -142,9 +142,10 @@ def period(
     contact = contact_of(problem, model, resolution)
     assert isinstance(contact, PolarContact)
     path = path_of(problem, contact, steps // 2)
-    march, tractions, bounds = along(contact, path, run.state, STEP_TOLERANCE, slice(None))
+    march = contact.march(path, run.state, STEP_TOLERANCE)
+    tractions, bounds = tractions_at_phases(contact, path, march)
     failure = unsolved(march, STEP_TOLERANCE)
-    phase, forces, bounds = path.phase, march.forces, np.broadcast_to(bounds, tractions[:, 0].shape)
+    phase, forces = path.phase, march.forces
     # slip in every step: rigid minus elastic displacement
     elastic = np.array([contact.displacement(change) for change in np.diff(tractions, axis=0)])
     moves = np.diff(path.positions, axis=0).T[..., None, None]

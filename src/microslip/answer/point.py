@@ -110,7 +110,7 @@ def solve(
         most_work=most_work,
         time_limit=time_limit,
     )
-    if problem.drive is not None and problem.drive.force is not None:
+    if problem.force is not None:
         from microslip.answer.force import under_force  # imported here because it loads slowly
 
         answer = under_force(request)

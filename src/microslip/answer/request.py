@@ -208,64 +208,52 @@ def runs(
     Returns
     -------
     Answer
-        The answer of refine.refine.
+        The answer of refine.refine.  It is not converged if the budget of the request is exceeded.
     """
     # imported here because they load compiled code
     from microslip.answer.ladder import with_mass
     from microslip.answer.refine import refine
+    from microslip.periodic.run import Settings
+    from microslip.periodic.simulate import simulate
+    from microslip.periodic.static_limit import edge_focus
 
     problem, drive, unresolved = request.problem, request.problem.drive, ""
     ladder = ladder or ladder_of(request, tolerance)
     if drive is not None and drive.mass > 0.0:
         ladder, unresolved = with_mass(ladder, problem, request.model, tolerance)
-    unit, work = problem.largest_energy, 0.0
+    full, work = 2.0 * math.pi * problem.mean_load, 0.0
+    unit = full * (problem.mean_speed + abs(problem.drift))  # bounds the energy of a period
     if name == "velocity":  # its error changes the drift and the forces
-        assert drive is not None and drive.force is not None
-        work = 2.0 * math.pi * problem.mean_load * problem.unit_drift * abs(drive.force)
+        assert problem.force is not None
+        work = full * problem.unit_drift * abs(problem.force)
         unit = slope * unit + work
-    run, every = _run_of(request, share * tolerance, slope), (problem, *problem.readings)
-    answer = refine(run, ladder, every, tolerance, name, energy_unit=unit, drive_work=work)
-    return answer.changed(reason=answer.reason or unresolved)
-
-
-def _run_of(
-    request: Request, tolerance: float, slope: float
-) -> Callable[[Problem, Resolution, Run | None], Run]:
-    """Function that runs a problem at one resolution, see refine.refine.
-
-    The runs raise run.Spent if the budget of the request is exceeded.
-    """
-    from microslip.periodic.run import Settings
-    from microslip.periodic.simulate import simulate
-    from microslip.periodic.static_limit import edge_focus
-
-    own, free = request.problem, request.problem.drive is None
-    repeats = free and own.motion.periodic and own.velocity > 0.0
+    repeats = drive is None and problem.motion.periodic and problem.velocity > 0.0
     repeats = repeats and request.method == SHIPPED
 
     @cache  # the search for the slip front is charged once
     def settings() -> Settings:
+        place = problem, request.model, request.budget, request.progress
+        focus = edge_focus(*place) if drive is None else None
         method = method_named(request.method)
-        place = own, request.model, request.budget, request.progress
-        focus = edge_focus(*place) if free else None
         return Settings(method, budget=request.budget, focus=focus, slope=slope)
 
     def run(problem: Problem, resolution: Resolution, guess: Run | None) -> Run:
-        usual = settings()
+        usual, place = settings(), (request.model, resolution, share * tolerance)
         if request.progress is not None:
             request.progress(resolution)
-        first = simulate(problem, request.model, resolution, tolerance, guess, usual)
+        first = simulate(problem, *place, guess, usual)
         if first.converged or not repeats:
             return first
         tighter = replace(usual, tighter=True)
 
         def run_at(velocity: float, guess: Run | None) -> Run:
-            there = replace(problem, velocity=velocity)
-            return simulate(there, request.model, resolution, tolerance, guess, tighter)
+            return simulate(replace(problem, velocity=velocity), *place, guess, tighter)
 
         return second_attempt(first, run_at, problem.velocity, FASTEST_START / problem.unit_drift)
 
-    return run
+    every = problem, *problem.readings
+    answer = refine(run, ladder, every, tolerance, name, energy_unit=unit, drive_work=work)
+    return answer.changed(reason=answer.reason or unresolved)
 
 
 def second_attempt(

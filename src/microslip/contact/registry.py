@@ -26,7 +26,8 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from functools import partial
+from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from microslip.contact.contact import Contact
@@ -60,126 +61,78 @@ class Model:
     drivable: bool = False
 
 
-def _never(problem: Problem) -> bool:
-    return False
-
-
-LOAD_CHANGES = "it allows a constant normal load only"
-
-
-def _refuse_pulsation(problem: Problem) -> str:
-    return LOAD_CHANGES if problem.motion.loads else ""
-
-
-def _refuse_other_loads(problem: Problem) -> str:
-    if not problem.motion.loads or problem.pressure.is_indenter:
-        return ""
-    return f"the load can change for axisymmetric indenters only, not for {problem.pressure.name}"
-
-
-def _any_of(*refusals: Callable[[Problem], str]) -> Callable[[Problem], str]:
-    """Combine checks into one that returns the first non-empty reason, or ""."""
-    return lambda problem: next(filter(None, (refuse(problem) for refuse in refusals)), "")
-
-
-def _refuse_rings(problem: Problem) -> str:
-    if not problem.pressure.is_round:
-        return f"rings cannot resolve the pressure {problem.pressure.name}"
-    if problem.motion.rotates:
-        return "rings alone cannot resolve a rotation"
-    return "rings alone cannot resolve nu > 0" if problem.poisson > 0.0 else ""
-
-
-def _refuse_rotation(problem: Problem) -> str:
-    return "it has no extension that could rotate" if problem.motion.rotates else ""
-
-
-def _refuse_springs(problem: Problem) -> str:
-    if not problem.pressure.is_indenter:
-        return f"it exists for axisymmetric indenters only, not for {problem.pressure.name}"
-    return _refuse_rotation(problem)
-
-
-def _refuse_angles(problem: Problem) -> str:
-    if problem.pressure.is_round:
-        return ""
-    return f"rings cannot resolve the pressure {problem.pressure.name}"
-
-
-def _refuse_rigid(problem: Problem) -> str:
-    if problem.motion.rotates and not problem.motion.half_disc:
+def _refusal(model: str, problem: Problem) -> str:
+    """Reason why a model of the package does not apply to a problem, or ""."""
+    motion, pressure = problem.motion, problem.pressure
+    rigid_turn = "it has no extension that could rotate" if motion.rotates else ""
+    if rigid_turn and model in ("slider", "dahl"):
+        return rigid_turn
+    if motion.loads and model in ("rigid", "slider", "dahl", "cartesian"):
+        return "it allows a constant normal load only"
+    if motion.loads and not pressure.is_indenter:
+        return f"the load can change for axisymmetric indenters only, not for {pressure.name}"
+    if model == "mdr" and not pressure.is_indenter:
+        return f"it exists for axisymmetric indenters only, not for {pressure.name}"
+    if model == "mdr":
+        return rigid_turn
+    if model == "rigid" and motion.rotates and not motion.half_disc:
         return "it needs a symmetry between the two halves of the contact"
-    return _refuse_angles(problem) if problem.motion.rotates else ""
+    on_rings = model in ("radial", "polar") or (model == "rigid" and motion.rotates)
+    if on_rings and not pressure.is_round:
+        return f"rings cannot resolve the pressure {pressure.name}"
+    if model == "radial" and motion.rotates:
+        return "rings alone cannot resolve a rotation"
+    return (
+        "rings alone cannot resolve nu > 0" if model == "radial" and problem.poisson > 0.0 else ""
+    )
 
 
-_NO_ROTATION = _any_of(_refuse_rotation, _refuse_pulsation)
+def _build(
+    model: str, problem: Problem, cells: int, angles: int, focus: Focus | float | None
+) -> Contact:
+    """Build the contact of a model of the package."""
+    motion, pressure, whole = problem.motion, problem.pressure, not problem.motion.half_disc
+    if model == "radial":
+        from microslip.contact.ring_contact import RadialContact
+
+        return RadialContact.resolved(cells, focus, pressure)
+    if model == "polar":
+        from microslip.contact.modes import PolarContact
+
+        place = (problem.poisson, focus, pressure)
+        return PolarContact.resolved(cells, angles, motion.rotates, *place, whole=whole)
+    if model == "cartesian":
+        from microslip.contact.squares import MIRRORED, TURN, CartesianContact
+
+        # symmetry of the tractions, if the pressure has the same one
+        symmetry = "" if whole else MIRRORED if motion.rotates else TURN
+        return CartesianContact(cells, problem.poisson, pressure, symmetry)
+    from microslip.contact import reduced
+
+    if model == "rigid":
+        return reduced.RigidContact(cells, angles, motion.rotates, pressure)
+    if model == "slider":
+        return reduced.slider_contact()
+    if model == "dahl":
+        return reduced.DahlContact(pressure.stiffness)
+    return reduced.mdr_contact(cells, focus, pressure)
 
 
-def _rigid(problem: Problem, cells: int, angles: int, focus: Focus | float | None) -> Contact:
-    from microslip.contact.reduced import RigidContact
-
-    return RigidContact(cells, angles, problem.motion.rotates, problem.pressure)
-
-
-def _slider(problem: Problem, cells: int, angles: int, focus: Focus | float | None) -> Contact:
-    from microslip.contact.reduced import slider_contact
-
-    return slider_contact()
-
-
-def _dahl(problem: Problem, cells: int, angles: int, focus: Focus | float | None) -> Contact:
-    from microslip.contact.reduced import DahlContact
-
-    return DahlContact(problem.pressure.stiffness)
-
-
-def _mdr(problem: Problem, cells: int, angles: int, focus: Focus | float | None) -> Contact:
-    from microslip.contact.reduced import mdr_contact
-
-    return mdr_contact(cells, focus, problem.pressure)
-
-
-def _radial(problem: Problem, cells: int, angles: int, focus: Focus | float | None) -> Contact:
-    from microslip.contact.ring_contact import RadialContact
-
-    return RadialContact.resolved(cells, focus, problem.pressure)
-
-
-def _polar(problem: Problem, cells: int, angles: int, focus: Focus | float | None) -> Contact:
-    from microslip.contact.modes import PolarContact
-
-    motion, whole = problem.motion, not problem.motion.half_disc
-    place = (problem.poisson, focus, problem.pressure)
-    return PolarContact.resolved(cells, angles, motion.rotates, *place, whole=whole)
-
-
-def _cartesian(problem: Problem, cells: int, angles: int, focus: Focus | float | None) -> Contact:
-    from microslip.contact.convolution import MIRROR, TURN
-    from microslip.contact.squares import CartesianContact
-
-    symmetry = ""  # symmetry of the tractions, if the pressure has the same one
-    if problem.motion.half_disc:
-        symmetry = MIRROR if problem.motion.rotates else TURN
-    return CartesianContact(cells, problem.poisson, problem.pressure, symmetry)
-
-
+_APPROXIMATE: dict[str, Any] = {"exact": lambda problem: False}
+_PROPERTIES: dict[str, dict[str, Any]] = {
+    "rigid": {
+        "exact": lambda problem: not problem.motion.periodic,
+        "axes": lambda problem: ("cells", "angles") if problem.motion.rotates else (),
+    },
+    "slider": {**_APPROXIMATE, "axes": lambda problem: (), "drivable": True},
+    "dahl": {**_APPROXIMATE, "axes": lambda problem: ()},
+    "mdr": {**_APPROXIMATE, "drivable": True},
+    "radial": {"drivable": True},
+    "polar": {"axes": lambda problem: ("cells", "angles"), "drivable": True},
+    "cartesian": {"drivable": True},
+}
 MODELS = {
-    "rigid": Model(
-        _rigid,
-        _any_of(_refuse_pulsation, _refuse_rigid),
-        exact=lambda problem: not problem.motion.periodic,
-        axes=lambda problem: ("cells", "angles") if problem.motion.rotates else (),
-    ),
-    "slider": Model(_slider, _NO_ROTATION, exact=_never, axes=lambda problem: (), drivable=True),
-    "dahl": Model(_dahl, _NO_ROTATION, exact=_never, axes=lambda problem: ()),
-    "mdr": Model(_mdr, _any_of(_refuse_other_loads, _refuse_springs), exact=_never, drivable=True),
-    "radial": Model(_radial, _any_of(_refuse_other_loads, _refuse_rings), drivable=True),
-    "polar": Model(
-        _polar,
-        _any_of(_refuse_other_loads, _refuse_angles),
-        axes=lambda problem: ("cells", "angles"),
-        drivable=True,
-    ),
-    "cartesian": Model(_cartesian, _refuse_pulsation, drivable=True),
+    name: Model(partial(_build, name), partial(_refusal, name), **own)
+    for name, own in _PROPERTIES.items()
 }
 """Models by name."""

@@ -178,3 +178,37 @@ def text_of(record: Any) -> str:
     name, usual = name_of(type(record)), {field.name: field.default for field in fields(record)}
     words = (f"{k}={getattr(record, k):.12g}" for k, v in usual.items() if getattr(record, k) != v)
     return name + "".join(f"{',' if k or ':' in name else ':'}{w}" for k, w in enumerate(words))
+
+
+class Named:
+    """Base class of dataclasses of numbers, such as motions and pressures."""
+
+    @property
+    def name(self) -> str:
+        """Name of the class, followed by the numbers that differ from their defaults."""
+        return text_of(self)
+
+    def __str__(self) -> str:
+        return self.name
+
+
+class NamedByText(Named):
+    """Base class of objects with arrays.  Objects whose texts are equal are equal.
+
+    Attributes
+    ----------
+    text : str
+        Name of the object, with a digest of the arrays.
+    """
+
+    text: str
+
+    @property
+    def name(self) -> str:
+        return self.text
+
+    def __eq__(self, other: object) -> bool:
+        return type(other) is type(self) and vars(other)["text"] == self.text
+
+    def __hash__(self) -> int:
+        return hash(self.text)

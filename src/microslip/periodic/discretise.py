@@ -96,7 +96,8 @@ def contact_of(
     contact = MODELS[model].build(problem, resolution.cells, resolution.angles, place)
     if problem.depth is None:
         return contact
-    return contact.at_indentation(problem.deepest, float(problem.depth(np.array(problem.start))))
+    deepest = problem.motion.deepest(problem.size, problem.pressure)
+    return contact.at_indentation(deepest, float(problem.depth(np.array(problem.turns[0]))))
 
 
 def path_of(problem: Problem, contact: Any, steps: int, integrator: Integrator = SDIRK2) -> Path:
@@ -131,16 +132,24 @@ def _path(problem: Problem, steps: int, grading: float, integrator: Integrator) 
     return make_path(problem.displacement, phases, integrator, problem.depth)
 
 
-def tractions_at_phases(contact: Contact, path: Path, march: March) -> np.ndarray:
-    """Tractions of a march at every phase of its path, shape (steps + 1, 2, ...)."""
+def tractions_at_phases(
+    contact: Contact, path: Path, march: March, rows: np.ndarray | slice = slice(None)
+) -> tuple[np.ndarray, np.ndarray]:
+    """Tractions of a march and friction bounds at phases of its path.
+
+    The shapes are (phases, 2, ...) and (phases, ...).  `rows`: indices of the phases, by default of
+    all phases.  If the last stage of a step is before its end, all phases are needed.
+    """
     assert march.fields is not None  # true for contacts whose points can stick
-    stages = np.moveaxis(march.fields[:: path.stages.shape[1]], 1, 0)
-    tractions = np.moveaxis(project(stages, bounds_at_phases(contact, path)), 1, 0)
+    bounds = bounds_at_phases(contact, path)
+    bounds = bounds if len(bounds) == 1 else bounds[rows]
+    stages = np.moveaxis(march.fields[:: path.stages.shape[1]][rows], 1, 0)
+    tractions = np.moveaxis(project(stages, bounds), 1, 0)
     if path.end < 1.0:  # extrapolate from the stage of each step
         tractions[0] = march.fields[0]
         for before, at in zip(tractions, tractions[1:], strict=False):
             at += (1.0 / path.end - 1.0) * (at - before)
-    return tractions
+    return tractions, np.broadcast_to(bounds, tractions[:, 0].shape)
 
 
 def bounds_at_phases(contact: Contact, path: Path) -> np.ndarray:

@@ -71,8 +71,8 @@ def run_to_rest(
     """
     # or a contact wrapped to count its marches
     contact = cast(RingContact, settings.contact(problem, model, resolution))
-    assert problem.drive is not None and problem.drive.force is not None
-    body = Body(0.0, 0.0, 0.0, problem.drive.force * problem.mean_load)
+    assert problem.force is not None
+    body = Body(0.0, 0.0, 0.0, problem.force * problem.mean_load)
     walk = _Walk(contact, body, STEP_SHARE * tolerance)
     cycle = PeriodMap(
         contact, path_of(problem, contact, resolution.steps), mirror=problem.half_period_mirror

@@ -169,7 +169,7 @@ def simulate(
             return steady_state(contact, problem, tolerance * problem.mean_load)
         if problem.velocity == 0.0 and drive is None:
             return static_run(problem, model, resolution, tolerance, settings)
-        if problem.velocity == 0.0 and drive is not None and drive.force is not None:
+        if problem.velocity == 0.0 and problem.force is not None:
             return run_to_rest(problem, model, resolution, tolerance, settings)
         return _Search(problem, model, resolution, tolerance, settings).run(guess)
     except StepFailure as failure:
@@ -222,10 +222,11 @@ class _Search:
         self.interval = self.path.phase[-1] - self.path.phase[0]
         self.rate = self.contact.stiffness * problem.drift
         self.unit, self.most_marches = problem.mean_load, MOST_MARCHES
-        self.force, self.body = None, None
+        self.force, self.body = problem.force, None
+        if self.force is not None:
+            self.force *= problem.mean_load
         if drive is not None:
             self.most_marches = DRIVEN_MARCHES
-            self.force = None if drive.force is None else drive.force * problem.mean_load
             constant = (self.force or 0.0) - drive.damping * problem.drift
             self.body = Body(drive.stiffness, drive.damping, drive.mass, constant)
         if self.force is not None:

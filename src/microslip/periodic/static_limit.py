@@ -233,8 +233,7 @@ def limit_on_a_loop(
     march, shift = periodic.march, np.zeros(period_map.shape)
     force = float(mean_forces(contact, problem, path, march.forces)[FORWARD])
     if contact.sticks:
-        tractions = tractions_at_phases(contact, path, march)
-        bounds = np.broadcast_to(bounds_at_phases(contact, path), tractions[:, 0].shape)
+        tractions, bounds = tractions_at_phases(contact, path, march)
         if mirror:
             bounds = np.concatenate([bounds, bounds])
             tractions = np.concatenate([tractions, [contact.mirrored(q) for q in tractions]])

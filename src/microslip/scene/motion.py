@@ -71,7 +71,7 @@ class Wave(NamedTuple):
 
 
 @dataclass(frozen=True)
-class Motion:
+class Motion(spec.Named):
     """A prescribed motion.
 
     A subclass declares its waves.  All symmetries follow from them.  The fields of the class are
@@ -123,14 +123,6 @@ class Motion:
         spec.refuse_counts(self.name, "motion", cycles, MOST_CYCLES)
         if shares and not any(shares.values()):
             raise InputError("motion", self.name, f"allowed is {' or '.join(shares)} above 0")
-
-    @property
-    def name(self) -> str:
-        """Name of the motion, followed by the numbers that differ from their defaults."""
-        return spec.text_of(self)
-
-    def __str__(self) -> str:
-        return self.name
 
     @property
     def readings(self) -> tuple[Motion, ...]:

@@ -46,7 +46,7 @@ NO_UNITS: Units = None, None
 
 
 @dataclass(frozen=True)
-class Pressure:
+class Pressure(spec.Named):
     """A distribution of the load over the contact, in working units (see the module pressure).
 
     Each pressure is a subclass.  Its fields are the numbers that may
@@ -163,14 +163,6 @@ class Pressure:
         return ()
 
     @property
-    def name(self) -> str:
-        """Name of the class, followed by the numbers that differ from their defaults."""
-        return spec.text_of(self)
-
-    def __str__(self) -> str:
-        return self.name
-
-    @property
     def is_round(self) -> bool:
         """Whether the pressure depends on the radius alone."""
         return self.ring_means is not None
@@ -244,7 +236,7 @@ def _numbers(name: str, values: Any) -> np.ndarray:
 
 
 @dataclass(frozen=True, eq=False)
-class Measured(Pressure):
+class Measured(spec.NamedByText, Pressure):
     """A pressure given by values on a grid, see `Pressure.from_array`.
 
     The unit of length a is half the longer side of the smallest rectangle that contains all
@@ -294,17 +286,6 @@ class Measured(Pressure):
         others = {f"read as {other}": second, "at half its resolution": grid.coarsened()}
         more = [cls(f"{name} ({label})", one, step, peak, units) for label, one in others.items()]
         return cls(name, grid, step, peak, units, tuple(more))
-
-    @property
-    def name(self) -> str:
-        """Name of the pressure, with a digest of the values."""
-        return self.text
-
-    def __eq__(self, other: object) -> bool:
-        return isinstance(other, Measured) and self.text == other.text
-
-    def __hash__(self) -> int:
-        return hash(self.text)
 
     @property
     def _sides(self) -> tuple[Axis, Axis]:

@@ -27,7 +27,7 @@ from microslip.scene.motion import LOOP, Motion
 from microslip.scene.pressure import Pressure
 
 
-class Drive:
+class Drive(spec.Named):
     """Base class of drives.
 
     Attributes
@@ -43,9 +43,6 @@ class Drive:
     stiffness: float
     mass: float
     damping: float
-
-    def __str__(self) -> str:
-        return spec.text_of(self)
 
 
 @dataclass(frozen=True)
@@ -191,6 +188,11 @@ class Problem:
         return self.motion.straight and not self.follows
 
     @property
+    def force(self) -> float | None:
+        """Prescribed force; None if the velocity is prescribed, also through a spring."""
+        return None if self.drive is None else self.drive.force
+
+    @property
     def propels(self) -> bool:
         """Whether the oscillation alone can propel the contact; see Motion."""
         return self.motion.propels and not self.follows
@@ -236,11 +238,6 @@ class Problem:
         return first
 
     @property
-    def start(self) -> float:
-        """Phase at which a march begins: the first turning point."""
-        return self.turns[0]
-
-    @property
     def focus(self) -> float | None:
         """Radius towards which rings are graded, or None; see Motion."""
         return self.motion.focus(self._sign * self.velocity, self.size, self.pressure)
@@ -266,14 +263,6 @@ class Problem:
         moves = np.diff(np.stack(self.oscillation(LOOP)), axis=1)
         return float(np.sqrt(np.sum(moves**2, axis=0)).sum()) / (2.0 * np.pi)
 
-    @property
-    def largest_energy(self) -> float:
-        """Work of full friction along the path of one period, divided by mu F_z u_lim.
-
-        It is an upper bound on the dissipated energy.
-        """
-        return 2.0 * np.pi * self.mean_load * (self.mean_speed + abs(self.drift))
-
     # Numbers from files
 
     @property
@@ -295,11 +284,6 @@ class Problem:
         if not self.motion.loads:
             return None
         return lambda phase: self.motion.depth(phase, self.size, self.pressure)
-
-    @property
-    def deepest(self) -> float:
-        """Largest indentation depth divided by its reference value."""
-        return self.motion.deepest(self.size, self.pressure)
 
     @cached_property
     def mean_load(self) -> float:

@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from microslip.foundation import spec
 from microslip.foundation.arguments import LARGEST
 from microslip.foundation.errors import InputError
 from microslip.scene.motion import LOOP, NORMAL, PLANE, Motion, stick_focus, within_rings
@@ -118,7 +119,7 @@ class SampledPath(_Samples):
 
 
 @dataclass(frozen=True, eq=False)
-class Sampled(_Samples):
+class Sampled(spec.NamedByText, _Samples):
     """One period of a motion of any shape, from equally spaced samples.
 
     With the amplitude A, the indenter moves by A times the interpolated displacements.  A load or
@@ -159,17 +160,6 @@ class Sampled(_Samples):
         digest = hashlib.sha256(b"".join(one.tobytes() for one in parts)).hexdigest()[:16]
         kind = "" if height is None else ",load" if by_load else ",indentation"
         return cls(rows, height, by_load, f"array:sha256={digest}{kind}")
-
-    @property
-    def name(self) -> str:
-        """Name of the motion, with a digest of the samples."""
-        return self.text
-
-    def __eq__(self, other: object) -> bool:
-        return isinstance(other, Sampled) and self.text == other.text
-
-    def __hash__(self) -> int:
-        return hash(self.text)
 
     @cached_property
     def _plane(self) -> CubicSpline:
