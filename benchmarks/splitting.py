@@ -9,7 +9,7 @@ search for the periodic state. The cases are few and many rings, bores, and squa
 import numpy as np
 
 from microslip.contact import ring_contact, splitting, squares
-from microslip.contact.modes import PolarContact
+from microslip.contact.modes import polar_contact
 from microslip.contact.ring_contact import RadialContact
 from microslip.periodic.discretise import Resolution
 from microslip.periodic.simulate import simulate
@@ -41,7 +41,7 @@ def table(name, values, set_value, contacts):
     print(f"{name:20s}" + "".join(f"{contact:>16s}" for contact in contacts))
     for value in values:
         set_value(value)
-        for cached in (RadialContact.resolved, PolarContact.resolved):
+        for cached in (RadialContact.resolved, polar_contact):
             cached.cache_clear()
         counts = [iterations(*CONTACTS[contact]) for contact in contacts]
         print(f"{value:<20g}" + "".join(f"{count:16.1f}" for count in counts))

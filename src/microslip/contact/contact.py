@@ -17,7 +17,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, field
-from typing import Protocol
+from typing import Any, Protocol
 
 import numpy as np
 
@@ -122,14 +122,6 @@ class Body:
         return np.array(numbers, dtype=float), share * np.diff(path.phase)
 
 
-class Guess(Protocol):
-    """Source of initial guesses for a march: a March, or another object with `fields`."""
-
-    @property
-    def fields(self) -> np.ndarray | None:
-        """Unknown of the step solver, see `March.fields`."""
-
-
 class StepFailure(SolverError):
     """Raised if the tractions of a march are not finite, or if a step cannot be solved.
 
@@ -140,8 +132,8 @@ class StepFailure(SolverError):
 class Contact(Protocol):
     """A discretised contact under a pressure.
 
-    A contact whose normal load can change also has `at_indentation`, `bounds` and `bounds_along`
-    (see RingContact).
+    A contact whose normal load can change also has `at_indentation` (see RingContact), `bounds` and
+    `bounds_along`.
 
     Attributes
     ----------
@@ -178,6 +170,11 @@ class Contact(Protocol):
     sticks: bool
     grading: float | None = None
     edges: np.ndarray | None = None
+    bounds: Any = None
+    """bounds(depths): friction bounds at the depths (n,), one row for each depth."""
+    bounds_along: Any = None
+    """bounds_along(path): friction bounds at the start and at every stage of a path, one row for
+    each of these times."""
 
     def displacement(self, state: np.ndarray) -> np.ndarray:
         """Elastic displacement A q of each point under tractions q, with the shape of the state."""
@@ -200,7 +197,7 @@ class Contact(Protocol):
         path: Path,
         state: np.ndarray,
         tolerance: float,
-        previous: Guess | None = None,
+        previous: March | None = None,
     ) -> March:
         """Integrate the contact along a path.
 
@@ -212,20 +209,9 @@ class Contact(Protocol):
             Tractions at the start of the path.
         tolerance : float
             Largest allowed residual of a stage, as a force divided by mu F_z.
-        previous : Guess or None
+        previous : March or None
             Earlier march along the same path from a similar state.  It provides initial guesses.
         """
-
-
-class GrowingContact(Contact, Protocol):
-    """A contact whose normal load can change."""
-
-    def bounds(self, depths: np.ndarray) -> np.ndarray:
-        """Friction bounds at the depths (n,), one row for each depth."""
-
-    def bounds_along(self, path: Path) -> np.ndarray:
-        """Friction bounds at the start and at every stage of a path, one row for each of these
-        times."""
 
 
 def energy_norm(contact: Contact, change: np.ndarray) -> float:
@@ -247,12 +233,8 @@ def rigid_displacement(contact: Contact, place: np.ndarray) -> np.ndarray:
     """Displacement of each point, shape (2, ...), in a rigid motion; place: forward displacement,
     lateral displacement and angle."""
     forward, lateral, angle = place
-    return np.stack(
-        [
-            forward + angle * contact.lateral_position,
-            lateral - angle * contact.forward_position,
-        ]
-    )
+    ahead = forward + angle * contact.lateral_position
+    return np.stack([ahead, lateral - angle * contact.forward_position])
 
 
 def forward_slip(contact: Contact) -> np.ndarray:
@@ -290,7 +272,7 @@ def march_by_steps(
     solver: StepSolver,
     path: Path,
     state: np.ndarray,
-    previous: Guess | None = None,
+    previous: March | None = None,
     *,
     body: Body | None = None,
     start: np.ndarray | None = None,

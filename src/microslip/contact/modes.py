@@ -227,22 +227,6 @@ class PolarContact(RingContact):
             self.resultants[LATERAL if rotates else TORQUE] = 0.0
         self._made_of = focus, pressure
 
-    @staticmethod
-    @lru_cache(maxsize=32)
-    def resolved(
-        cells: int,
-        angles: int,
-        rotates: bool,
-        poisson: float,
-        focus: Focus | float | None,
-        pressure: Pressure,
-        *,
-        whole: bool,
-    ) -> PolarContact:
-        """Return the contact with these arguments.  Calls with equal arguments return the same
-        object, which must not be modified."""
-        return PolarContact(cells, angles, rotates, poisson, focus, pressure, whole=whole)
-
     def prolonged(self, state: np.ndarray) -> np.ndarray | None:
         """Interpolate tractions (2, angles, cells) from a coarser mesh to the points of this
         contact.
@@ -268,3 +252,8 @@ def _interpolated(x: np.ndarray, nodes: np.ndarray, values: np.ndarray, axis: in
     """Interpolate linearly along an axis, from values at the nodes to the points x.  Values are
     constant beyond the nodes."""
     return np.apply_along_axis(lambda line: np.interp(x, nodes, line), axis, values)
+
+
+polar_contact = lru_cache(maxsize=32)(PolarContact)
+"""Function that returns a PolarContact.  Calls with equal arguments return the same object, which
+must not be modified."""

@@ -78,7 +78,7 @@ class RigidContact(contact.Contact):
         path: Path,
         state: np.ndarray,
         tolerance: float,
-        previous: contact.Guess | None = None,
+        previous: contact.March | None = None,
     ) -> contact.March:
         """Compute the forces under full slip in the direction of the velocity at each phase of the
         path."""
@@ -117,7 +117,7 @@ class DahlContact(contact.Contact):
         path: Path,
         state: np.ndarray,
         tolerance: float,
-        previous: contact.Guess | None = None,
+        previous: contact.March | None = None,
     ) -> contact.March:
         """Integrate along straight lines between the phases of the path (translations only)."""
         moves = np.diff(path.positions[:, :2], axis=0)

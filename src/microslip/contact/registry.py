@@ -97,10 +97,10 @@ def _build(
 
         return RadialContact.resolved(cells, focus, pressure)
     if model == "polar":
-        from microslip.contact.modes import PolarContact
+        from microslip.contact.modes import polar_contact
 
         place = (problem.poisson, focus, pressure)
-        return PolarContact.resolved(cells, angles, motion.rotates, *place, whole=whole)
+        return polar_contact(cells, angles, motion.rotates, *place, whole=whole)
     if model == "cartesian":
         from microslip.contact.squares import MIRRORED, TURN, CartesianContact
 

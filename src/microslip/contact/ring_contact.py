@@ -6,11 +6,11 @@ import signal
 from collections.abc import Callable
 from copy import copy
 from functools import cached_property, lru_cache
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
-from microslip.contact.contact import MIRROR, Body, Contact, Guess, March
+from microslip.contact.contact import MIRROR, Body, Contact, March
 from microslip.contact.influence import ring_influence
 from microslip.contact.march import march, strain_energy
 from microslip.contact.operators import multiply, padded
@@ -78,7 +78,8 @@ class RingContact(Contact):
     edges: np.ndarray | None = None
     resultants = np.ones(3)
     mirror_rows: np.ndarray | None = None
-    _joins: np.ndarray | None = None
+    growth: Any = None
+    _joins: Any = None
 
     def __init__(
         self,
@@ -162,7 +163,7 @@ class RingContact(Contact):
         path: Path,
         state: np.ndarray,
         tolerance: float,
-        previous: Guess | None = None,
+        previous: March | None = None,
         *,
         body: Body | None = None,
         start: np.ndarray | None = None,
@@ -204,11 +205,6 @@ class RingContact(Contact):
             self._last = last
         return last[1:]
 
-    @property
-    def _checked_growth(self) -> Growth:
-        assert self.growth is not None  # otherwise the normal load is constant
-        return self.growth
-
     def at_indentation(self, deepest: float, start: float) -> RingContact:
         """Return a contact whose rings fill the largest contact area in a period.
 
@@ -219,7 +215,7 @@ class RingContact(Contact):
         start : float
             Depth at the start of the period, for which `bound` is computed.
         """
-        growth, out = self._checked_growth, copy(self)
+        growth, out = self.growth, copy(self)
         for name in ("operators", "points", "_last"):
             vars(out).pop(name, None)
         out.radius = radius = float(growth.pressure.radius(deepest))
@@ -257,10 +253,9 @@ class RingContact(Contact):
         edge: radii (len(depths),) inside which rings are in contact; None for the contact radii.
         The load outside these rings is added to the outermost ring.
         """
-        growth = self._checked_growth
+        growth = self.growth
         load_within = growth.load_within(growth.pressure, growth.edges, depths)
         edge = growth.pressure.radius(depths) if edge is None else edge
-        assert self._joins is not None  # set by at_indentation
         outside, most = edge[:, None] <= self._joins, load_within[:, -1:]
         load_within[:, 1:-1] = np.where(outside, most, load_within[:, 1:-1])
         return np.maximum(np.diff(load_within, axis=1), 0.0) / self.area
@@ -276,7 +271,7 @@ class RingContact(Contact):
         """
         assert path.depth is not None  # otherwise the bounds are constant
         stages = path.stages.shape[1]
-        ends = self._checked_growth.pressure.radius(path.depth[::stages])
+        ends = self.growth.pressure.radius(path.depth[::stages])
         shift = 0.5 - 1.0 / (1.0 + path.carry[-1].sum())
         radii = ends.copy()
         radii[:-1] += shift * np.diff(ends)  # not the last one, where the next march begins

@@ -7,11 +7,11 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 from functools import lru_cache
-from typing import Any, cast
+from typing import Any
 
 import numpy as np
 
-from microslip.contact.contact import Contact, GrowingContact, March, project
+from microslip.contact.contact import Contact, March, project
 from microslip.contact.path import (
     SDIRK2,
     Integrator,
@@ -156,8 +156,7 @@ def bounds_at_phases(contact: Contact, path: Path) -> np.ndarray:
     """Friction bounds at every phase, shape (steps + 1, 1, n), or (1, ...) if they are constant."""
     if path.depth is None:
         return contact.bound[None]
-    growing = cast(GrowingContact, contact)  # since the path has a depth
-    return growing.bounds_along(path)[:: path.stages.shape[1], None]
+    return contact.bounds_along(path)[:: path.stages.shape[1], None]
 
 
 def mean_forces(contact: Contact, problem: Problem, path: Path, forces: np.ndarray) -> np.ndarray:
@@ -165,8 +164,7 @@ def mean_forces(contact: Contact, problem: Problem, path: Path, forces: np.ndarr
     if problem.depth is None:
         return path.mean(forces)
     # the mean of full slip is exact, so the trapezoidal rule integrates only the difference
-    growing = cast(GrowingContact, contact)  # because the load oscillates
-    bounds = growing.bounds(problem.depth(path.phase))
+    bounds = contact.bounds(problem.depth(path.phase))
     full = contact.angles * (bounds @ contact.weight)[:, None] * [1.0, 0.0, 0.0]
     return [problem.mean_load, 0.0, 0.0] - path.mean(full - forces)
 

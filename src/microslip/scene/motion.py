@@ -225,10 +225,9 @@ class Motion(spec.Named):
         )
         if self.edge_velocity or self.rotates:
             unit = float(hertz.bore_angle(1.0, poisson))
-            velocity, turn = (
-                velocity * unit * amplitude if self.edge_velocity else velocity,
-                unit * turn,
-            )
+            turn = unit * turn
+            if self.edge_velocity:
+                velocity = velocity * unit * amplitude
         return velocity * phase + forward, lateral, turn
 
     def drift(self, velocity: float, amplitude: float, poisson: float) -> float:

@@ -83,6 +83,7 @@ class Pressure(spec.Named):
     hertzian: ClassVar[bool] = False
     area: ClassVar[Any] = np.pi
     """Contact area divided by a^2."""
+    inner = 0.0
     half_widths: ClassVar[Any] = (1.0, 1.0)
     """Half of the forward and the lateral width of the rectangle around the contact, divided by
     a."""
@@ -153,10 +154,6 @@ class Pressure(spec.Named):
             raise InputError("pressure", values.shape, allowed)
         digest = hashlib.sha256(b"".join(one.tobytes() for one in (x, y, values))).hexdigest()[:16]
         return Measured.on_grid(f"array:sha256={digest},grid={grid}", x, y, values, grid)
-
-    @property
-    def inner(self) -> float:
-        return 0.0
 
     @property
     def readings(self) -> tuple[Pressure, ...]:

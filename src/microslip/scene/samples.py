@@ -84,9 +84,7 @@ class SampledPath(_Samples):
         """
         return cls(*_rows_of(columns, 2))
 
-    @property
-    def name(self) -> str:
-        return "path"
+    name = "path"
 
     def at(self, phase: np.ndarray, values: np.ndarray) -> np.ndarray:
         """Interpolate the values of the rows linearly."""
@@ -143,6 +141,7 @@ class Sampled(spec.NamedByText, _Samples):
 
     summary = "sliding forward while moving along samples of a period"
     amplitude_label = "factor of the samples"
+    straight = False
 
     @classmethod
     def of_columns(cls, columns: Mapping[str, Any]) -> Sampled:
@@ -198,10 +197,6 @@ class Sampled(spec.NamedByText, _Samples):
     @cached_property
     def half_period_mirror(self) -> bool:
         return self._repeats((1.0, -1.0, -1.0))
-
-    @property
-    def straight(self) -> bool:
-        return False
 
     @cached_property
     def propels(self) -> bool:

@@ -18,6 +18,8 @@ from typing import Any
 import numpy as np
 import scipy
 
+Numbers = np.ndarray | float
+"""A number, or an array of any shape."""
 IndenterPressure = Any
 """Pressure under an axisymmetric indenter: the attributes and methods G_star, stiffness, bound,
 depth, radius, of_load, load, loading and total of pressure.Pressure."""
@@ -37,7 +39,7 @@ def unit_rule(count: int) -> tuple[np.ndarray, np.ndarray]:
 
 def checked(
     name: str,
-    values: np.ndarray | float,
+    values: Numbers,
     low: float = 0.0,
     high: float = np.inf,
     low_open: bool = False,
@@ -57,7 +59,7 @@ def checked(
     return array
 
 
-def friction_bound(r: np.ndarray | float) -> np.ndarray | float:
+def friction_bound(r: Numbers) -> Numbers:
     """Friction bound under Hertz pressure, g(r) = mu p(r) = 3/(2 pi) sqrt(1 - r^2).
 
     r: distance from the centre, any shape. Raises ValueError unless r >= 0. The result is
@@ -67,7 +69,7 @@ def friction_bound(r: np.ndarray | float) -> np.ndarray | float:
     return 1.5 / np.pi * np.sqrt(np.maximum((1 - r) * (1 + r), 0.0))
 
 
-def load_inside(r: np.ndarray | float) -> np.ndarray | float:
+def load_inside(r: Numbers) -> Numbers:
     """Fraction of the normal load within radius r under Hertz pressure, 1 - (1 - r^2)^(3/2).
 
     Raises ValueError unless r >= 0; the argument can have any shape. The result is dimensionless
@@ -93,7 +95,7 @@ def ring_bounds(edges: np.ndarray) -> np.ndarray:
     return (inner**2 + inner * outer + outer**2) / (np.pi * (inner + outer))
 
 
-def D(c: np.ndarray | float) -> np.ndarray | float:
+def D(c: Numbers) -> Numbers:
     """Difference K(k) - E(k) of elliptic integrals at the modulus k = sqrt(1 - c^2) (Eqs 25, 26).
 
     Raises ValueError unless 0 < c <= 1; the argument can have any shape. The result is
@@ -115,7 +117,7 @@ def D_half() -> float:
     return float(D(0.5))
 
 
-def lubkin_angle(stick_radius: np.ndarray | float, poisson: float = 0.0) -> np.ndarray | float:
+def lubkin_angle(stick_radius: Numbers, poisson: float = 0.0) -> Numbers:
     """Angle of pure torsion from rest as a function of the stick radius (Eq 24).
 
     Raises ValueError unless 0 < stick_radius <= 1 and 0 <= poisson <= 0.5; the arguments are
@@ -125,7 +127,7 @@ def lubkin_angle(stick_radius: np.ndarray | float, poisson: float = 0.0) -> np.n
     return _twist_unit(poisson) * D(stick_radius)
 
 
-def lubkin_stick_radius(angle: np.ndarray | float, poisson: float = 0.0) -> np.ndarray | float:
+def lubkin_stick_radius(angle: Numbers, poisson: float = 0.0) -> Numbers:
     """Stick radius after pure torsion from rest by `angle` (inverse of Eq 24).
 
     Raises ValueError unless angle >= 0 in u_lim/a and 0 <= poisson <= 0.5; the arguments are
@@ -145,7 +147,7 @@ def lubkin_stick_radius(angle: np.ndarray | float, poisson: float = 0.0) -> np.n
     return np.maximum(np.exp(log_c), np.finfo(float).tiny)
 
 
-def bore_angle(amplitude: np.ndarray | float, poisson: float = 0.0) -> np.ndarray | float:
+def bore_angle(amplitude: Numbers, poisson: float = 0.0) -> Numbers:
     """Angle for a bore amplitude, phi0 = phi~ phi_lk(1/2) (Eq 27).
 
     Raises ValueError unless amplitude >= 0 and 0 <= poisson <= 0.5; the arguments are broadcast.
@@ -154,7 +156,7 @@ def bore_angle(amplitude: np.ndarray | float, poisson: float = 0.0) -> np.ndarra
     return checked("amplitude", amplitude) * _twist_unit(poisson) * D_half()
 
 
-def bore_amplitude(angle: np.ndarray | float, poisson: float = 0.0) -> np.ndarray | float:
+def bore_amplitude(angle: Numbers, poisson: float = 0.0) -> Numbers:
     """Bore amplitude for an angle, phi~ = phi0 / phi_lk(1/2) (Eq 27, inverse of bore_angle).
 
     Raises ValueError unless angle >= 0 in u_lim/a and 0 <= poisson <= 0.5; the arguments are
@@ -163,12 +165,12 @@ def bore_amplitude(angle: np.ndarray | float, poisson: float = 0.0) -> np.ndarra
     return checked("angle", angle) / (_twist_unit(poisson) * D_half())
 
 
-def _twist_unit(poisson: np.ndarray | float) -> np.ndarray:
+def _twist_unit(poisson: Numbers) -> np.ndarray:
     """Factor between D and the angle: torsion depends on G, but u_lim depends on G* = 4G/(2-nu)."""
     return 4 / (np.pi * (2 - checked("poisson", poisson, high=0.5)))
 
 
-def mindlin_force(u: np.ndarray | float) -> np.ndarray | float:
+def mindlin_force(u: Numbers) -> Numbers:
     """Tangential force divided by mu*F_z after the displacement u from rest, 1 - (1 - u)^(3/2).
 
     Raises ValueError unless u >= 0 in u_lim; the argument can have any shape. The result is
@@ -179,7 +181,7 @@ def mindlin_force(u: np.ndarray | float) -> np.ndarray | float:
         return -np.expm1(1.5 * np.log1p(-u))
 
 
-def mindlin_stick_radius(u: np.ndarray | float) -> np.ndarray | float:
+def mindlin_stick_radius(u: Numbers) -> Numbers:
     """Stick radius after the displacement u from rest, sqrt(1 - u) (Eq 8).
 
     Raises ValueError unless u >= 0 in u_lim; the argument can have any shape. The radius is in
@@ -188,7 +190,7 @@ def mindlin_stick_radius(u: np.ndarray | float) -> np.ndarray | float:
     return np.sqrt(1 - np.minimum(checked("u", u), 1.0))
 
 
-def mindlin_traction(r: np.ndarray | float, u: np.ndarray | float) -> np.ndarray | float:
+def mindlin_traction(r: Numbers, u: Numbers) -> Numbers:
     """Shear traction at radius r after the displacement u from rest (Cattaneo and Mindlin).
 
     It is g - g_c in the stick zone and g outside. Here g_c = 3/(2 pi) sqrt(c^2 - r^2) is the bound
@@ -204,7 +206,7 @@ def mindlin_traction(r: np.ndarray | float, u: np.ndarray | float) -> np.ndarray
     return np.where(sticks, 1.5 / np.pi * u / roots, friction_bound(r))[()]
 
 
-def lubkin_share(r: np.ndarray | float, stick_radius: np.ndarray | float) -> np.ndarray | float:
+def lubkin_share(r: Numbers, stick_radius: Numbers) -> Numbers:
     """Fraction tau/g of the friction bound that pure torsion from rest uses at radius r.
 
     Raises ValueError unless r >= 0 and 0 <= stick_radius <= 1; the arguments are broadcast. The
@@ -228,7 +230,7 @@ def lubkin_share(r: np.ndarray | float, stick_radius: np.ndarray | float) -> np.
     return np.where(sticks, np.clip(share, 0.0, 1.0), 1.0)[()]
 
 
-def lubkin_traction(r: np.ndarray | float, stick_radius: np.ndarray | float) -> np.ndarray | float:
+def lubkin_traction(r: Numbers, stick_radius: Numbers) -> Numbers:
     """Circumferential traction at radius r in pure torsion from rest.
 
     Raises ValueError unless r >= 0 and 0 <= stick_radius <= 1; the arguments are broadcast. The
@@ -237,7 +239,7 @@ def lubkin_traction(r: np.ndarray | float, stick_radius: np.ndarray | float) -> 
     return lubkin_share(r, stick_radius) * friction_bound(r)
 
 
-def lubkin_torque(stick_radius: np.ndarray | float) -> np.ndarray | float:
+def lubkin_torque(stick_radius: Numbers) -> Numbers:
     """Torque of pure torsion from rest as a function of the stick radius.
 
     Raises ValueError unless 0 <= stick_radius <= 1; the argument can have any shape. The torque is

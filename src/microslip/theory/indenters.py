@@ -15,7 +15,7 @@ from collections.abc import Callable
 import numpy as np
 
 from microslip.theory import paper
-from microslip.theory.hertz import IndenterPressure, checked
+from microslip.theory.hertz import IndenterPressure, Numbers, checked
 
 _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(128)
 _NODES, _WEIGHTS = 0.5 * (_NODES + 1.0), 0.5 * _WEIGHTS
@@ -222,9 +222,7 @@ def _over_the_circle(
     return total
 
 
-def static_stick_zone_of(
-    pressure: Callable[[float], float], stick_radius: np.ndarray | float
-) -> np.ndarray | float:
+def static_stick_zone_of(pressure: Callable[[float], float], stick_radius: Numbers) -> Numbers:
     """Fraction of the load inside the stick radius (Eq 9).
 
     Parameters
@@ -244,9 +242,7 @@ def static_stick_zone_of(
     return _each(lambda c: _integral(lambda r: pressure(r) * r, 0.0, c) / total, stick_radius)
 
 
-def bore_of(
-    pressure: Callable[[float], float], velocity: np.ndarray | float
-) -> tuple[np.ndarray | float, np.ndarray | float]:
+def bore_of(pressure: Callable[[float], float], velocity: Numbers) -> tuple[Numbers, Numbers]:
     """Force and torque of the steady continuous bore (Eqs 17 and 18).
 
     Parameters
@@ -274,7 +270,7 @@ def bore_of(
 
 def _bore_mean(
     pressure: Callable[[float], float], velocity: np.ndarray, kernel: Callable, power: int
-) -> np.ndarray | float:
+) -> Numbers:
     total = 2 * np.pi * _total(pressure, power)
 
     def resistance(v: float) -> float:
@@ -301,5 +297,5 @@ def _integral(function: Callable[[float], float], start: float, end: float) -> f
     return quad(function, start, end, epsabs=0.0, epsrel=1e-11, limit=200)[0]
 
 
-def _each(function: Callable[[float], float], values: np.ndarray) -> np.ndarray | float:
+def _each(function: Callable[[float], float], values: np.ndarray) -> Numbers:
     return np.array([function(float(v)) for v in values.flat]).reshape(values.shape)[()]

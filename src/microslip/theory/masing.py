@@ -33,7 +33,7 @@ from functools import cache
 import numpy as np
 
 from microslip.foundation.errors import InputError
-from microslip.theory.hertz import IndenterPressure, checked, mindlin_force
+from microslip.theory.hertz import IndenterPressure, Numbers, checked, mindlin_force
 
 Function = Callable[[np.ndarray], np.ndarray]
 _HALVINGS = 60
@@ -58,7 +58,7 @@ def last_true(condition: Function, low: np.ndarray, high: np.ndarray) -> np.ndar
 
 
 def longitudinal(
-    velocity: np.ndarray | float, amplitude: np.ndarray | float, curve: Callable = mindlin_force
+    velocity: Numbers, amplitude: Numbers, curve: Callable = mindlin_force
 ) -> np.ndarray:
     """Mean forward friction under an oscillation along the direction of sliding, nu = 0.
 
@@ -107,9 +107,7 @@ def longitudinal_energy(
     return float(2.0 * np.pi * velocity + loop_energy(0.5 * stroke, curve))
 
 
-def loop_energy(
-    amplitude: np.ndarray | float, curve: Callable = mindlin_force
-) -> np.ndarray | float:
+def loop_energy(amplitude: Numbers, curve: Callable = mindlin_force) -> Numbers:
     """Dissipated energy of a loop of force against displacement, 8 W(A) - 4 A F(A).
 
     W is the work of the first loading, the integral of the curve F from 0 to the amplitude A. For a

@@ -20,13 +20,11 @@ import scipy
 
 from microslip.foundation.errors import InputError
 from microslip.theory import hertz
-from microslip.theory.hertz import checked, unit_rule
+from microslip.theory.hertz import Numbers, checked, unit_rule
 
 
 # Transverse oscillation
-def large_amplitude_transverse(
-    velocity: np.ndarray | float, amplitude: np.ndarray | float
-) -> np.ndarray | float:
+def large_amplitude_transverse(velocity: Numbers, amplitude: Numbers) -> Numbers:
     """Friction of a rigid slider under transverse oscillation, the large-amplitude limit (Eq 6).
 
     It is (2/pi) K(m = -(amplitude/velocity)^2). It is 1 at amplitude 0. At velocity 0, it is 0 for
@@ -44,7 +42,7 @@ def large_amplitude_transverse(
     return (2 / np.pi * q * elliptic)[()]
 
 
-def static_slider(amplitude: np.ndarray | float) -> np.ndarray | float:
+def static_slider(amplitude: Numbers) -> Numbers:
     """Static friction of a slider on a spring, sqrt(1 - amplitude^2) (Eq 7).
 
     Raises ValueError unless amplitude >= 0; the argument can have any shape. The friction is 0 for
@@ -54,7 +52,7 @@ def static_slider(amplitude: np.ndarray | float) -> np.ndarray | float:
     return np.sqrt((1 - amplitude) * (1 + amplitude))
 
 
-def stick_radius_transverse(amplitude: np.ndarray | float) -> np.ndarray | float:
+def stick_radius_transverse(amplitude: Numbers) -> Numbers:
     """Stick radius under transverse oscillation alone, sqrt(1 - amplitude) (Eq 8).
 
     Raises ValueError unless amplitude >= 0; the argument can have any shape. The radius is 0 for
@@ -63,7 +61,7 @@ def stick_radius_transverse(amplitude: np.ndarray | float) -> np.ndarray | float
     return hertz.mindlin_stick_radius(checked("amplitude", amplitude))
 
 
-def static_stick_zone(stick_radius: np.ndarray | float) -> np.ndarray | float:
+def static_stick_zone(stick_radius: Numbers) -> Numbers:
     """Fraction of the Hertz load inside the stick radius, 1 - (1 - c^2)^(3/2) (Eq 10).
 
     Raises ValueError unless 0 <= stick_radius <= 1; the argument can have any shape.
@@ -71,7 +69,7 @@ def static_stick_zone(stick_radius: np.ndarray | float) -> np.ndarray | float:
     return hertz.load_inside(checked("stick_radius", stick_radius, high=1.0))
 
 
-def static_transverse(amplitude: np.ndarray | float) -> np.ndarray | float:
+def static_transverse(amplitude: Numbers) -> Numbers:
     """The paper's static friction under transverse oscillation, 1 - amplitude^(3/2) (Eq 11).
 
     Raises ValueError unless amplitude >= 0; the argument can have any shape. The friction is 0 for
@@ -81,7 +79,7 @@ def static_transverse(amplitude: np.ndarray | float) -> np.ndarray | float:
 
 
 # Continuous bore
-def rotation_centre(velocity: np.ndarray | float, time: np.ndarray | float = 0.0) -> tuple:
+def rotation_centre(velocity: Numbers, time: Numbers = 0.0) -> tuple:
     """Instantaneous centre of rotation (lateral, forward) in the frame at rest (Eq 14).
 
     Raises ValueError unless velocity >= 0 and time t~ = t v0/a >= 0; the arguments are broadcast.
@@ -92,9 +90,7 @@ def rotation_centre(velocity: np.ndarray | float, time: np.ndarray | float = 0.0
     return 0 * time - velocity, time + 0 * velocity
 
 
-def steady_bore_traction(
-    lateral: np.ndarray | float, forward: np.ndarray | float, velocity: np.ndarray | float
-) -> tuple:
+def steady_bore_traction(lateral: Numbers, forward: Numbers, velocity: Numbers) -> tuple:
     """Traction (lateral, forward) on a sphere in continuous bore that slips everywhere (Eq 15).
 
     The traction has the magnitude hertz.friction_bound(r) and is opposite to the local velocity
@@ -110,7 +106,7 @@ def steady_bore_traction(
     return scale * forward, -scale * arm
 
 
-def forward_kernel(ratio: np.ndarray | float) -> np.ndarray | float:
+def forward_kernel(ratio: Numbers) -> Numbers:
     """Kernel Q_Y: forward friction of a ring of radius ratio*velocity, divided by its bound (Eq
     19).
 
@@ -122,7 +118,7 @@ def forward_kernel(ratio: np.ndarray | float) -> np.ndarray | float:
     return np.where(inside, even, odd)[()]
 
 
-def torque_kernel(ratio: np.ndarray | float) -> np.ndarray | float:
+def torque_kernel(ratio: Numbers) -> Numbers:
     """Kernel Q_M: torque of a ring of radius ratio*velocity, divided by bound and radius (Eq 20).
 
     Raises ValueError unless ratio >= 0; the argument can have any shape. The kernel is 4 (E - (1 -
@@ -133,7 +129,7 @@ def torque_kernel(ratio: np.ndarray | float) -> np.ndarray | float:
     return np.where(inside, odd, even)[()]
 
 
-def _ring_integrals(ratio: np.ndarray | float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+def _ring_integrals(ratio: Numbers) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     ratio = checked("ratio", ratio)
     k = np.minimum(ratio, 1 / np.maximum(ratio, 1.0))
     # Carlson's R_D gives (E - (1 - k^2) K)/k without cancellation. It is infinite at k = 1 only.
@@ -145,7 +141,7 @@ def _ring_integrals(ratio: np.ndarray | float) -> tuple[np.ndarray, np.ndarray, 
     )
 
 
-def bore_forward(velocity: np.ndarray | float) -> np.ndarray | float:
+def bore_forward(velocity: Numbers) -> Numbers:
     """Forward friction of the steady continuous bore under Hertz pressure (Eq 21).
 
     It is (3 pi/8)(v - v^3/4) for v <= 1, and the hypergeometric function 2F1(-1/2, 1/2; 5/2;
@@ -163,7 +159,7 @@ def _fast_forward(inverse: np.ndarray) -> np.ndarray:
     return scipy.special.hyp2f1(-0.5, 0.5, 2.5, inverse**2)
 
 
-def bore_torque(velocity: np.ndarray | float) -> np.ndarray | float:
+def bore_torque(velocity: Numbers) -> Numbers:
     """Torque of the steady continuous bore under Hertz pressure, divided by its value at rest (Eq
     22).
 
@@ -178,7 +174,7 @@ def bore_torque(velocity: np.ndarray | float) -> np.ndarray | float:
 
 
 # Oscillating bore
-def large_amplitude_bore(velocity: np.ndarray | float) -> np.ndarray | float:
+def large_amplitude_bore(velocity: Numbers) -> Numbers:
     """Quasi-steady forward friction under oscillating bore of large amplitude (Eq 29).
 
     It is the mean of bore_forward(velocity/cos(tau)) over tau. Raises ValueError unless velocity >=
@@ -215,7 +211,7 @@ def _slow_mean(velocity: np.ndarray) -> np.ndarray:
     return 2 / np.pi * (rotating + sliding)
 
 
-def bore_amplitude_at(stick_radius: np.ndarray | float) -> np.ndarray | float:
+def bore_amplitude_at(stick_radius: Numbers) -> Numbers:
     """Bore amplitude at which the stick radius is c, D(c)/D(1/2) (Eqs 30, 31).
 
     Raises ValueError unless 0 < stick_radius <= 1; the argument can have any shape.
@@ -224,7 +220,7 @@ def bore_amplitude_at(stick_radius: np.ndarray | float) -> np.ndarray | float:
     return hertz.D(stick_radius) / hertz.D_half()
 
 
-def bore_stick_radius(amplitude: np.ndarray | float) -> np.ndarray | float:
+def bore_stick_radius(amplitude: Numbers) -> Numbers:
     """Stick radius under oscillating bore alone (Eq 32, inverse of bore_amplitude_at).
 
     Raises ValueError unless amplitude >= 0; the argument can have any shape. The radius is above 0
@@ -233,7 +229,7 @@ def bore_stick_radius(amplitude: np.ndarray | float) -> np.ndarray | float:
     return hertz.lubkin_stick_radius(hertz.bore_angle(amplitude))
 
 
-def static_bore(amplitude: np.ndarray | float) -> np.ndarray | float:
+def static_bore(amplitude: Numbers) -> Numbers:
     """The paper's static friction under oscillating bore, 1 - (1 - c^2)^(3/2) (Eq 33, corrected).
 
     It is Eq 10 at the radius of Eq 32. The exact limit is static_limit_bore. Raises ValueError
@@ -242,7 +238,7 @@ def static_bore(amplitude: np.ndarray | float) -> np.ndarray | float:
     return static_stick_zone(bore_stick_radius(amplitude))
 
 
-def static_bore_printed(amplitude: np.ndarray | float) -> np.ndarray | float:
+def static_bore_printed(amplitude: Numbers) -> Numbers:
     """Eq 33 as printed, 1 - (1 - c)^(3/2), without the square of Eq 10.
 
     Raises ValueError unless amplitude >= 0; the argument can have any shape. This function is for
@@ -254,7 +250,7 @@ def static_bore_printed(amplitude: np.ndarray | float) -> np.ndarray | float:
 # The exact limits for v -> 0 are integrals over the stick zone of the oscillation. The integrand is
 # the largest constant forward traction that can be added to the oscillating traction without
 # exceeding the bound.
-def static_limit_transverse(amplitude: np.ndarray | float) -> np.ndarray | float:
+def static_limit_transverse(amplitude: Numbers) -> Numbers:
     """Static friction under transverse oscillation, v -> 0 (exact for Poisson's ratio 0).
 
     It is the integral over the stick zone of sqrt(g^2 - (g - g_c)^2), where g_c is the inner bound
@@ -268,7 +264,7 @@ def static_limit_transverse(amplitude: np.ndarray | float) -> np.ndarray | float
     return np.minimum(3 * np.sum(step * inner * bound * remainder, axis=-1), 1.0)
 
 
-def static_limit_longitudinal(amplitude: np.ndarray | float) -> np.ndarray | float:
+def static_limit_longitudinal(amplitude: Numbers) -> Numbers:
     """Static friction under oscillation along the forward direction, (1 - amplitude)^(3/2).
 
     It is the integral of the inner bound g_c of mindlin_traction, and 0 for amplitude >= 1. It is
@@ -278,7 +274,7 @@ def static_limit_longitudinal(amplitude: np.ndarray | float) -> np.ndarray | flo
     return (1 - np.minimum(checked("amplitude", amplitude), 1.0)) ** 1.5
 
 
-def static_limit_bore(amplitude: np.ndarray | float) -> np.ndarray | float:
+def static_limit_bore(amplitude: Numbers) -> Numbers:
     """Static friction under oscillating bore, v -> 0.
 
     It is the integral over the stick zone of (2/pi) g arccos(tau/g), the largest forward traction
@@ -318,9 +314,7 @@ _FASTEST = 1e6
 a rounding error of 1e-16 in the force changes the velocity by a fraction of 1e-3."""
 
 
-def transverse_drift(
-    force: np.ndarray | float, amplitude: np.ndarray | float
-) -> np.ndarray | float:
+def transverse_drift(force: Numbers, amplitude: Numbers) -> Numbers:
     """Mean velocity of a rigid contact under transverse oscillation, (2/pi) A P / sqrt(1 - P^2).
 
     Parameters
@@ -347,7 +341,7 @@ def transverse_drift(
         return 2.0 / np.pi * amplitude * np.where(force < 1.0, force / lateral, np.inf)[()]
 
 
-def bore_drift(force: np.ndarray | float, amplitude: np.ndarray | float) -> np.ndarray | float:
+def bore_drift(force: Numbers, amplitude: Numbers) -> Numbers:
     """Mean velocity of a rigid contact under oscillating bore.
 
     It is (2/pi) E^-1(P), where E is the friction of Eq 21 as a function of velocity. The velocity

@@ -18,7 +18,6 @@ import numpy as np
 
 from microslip.contact.contact import (
     Contact,
-    Guess,
     March,
     Step,
     StepFailure,
@@ -73,7 +72,7 @@ class DenseContact:
         return getattr(self.contact, name)
 
     def march(
-        self, path: Path, state: np.ndarray, tolerance: float, previous: Guess | None = None
+        self, path: Path, state: np.ndarray, tolerance: float, previous: March | None = None
     ) -> March:
         """March along a path, see Contact; raises StepFailure if a step is not solved."""
         self.tolerance, self.last = tolerance, state
