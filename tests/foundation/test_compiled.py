@@ -137,7 +137,7 @@ resource.setrlimit(resource.RLIMIT_FSIZE, (1000, 1000))
 
 
 @pytest.mark.skipif(find_spec("resource") is None, reason="needs limits of file sizes")
-@pytest.mark.parametrize("before", ["", "from microslip.contact.coulomb import shrink"])
+@pytest.mark.parametrize("before", ["", "from microslip.contact.operators import shrink"])
 def test_without_room_nothing_is_stored_and_one_line_names_the_folder(before, tmp_path):
     """Files are limited to 1000 bytes, which Python reports like a full disk, as OSError: from the
     start, or only after the check of the folder."""
