@@ -81,8 +81,9 @@ def test_the_look_of_figures_counts_for_all_of_them_and_a_kind_for_its_own():
         kind: source_digest.LOADED.builder(*drawing.modules_of(kind)) for kind in drawing.DRAWN
     }
     assert all("report/figures/style.py" in some for some in files.values())
-    assert [k for k, some in files.items() if "report/figures/atlas.py" in some] == [
-        "stability_atlas"
+    assert [k for k, some in files.items() if "report/figures/predictions.py" in some] == [
+        "fit",
+        "curve",
     ]
     assert not any(
         name.startswith(("app/", "foundation/")) for some in files.values() for name in some

@@ -19,7 +19,7 @@ from microslip.app import cli
 from microslip.config import load
 from microslip.foundation import files
 from microslip.foundation.errors import CacheError, InputError
-from microslip.report.figures.data import loaded
+from microslip.report.figures.drawing import loaded
 from microslip.scene.by_name import pressure_named
 from microslip.si.materials import Material
 from microslip.sweeps import batch, evaluate

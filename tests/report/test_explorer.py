@@ -10,7 +10,7 @@ from stubs.in_node import needs_node, page_says
 from stubs.unpacked_period import unpacked
 
 from microslip.datasets.catalogue import FORMS
-from microslip.report.explorer import explorer, page, payload
+from microslip.report.explorer import explorer, page
 
 
 @pytest.fixture(scope="module")
@@ -18,7 +18,7 @@ def made(tmp_path_factory):
     """Datasets and periods by the names of maps, and the contents of their page."""
     folder = tmp_path_factory.mktemp("explorer")
     datasets, records = stub.computed(folder)
-    return datasets, records, payload.build(datasets, records)
+    return datasets, records, page.build(datasets, records)
 
 
 def map_of(content, name):

@@ -10,7 +10,7 @@ from stubs import explorer_stub as stub
 from stubs.in_node import needs_node, page_says
 
 import microslip
-from microslip.report.explorer import contact_form, payload
+from microslip.report.explorer import contact_form, page
 from microslip.si.materials import MATERIALS
 from microslip.theory import paper
 
@@ -55,7 +55,7 @@ def certified(motion, **more):
 def made(tmp_path_factory):
     """Datasets by the names of sweeps, and the contents of their page."""
     datasets, periods = stub.made_up(tmp_path_factory.mktemp("page"), configured())
-    return datasets, payload.build(datasets, periods, [certified("transverse", poisson=[0, 0.5])])
+    return datasets, page.build(datasets, periods, [certified("transverse", poisson=[0, 0.5])])
 
 
 def entries(content, name):

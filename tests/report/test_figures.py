@@ -9,13 +9,14 @@ import matplotlib
 import numpy as np
 import pytest
 import xarray as xr
-from matplotlib.collections import PolyCollection
+from matplotlib.lines import Line2D
+from matplotlib.patches import Rectangle
 from PIL import Image
 from stubs import figures_stub as stub
 from stubs.figures_stub import artists, words
 
 from microslip.foundation.files import CacheError
-from microslip.report.figures import drawing, field
+from microslip.report.figures import drawing, runs
 
 pytestmark = [pytest.mark.slow, pytest.mark.usefixtures("without_layout")]
 
@@ -71,7 +72,7 @@ def test_the_steady_bore_shows_its_curves_histories_and_field(datasets):
     bound = 1.5 / np.pi * np.sqrt(1 - x**2 - y**2)
     assert far.sum() > 80
     lengths = np.hypot(arrows.U, arrows.V) / arrows.scale
-    assert lengths.max() < 0.9 * field.SPACING  # arrows do not touch
+    assert lengths.max() < 0.9 * runs.SPACING  # arrows do not touch
     np.testing.assert_allclose(arrows.U[far], (bound * y / away)[far], atol=0.03)
     np.testing.assert_allclose(arrows.V[far], (-bound * (x + 0.8) / away)[far], atol=0.03)
 
@@ -91,9 +92,9 @@ def test_points_that_are_not_converged_are_hatched_and_hollow(datasets):
     bad["mu_macro_error"][2, 0], bad["mu_macro_error"][3, 0] = 0.1, np.inf
     bad["mu_macro"][2, 1] = np.nan
     figure = drawing.draw("map", {"bore": bad})
-    cells, points = artists(figure, "unconverged")
-    cells, points = (cells, points) if isinstance(cells, PolyCollection) else (points, cells)
-    assert cells.get_hatch() and len(cells.get_paths()) == 4
+    cells = [one for one in artists(figure, "unconverged") if isinstance(one, Rectangle)]
+    (points,) = [one for one in artists(figure, "unconverged") if isinstance(one, Line2D)]
+    assert len(cells) == 4 and all(cell.get_hatch() for cell in cells)
     np.testing.assert_array_equal(points.get_xdata(), bad["amplitude"][2:4])
     assert points.get_markerfacecolor() == "white" and artists(figure, "error")
     assert "4 of 81" in words(figure)

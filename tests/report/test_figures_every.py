@@ -139,7 +139,7 @@ def test_its_panels_have_letters_and_its_axes_quantities_with_units(name):
     heads = [text for text in figure.findobj(Text) if r"\bf{(" in text.get_text()]
     letters = [LETTER.match(text.get_text())[1] for text in heads if text.get_visible()]
     frames = [a for a in figure.findobj(Axes) if a.axison and a.get_label() != "<colorbar>"]
-    assert sorted(letters) == look.letters(len(letters))
+    assert sorted(letters) == [look.letter(k) for k in range(len(letters))]
     assert len(letters) == len(frames) or (len(frames) == 1 and not letters)
     for label in filter(None, (f() for a in frames for f in (a.get_xlabel, a.get_ylabel))):
         has_unit = re.search(r"\((s|bytes|dimensionless|degrees|m?N|mm/s)\)", label)

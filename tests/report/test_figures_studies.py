@@ -11,7 +11,7 @@ from matplotlib.text import Text
 from stubs import figures_stub as stub
 from stubs.figures_stub import artists
 
-from microslip.report.figures import atlas, drawing
+from microslip.report.figures import drawing, studies
 
 pytestmark = [pytest.mark.slow, pytest.mark.usefixtures("without_layout")]
 
@@ -117,10 +117,13 @@ def test_the_map_colours_and_names_every_region_of_the_cheapest_model():
     colours = {text.get_text().split()[-1]: to_hex(one.get_facecolor()) for text, one in handles}
     axes = figure.axes[0]
     assert axes.get_yscale() == "log"
-    (mesh,) = artists(axes, "cheapest")
-    drawn = mesh.cmap(mesh.norm(mesh.get_array()))
     for name in ("polar", "mdr"):
-        assert {to_hex(colour) for colour in drawn[names == name]} == {colours[name]}
+        cells = artists(axes, f"cheapest {name}")
+        assert {to_hex(cell.get_facecolor()) for cell in cells} == {colours[name]}
+        centres = [cell.get_extents().get_points().mean(axis=0) for cell in cells]
+        column, row = axes.transAxes.inverted().transform(centres).T * np.array([[13], [9]])
+        at = set(zip(row.astype(int), column.astype(int), strict=True))
+        assert at == set(map(tuple, np.argwhere(names == name)))
     assert len(artists(axes, "none")) == 1
     regions = [(text.get_text(), text.get_position()) for text in artists(axes, "region")]
     assert sorted(text for text, _ in regions) == ["Md", "Md", "Md", "Po"]
@@ -151,7 +154,7 @@ def test_the_atlas_shows_every_outcome(stability):
     signs = {text.get_position(): text.get_text() for text in axes.texts}
     for row, codes in zip(rows, expected, strict=True):
         for column, code in enumerate(codes):
-            sign = atlas.OUTCOMES[code][2] if code else None
+            sign = studies.OUTCOMES[code][2] if code else None
             assert signs.get((column + 0.5, row)) == sign
     squares = [p for p in axes.patches if (p.get_gid() or "").startswith("outcome")]
     assert len(squares) == np.count_nonzero(expected)

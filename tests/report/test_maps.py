@@ -13,9 +13,9 @@ from matplotlib.text import Text
 from stubs import figures_stub as stub
 from stubs.figures_stub import artists, words
 
-from microslip.report.figures import drawing, scales
+from microslip.report.figures import drawing, maps
 from microslip.report.figures import style as look
-from microslip.report.figures.formulas import mathtext
+from microslip.report.figures.style import mathtext
 from microslip.scene.by_name import MOTIONS, motion_named
 from microslip.theory import paper
 
@@ -28,7 +28,7 @@ def maps_in(figure) -> list:
 
 def shown(values, lowest=-1.0):
     """Colours of friction values in a figure whose smallest value is `lowest`."""
-    scale = scales.friction([xr.Dataset({"mu_macro": ("n", [lowest, 1.0])})])
+    scale = maps.friction([xr.Dataset({"mu_macro": ("n", [lowest, 1.0])})])
     return scale.colours(scale.norm(np.asarray(values, float)))[:, :3]
 
 
@@ -116,9 +116,9 @@ def test_a_group_is_drawn_with_one_scale_and_shared_labels():
 
 def test_friction_below_zero_widens_the_scale_of_all():
     negative = stub.spanning("a", shift=-0.234)
-    scale = scales.friction([stub.spanning(), negative])
+    scale = maps.friction([stub.spanning(), negative])
     assert scale.fills[[0, -1]] == pytest.approx((-0.3, 1.0)) and 0 in scale.lines
-    scale = scales.friction([stub.spanning(shift=-0.004)])  # within the error of the points
+    scale = maps.friction([stub.spanning(shift=-0.004)])  # within the error of the points
     assert tuple(scale.fills[[0, -1]]) == (0.0, 1.0)
     figure = drawing.draw("map", {"a": negative, "b": stub.spanning("b")})
     (bands,) = [c for c in figure.axes[0].collections if len(getattr(c, "levels", ())) > 20]
@@ -146,7 +146,7 @@ def test_all_of_poissons_ratios_are_drawn():
 
 def test_a_change_within_twice_the_tolerance_has_the_palest_colour():
     two = stub.at_ratios(stub.fake_bore(), 0.0, 0.5).assign_attrs(tolerance=0.01)
-    scale = scales.change([two.isel(poisson=1)])
+    scale = maps.change([two.isel(poisson=1)])
     levels = np.sort(np.abs(scale.fills))
     assert levels[:2] == pytest.approx([0.02, 0.02]) and levels[-1] >= 0.05
     assert scale.colours(scale.norm(0.0))[:3] == pytest.approx((0.97, 0.97, 0.97), abs=0.01)

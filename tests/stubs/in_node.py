@@ -75,7 +75,7 @@ def page_says(content, *steps):
     """Values of expressions on the whole page, without a browser and with a document that draws
     nothing.
 
-    content: output of payload.build. steps: JavaScript expressions, evaluated in order.
+    content: output of page.build. steps: JavaScript expressions, evaluated in order.
     """
     markup = (FOLDER / "page.html").read_text(encoding="utf-8")
     ids = _Ids()

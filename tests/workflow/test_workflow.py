@@ -51,8 +51,10 @@ def test_an_edit_makes_again_what_it_concerns_and_messages_and_dates_do_not_coun
     checks = project.folder / "src/microslip/answer/limits.py"
     assert checks.read_text().count('"allowed is ') > 2
     checks.write_text(checks.read_text().replace('"allowed is ', '"what is allowed is '))
-    project.append("src/microslip/report/figures/field.py", "\nSPARE = 1\n")
-    assert project.planned() == {"draw_figure": 1, "all": 1}
+    project.append("src/microslip/report/figures/maps.py", "\nSPARE = 1\n")
+    figure = "fig2_transverse_map"
+    assert project.planned(figure) == {"draw_figure": 1, figure: 1}
+    assert project.planned("bore") == {}
     project.append("src/microslip/datasets/sweep_dataset.py", "\nSPARE = 1\n")
     assert project.planned() == {"make_products": 1, "all": 1}
     project.append("src/microslip/contact/influence.py", "\nSPARE = 1\n")

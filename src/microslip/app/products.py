@@ -89,11 +89,10 @@ def _make_dataset(plan: Plan, name: str, files: dict[str, Path], inputs: list[Pa
 
 def _draw(plan: Plan, name: str, files: dict[str, Path], inputs: list[Path]) -> None:
     from microslip.report.figures import drawing
-    from microslip.report.figures.data import loaded
 
     figure = plan.configuration.figures[name]
     datasets = {
-        dataset: loaded(path) for dataset, path in zip(figure.datasets, inputs, strict=True)
+        dataset: drawing.loaded(path) for dataset, path in zip(figure.datasets, inputs, strict=True)
     }
     drawn = drawing.draw(figure.kind, datasets)
     for path in files.values():
@@ -102,7 +101,7 @@ def _draw(plan: Plan, name: str, files: dict[str, Path], inputs: list[Path]) -> 
 
 def _make_explorer(plan: Plan, name: str, path: Path, inputs: list[Path]) -> None:
     from microslip.report.explorer import explorer, page
-    from microslip.report.figures.data import loaded
+    from microslip.report.figures import drawing
 
     configuration, figure = plan.configuration, plan.configuration.figures[name]
     count = len(figure.datasets)
@@ -113,7 +112,7 @@ def _make_explorer(plan: Plan, name: str, path: Path, inputs: list[Path]) -> Non
         for one in maps
     }
     datasets = {
-        one: loaded(file) for one, file in zip(figure.datasets, inputs[:count], strict=True)
+        one: drawing.loaded(file) for one, file in zip(figure.datasets, inputs[:count], strict=True)
     }
     certified = [datasets.pop(one) for one in explorer.certified_of(configuration, figure)]
     page.write(path, datasets, periods, certified)

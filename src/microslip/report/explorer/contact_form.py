@@ -11,6 +11,7 @@ from typing import NamedTuple
 
 import numpy as np
 import xarray as xr
+from scipy.ndimage import maximum_filter
 
 from microslip.foundation.number_text import PREFIXES
 from microslip.foundation.units import read
@@ -63,34 +64,24 @@ FIELDS = {
 
 def packed() -> dict:
     """Pack the data of the form as JSON values."""
-    inputs = {name: INPUTS[field.input] for name, field in FIELDS.items()}
+    fields: dict[str, dict] = {}
+    units: dict[str, float] = {}
+    for name, field in FIELDS.items():
+        known = INPUTS[field.input]
+        high = known.high if np.isfinite(known.high) else None
+        fields[name] = field._asdict() | {"low": known.low, "high": high, "zero": known.zero}
+        units |= {unit: read(f"1 {unit}", known.unit or "").si for unit in field.units}
     return {
         "motions": MOTIONS,
-        "fields": {
-            name: {
-                **field._asdict(),
-                "low": inputs[name].low,
-                "high": inputs[name].high if np.isfinite(inputs[name].high) else None,
-                "zero": inputs[name].zero,
-            }
-            for name, field in FIELDS.items()
-        },
-        "units": {
-            unit: read(f"1 {unit}", inputs[name].unit or "").si
-            for name, field in FIELDS.items()
-            for unit in field.units
-        },
+        "fields": fields,
+        "units": units,
         "sides": {"material": ["young", "nu"], "counterbody": ["counter_young", "counter_nu"]},
         "amplitude_of": {"transverse": "stroke", "bore": "angle"},
         "chosen": {"material": "steel", "counterbody": "steel", "motion": "transverse"},
         "of_numbers": OF_NUMBERS,
         "materials": {
-            name: {
-                "young": None if body.rigid else body.young,
-                "poisson": body.poisson,
-                "density": body.density,
-                "hardness": body.hardness,
-            }
+            name: {n: getattr(body, n) for n in ("poisson", "density", "hardness")}
+            | {"young": None if body.rigid else body.young}
             for name, body in MATERIALS.items()
         },
         "checks": [[rule._asdict() for rule in rules] for rules in warnings.CHECKS],
@@ -98,10 +89,8 @@ def packed() -> dict:
         "missing": warnings.MISSING,
         "whose": warnings.SIDES,
         "adhesion": {
-            "adhesion": warnings.ADHESION,
-            "range": warnings.RANGE,
-            "short": warnings.SHORT,
-            "rubbery": warnings.RUBBERY,
+            name.lower(): getattr(warnings, name)
+            for name in ("ADHESION", "RANGE", "SHORT", "RUBBERY")
         },
         "prefixes": PREFIXES,
         "largest_share": LARGEST_RATIO,
@@ -128,23 +117,20 @@ def table(dataset: xr.Dataset) -> dict:
     fine = fine.expand_dims([name for name in COUNTS if name not in axes])
     fine = fine.transpose("poisson", "amplitude", "velocity")
     value, error = fine["mu_macro"].values, fine["mu_macro_error"].values
-    wide = [axis for axis, size in enumerate(value.shape) if size > 1]
-    line = value[::2, ::2, ::2]
-    for axis in wide:
+    line = nodes = value[::2, ::2, ::2]
+    for axis in range(3):
         line = _with_midpoints(line, axis)
     bound = error + 2.0 * np.abs(value - line) + 0.5 / LARGEST
     bound = np.where(np.isfinite(bound), bound, np.inf)
-    for axis in wide:
-        bound = _largest(bound, axis)
+    bound = maximum_filter(bound, 3)[tuple(slice(size > 1, None, 2) for size in bound.shape)]
     known = np.isfinite(bound)
     step = float(bound[known].max(initial=1e-9)) / (LARGEST - 1)
-    codes = np.where(known, np.ceil(np.where(known, bound, 0.0) / step), LARGEST)
-    nodes = np.nan_to_num(value[::2, ::2, ::2]).clip(0.0, 1.0)
+    codes = np.where(known, np.ceil(bound / step), LARGEST)
     return {
         "motion": dataset.attrs["motion"],
         **{name: list(both) for name, both in ends.items()},
         "counts": list(nodes.shape[::-1]),
-        "values": text_of(np.round(LARGEST * nodes).astype(np.uint16)),
+        "values": text_of(np.round(LARGEST * np.nan_to_num(nodes).clip(0, 1)).astype(np.uint16)),
         "errors": text_of(np.minimum(codes, LARGEST).astype(np.uint16)),
         "error_step": step,
     }
@@ -156,9 +142,3 @@ def _with_midpoints(values: np.ndarray, axis: int) -> np.ndarray:
     result = np.repeat(rows, 2, axis=0)[:-1]
     result[1::2] = (rows[1:] + rows[:-1]) / 2.0
     return np.moveaxis(result, 0, axis)
-
-
-def _largest(values: np.ndarray, axis: int) -> np.ndarray:
-    """Return the largest value in each cell, of three values along an axis."""
-    rows = np.moveaxis(values, axis, 0)
-    return np.moveaxis(np.maximum(np.maximum(rows[:-2:2], rows[1:-1:2]), rows[2::2]), 0, axis)

@@ -1,8 +1,8 @@
 """The explorer: an interactive HTML page that needs no network.
 
-This module lists the inputs of a page. `payload` packs datasets and periods, `contact_form` packs
-the data of the form for a real contact, and `page` writes the page. The JavaScript files in this
-folder run in the browser and draw with plotly.js.
+This module lists the inputs of a page. `page` packs datasets and periods and writes the page, and
+`contact_form` packs the data of the form for a real contact. The JavaScript files in this folder
+run in the browser and draw with plotly.js.
 
 Snakemake imports this module whenever it parses the workflow, so the module has few imports.
 """

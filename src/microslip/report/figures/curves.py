@@ -6,22 +6,20 @@ sweep over forces is drawn at the mean velocities that the forces cause.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterator, Sequence
 from itertools import product
 from typing import NamedTuple
 
 import numpy as np
 import xarray as xr
-from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from matplotlib.lines import Line2D
 
 from microslip.config.quantities import FORCE_FORWARD, TORQUE
 from microslip.datasets.catalogue import FORMS, STATIC, ClosedForm
 from microslip.report.figures import panels
 from microslip.report.figures import style as look
-from microslip.report.figures.data import columns, limit
+from microslip.report.figures.panels import columns, limit, moving, resampled
 
 PLANE = "velocity", "amplitude"
 FORCE_AND_TORQUE = f"force  {FORCE_FORWARD.math}\ntorque  {TORQUE.math}"
@@ -61,12 +59,9 @@ class Line(NamedTuple):
 def closed_forms(dataset: xr.Dataset) -> list[ClosedForm]:
     """Return the closed forms that a dataset contains. The closed forms of its motion come
     first."""
-    motion = dataset.attrs.get("motion", "").partition(":")[0]
+    own = FORMS.get(dataset.attrs.get("motion", "").partition(":")[0], {})
     every = {name: form for forms in FORMS.values() for name, form in forms.items()}
-    every = FORMS.get(motion, {}) | {
-        name: form for name, form in every.items() if name not in FORMS.get(motion, {})
-    }
-    return [form for name, form in every.items() if name in dataset]
+    return [form for name, form in (own | every | own).items() if name in dataset]
 
 
 def closed_form(axes: Axes, parts: Sequence[xr.Dataset], form: ClosedForm, **at: float) -> None:
@@ -81,62 +76,51 @@ def closed_form(axes: Axes, parts: Sequence[xr.Dataset], form: ClosedForm, **at:
 def draw(*datasets: xr.Dataset) -> Figure:
     """Draw one or several sweeps along one axis."""
     shown = [_static_map(one) if "cell_error" in one else one.squeeze() for one in datasets]
-    lines = [line for one in shown for line in _lines(one, len(shown) > 1)]
-    abscissae = list(dict.fromkeys(line.abscissa for line in lines))
     alone = len(shown) == 1
-    width = look.SINGLE if alone else look.DOUBLE
-    figure = look.new_figure(width, 2.7 if alone else 3.3)
+    lines = [line for one in shown for line in _lines(one, not alone)]
+    abscissae = list(dict.fromkeys(line.abscissa for line in lines))
+    figure = look.new_figure(*((look.SINGLE, 2.7) if alone else (look.DOUBLE, 3.3)))
     grid = panels.grid(figure, len(abscissae), len(abscissae))
     for axes, abscissa in zip(grid, abscissae, strict=True):
-        own = [line for line in lines if line.abscissa == abscissa]
-        handles = _panel(axes, own, shown, alone)
+        _panel(axes, [line for line in lines if line.abscissa == abscissa], shown)
         if len(grid) > 1:
-            panels.legend_above(axes, ncols=1, handles=handles)
-        elif alone:
-            panels.legend_of_figure(figure, handles, ncols=2)
-        else:
-            panels.legend_of_figure(figure, handles, "right upper", ncols=1, handlelength=3.0)
+            panels.legend_above(axes, ncols=1)
+    if len(grid) == 1:
+        place = ("upper center", 2) if alone else ("right upper", 1)
+        handles = grid[0].get_legend_handles_labels()[0]
+        panels.legend_of_figure(figure, handles, place[0], ncols=place[1], handlelength=3.0)
     return figure
 
 
 def _static_map(dataset: xr.Dataset) -> xr.Dataset:
     """Return the values of a certified map of static friction on a fine axis."""
-    low, high = (float(one) for one in (dataset["amplitude"].min(), dataset["amplitude"].max()))
-    ratios = np.unique(dataset["poisson"].values)
-    amplitude = np.linspace(low, high, FINE)
-    fine = dataset.microslip.at(velocity=0.0, amplitude=amplitude, poisson=ratios).squeeze()
-    fine["amplitude"].attrs = dataset["amplitude"].attrs
-    return fine.assign(converged=np.isfinite(fine["mu_macro"])).assign_attrs(dataset.attrs)
+    amplitude, ratios = dataset["amplitude"].values, np.unique(dataset["poisson"].values)
+    fine = np.linspace(amplitude.min(), amplitude.max(), FINE)
+    return resampled(dataset, velocity=0.0, amplitude=fine, poisson=ratios)
 
 
-def _lines(dataset: xr.Dataset, titled: bool) -> list[Line]:
-    """Return the lines of a sweep."""
+def _lines(dataset: xr.Dataset, titled: bool) -> Iterator[Line]:
+    """Yield the lines of a sweep. The abscissa is the longest axis."""
     over_force = "force" in dataset.dims
     variables = ["velocity"] if over_force else ["mu_macro"]
     variables += ["mu_torque"] if "mu_torque" in dataset else []
     sizes = {str(dim): dataset.sizes[dim] for dim in dataset[variables[0]].dims}
     dim = "force" if over_force else max(sizes, key=lambda one: sizes[one])
     title, still = look.literal(dataset.attrs.get("title", "")) if titled else "", None
-    if dim == "amplitude" and "velocity" in sizes:
-        still = dataset.sel(velocity=0.0) if 0.0 in dataset["velocity"] else None
-        moves = dataset.isel(velocity=dataset["velocity"].values > 0)
-        dataset = moves.squeeze("velocity") if moves.sizes["velocity"] == 1 else moves
-    elif dim == "velocity":
-        dataset = dataset.isel(velocity=dataset["velocity"].values > 0)
+    if dim in PLANE and "velocity" in sizes:
+        if dim == "amplitude" and 0.0 in dataset["velocity"]:
+            still = dataset.sel(velocity=0.0)
+        dataset = moving(dataset)
+        dataset = dataset.squeeze("velocity") if dataset.sizes["velocity"] == 1 else dataset
     others = [str(one) for one in dataset[variables[0]].dims if one != dim]
-    lines = []
     for place in product(*(range(dataset.sizes[other]) for other in others)):
         at = dict(zip(others, place, strict=True))
         points = dataset.isel(at)
-        texts = [title] + [
-            look.conditions([(look.symbol(points, o), float(points[o]))]) for o in others
-        ]
-        rest = still.isel({one: k for one, k in at.items() if one in still.dims}) if still else None
+        texts = [look.conditions([(look.symbol(points, one), float(points[one]))]) for one in at]
+        text = ", ".join(filter(None, [title, *texts]))
+        rest = still.isel(at, missing_dims="ignore") if still else None
         for variable in variables:
-            limits = (points, rest, dim, variable)
-            text = ", ".join(filter(None, texts))
-            lines.append(Line(points, dim, variable, text, _limit(*limits)))
-    return lines
+            yield Line(points, dim, variable, text, _limit(points, rest, dim, variable))
 
 
 def _limit(
@@ -145,67 +129,59 @@ def _limit(
     """Return a closed form that is exact for these points, else the computed static limit."""
     for form in closed_forms(points):
         exact = form.exact and (form.any_poisson or float(points["poisson"]) == 0.0)
-        own = ("torque" in form.name) == (
-            "torque" in variable
-        ) and form.name != "mu_large_amplitude"
+        own = ("torque" in form.name) == ("torque" in variable)
         line = limit(points, form.name)
-        if exact and own and form.arguments[0] == dim and line.ndim == 1:
+        on_axis = form.arguments[0] == dim and line.ndim == 1
+        if exact and own and on_axis and form.name != "mu_large_amplitude":
             return line[line.dims[0]].values, line.values, form.label
     if still is None:
         return None
     return still[dim].values, still[variable].values, "limit for velocity to 0"
 
 
-def _panel(
-    axes: Axes, lines: Sequence[Line], shown: Iterable[xr.Dataset], alone: bool
-) -> list[Artist]:
-    """Draw all lines with the same abscissa, and label the axes. Returns the legend entries."""
+def _panel(axes: Axes, lines: Sequence[Line], shown: Sequence[xr.Dataset]) -> None:
+    """Draw all lines with the same abscissa, and label the axes."""
+    alone = len(shown) == 1
     both = alone and any(line.variable == "mu_torque" for line in lines)
-    low, high, notes = 0.0, 1.0, set()
-    handles: list[Artist] = []
+    notes = set()
     for k, line in enumerate(lines):
+        is_torque = line.variable == "mu_torque"
         color, marker, ls = look.LINES[k % len(look.LINES)]
-        title, joining = line.title, {"lw": JOINING, "ls": "-"}
         if both:
-            color, marker, ls = ((look.BLUE, "o", look.SOLID), (look.VERMILLION, "s", look.DASHED))[
-                line.variable == "mu_torque"
-            ]
-        what = "torque" if line.variable == "mu_torque" else "force" if both else ""
-        label = ", ".join(filter(None, (what, title or "computed")))
+            color, ls = look.LIMITS["mu_torque_theory" if is_torque else "mu_forward_theory"]
+            marker = "s" if is_torque else "o"
+        label = line.title or "computed"
+        if both or is_torque:
+            label = f"{'torque' if is_torque else 'force'}, {label}"
         if line.dim == "force" and (rest := int((line.points["velocity"] <= 0).sum())):
             label += f" ({rest} at rest: not drawn)"
         label = look.wrapped(label, np.inf if alone else 1.6, 8.0)
+        if label.startswith("_"):  # which would hide it
+            label = f" {label}"
+        ink: look.Ink = {"color": color, "marker": marker, "ms": 3.6}
+        joining: look.Ink = {"lw": JOINING, "ls": "-"}
         if line.limit is not None:
             x, y, form = line.limit
-            axes.plot(x, y, color=color, ls=ls, gid="limit")
             joining = {"ls": "none"}
-            ink: look.Ink = {"color": color, "ls": ls}
-            if alone:
-                handles.append(Line2D([], [], label=form, **ink))
-                ink = {"color": color, "ls": "none"}
-            handles.append(Line2D([], [], marker=marker, ms=3.6, label=label, **ink))
+            axes.plot(x, y, color=color, ls=ls, gid="limit", label=form if alone else "")
+            if not alone:  # one legend entry for the points and their limit
+                axes.plot([], [], ls=ls, label=label, **ink)
+                label = ""
             notes |= {float(line.points["velocity"])} if line.dim == "amplitude" else set()
-        x, y, error, converged = _values(line)
-        ink = {"color": color, "marker": marker, "ms": 3.6, **joining}
-        panels.computed(axes, x, y, error, converged, label=label, **ink)
-        low, high = np.nanmin([low, *y]), np.nanmax([high, *y])
+        panels.computed(axes, *_values(line), label=label, **ink | joining)
     _references(axes, lines, shown)
-    named = {handle.get_label() for handle in handles}
-    others = axes.get_legend_handles_labels()[0]
-    handles += [handle for handle in others if handle.get_label() not in named]
     quantities = [look.quantity(one.points, one.abscissa) for one in lines]
     several = len({one.unit for one in quantities}) > 1
     text = f"{quantities[0].text}, in the units of each motion"
     axes.set_xlabel(text if several else look.axis(quantities[0]))
-    panels.unit_range(axes, low, high)
-    axes.set_ylabel(FORCE_AND_TORQUE if both else look.FRICTION_IN_TWO_LINES)
+    axes.set_ylabel(FORCE_AND_TORQUE if both else look.FRICTION)
+    panels.unit_range(axes)
     axes.margins(x=0.0 if alone else 0.02)
-    panels.logarithmic_if_wide(axes, np.concatenate([_values(line)[0] for line in lines]))
+    panels.logarithmic_if_wide(axes)
     if notes:
         at = ", ".join(f"${look.number(one)}$" for one in sorted(notes))
         text = f"lines: limit for velocity to 0;\nmarkers: velocity {at}"
         axes.set_title(text, loc="left", fontsize=look.HEADING)
-    return handles
 
 
 def _values(line: Line) -> tuple[np.ndarray, ...]:
@@ -219,7 +195,7 @@ def _values(line: Line) -> tuple[np.ndarray, ...]:
     return columns(line.points, *names)
 
 
-def _references(axes: Axes, lines: Sequence[Line], shown: Iterable[xr.Dataset]) -> None:
+def _references(axes: Axes, lines: Sequence[Line], shown: Sequence[xr.Dataset]) -> None:
     """Draw friction at the velocity of a drive, from a sweep without a drive in the figure."""
     points = lines[0].points
     if "drive" not in points.attrs or "velocity" not in points.coords or points["velocity"].ndim:
@@ -228,9 +204,6 @@ def _references(axes: Axes, lines: Sequence[Line], shown: Iterable[xr.Dataset]) 
         same = all(one.attrs.get(n) == points.attrs.get(n) for n in ("motion", "pressure"))
         if same and "drive" not in one.attrs and "velocity" in one.dims:
             near = one.sel(velocity=float(points["velocity"]), method="nearest")
-            if (
-                np.isclose(float(near["velocity"]), float(points["velocity"]))
-                and near["mu_macro"].ndim == 0
-            ):
+            if np.isclose(near["velocity"], points["velocity"]) and near["mu_macro"].ndim == 0:
                 text = look.literal(one.attrs.get("title", ""))
                 axes.axhline(float(near["mu_macro"]), color=look.BLACK, label=text, gid="reference")

@@ -2,9 +2,9 @@
 
 Figures show stored numbers only: every curve, including those from theory, is a variable of a
 dataset. The kind of figure determines the function that draws it. The module `style` defines
-colours and fonts, and `data` selects parts of datasets.
+colours and fonts.
 
-    figure = draw("map", {"transverse": data.loaded("results/transverse.nc")})
+    figure = draw("map", {"transverse": loaded("results/transverse.nc")})
     save(figure, "results/figures/fig2_transverse_map.pdf")
 
 Matplotlib is imported by the first call of `draw` or `save`.
@@ -16,13 +16,13 @@ import importlib
 import json
 import os
 import sys
-from collections.abc import Iterable, Mapping
+from collections.abc import Mapping
 from contextlib import suppress
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from microslip.config.kinds import KINDS
-from microslip.foundation.files import writing_beside
+from microslip.foundation.files import CacheError, writing_beside
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -78,7 +78,7 @@ def draw(kind: str, datasets: Mapping[str, xr.Dataset]) -> Figure:
         figure.set_layout_engine("none")
         for finish in getattr(figure, "finishing", ()):
             finish()
-    figure.made_from = made_from(datasets.values())
+    figure.made_from = json.dumps([*map(provenance, datasets.values())], sort_keys=True)
     return figure
 
 
@@ -101,17 +101,17 @@ def import_matplotlib() -> None:
             matplotlib.rcParams["backend"] = backend
 
 
-def made_from(datasets: Iterable[xr.Dataset]) -> str:
-    """Return the provenance of datasets: a JSON list of their attributes in `PROVENANCE`."""
-    attributes = [{key: d.attrs[key] for key in PROVENANCE if key in d.attrs} for d in datasets]
-    return json.dumps(attributes, sort_keys=True)
+def provenance(dataset: xr.Dataset) -> dict:
+    """Return the attributes of a dataset that are in `PROVENANCE`."""
+    return {key: dataset.attrs[key] for key in PROVENANCE if key in dataset.attrs}
 
 
 def save(figure: Figure, path: str | os.PathLike[str]) -> Path:
     """Write a figure atomically as `.png` (300 dpi) or `.pdf` and return its path.
 
-    The metadata contain the provenance, see `made_from`, and no date, so that equal figures have
-    equal bytes. A missing folder is created. Raises CacheError if the file cannot be written.
+    The metadata contain the provenance of the datasets (a JSON list) and no date, so that equal
+    figures have equal bytes. A missing folder is created. Raises CacheError if the file cannot be
+    written.
     """
     import_matplotlib()
     from microslip.report.figures.style import style
@@ -123,3 +123,20 @@ def save(figure: Figure, path: str | os.PathLike[str]) -> Path:
     with writing_beside(path) as beside, style():
         figure.savefig(beside, format=kind, metadata=metadata)
     return path
+
+
+def loaded(path: str | os.PathLike[str]) -> xr.Dataset:
+    """Read a file, including its groups, into one dataset for `draw`.
+
+    Raises CacheError if the file is missing or damaged.
+    """
+    from microslip.datasets.netcdf import whole
+
+    try:
+        return whole(path)
+    except (OSError, RuntimeError, ValueError) as error:
+        why = " ".join(str(getattr(error, "strerror", None) or error).split())
+        raise CacheError(
+            f"cannot read the dataset {path}: {why}; allowed: a netCDF file that the workflow made;"
+            " remove it and run again: finished points are kept"
+        ) from error

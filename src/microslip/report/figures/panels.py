@@ -1,4 +1,5 @@
-"""Draw parts of panels: letters, legends, colour bars, ticks and points."""
+"""Parts of panels: letters, legends, colour bars, ticks, computed points and hatched cells; and
+parts of datasets."""
 
 from __future__ import annotations
 
@@ -6,28 +7,30 @@ from collections.abc import Callable, Iterable, Sequence
 from typing import Any
 
 import numpy as np
+import xarray as xr
 from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.axis import Axis
 from matplotlib.cm import ScalarMappable
 from matplotlib.colorbar import Colorbar
 from matplotlib.figure import Figure, SubFigure
+from matplotlib.patches import Circle, Rectangle
 from matplotlib.ticker import FuncFormatter, LogLocator, MaxNLocator, NullFormatter
 
 from microslip.report.figures import style as look
-from microslip.report.figures.data import finite_or_nan
 
 WIDE = 10.0
 """An axis is logarithmic if the ratio of its largest to its smallest value exceeds this number."""
 VISIBLE_ERROR = 0.01
 """Smallest error estimate that is drawn, relative to the largest value. The markers hide smaller
 error estimates."""
+POINTS = ("computed", "unconverged")
+"""Ids of the markers of computed points."""
 
 
 def grid(figure: Figure | SubFigure, count: int, across: int, **shared: Any) -> list[Axes]:
     """Return `count` new panels in rows of `across` panels. shared: arguments of `subplots`."""
-    rows = -(-count // across)
-    axes = list(figure.subplots(rows, across, squeeze=False, **shared).flat)
+    axes = list(figure.subplots(-(-count // across), across, squeeze=False, **shared).flat)
     for empty in axes[count:]:
         empty.remove()
     return axes[:count]
@@ -37,9 +40,8 @@ def lettered(axes: Axes, note: str = "") -> str:
     """Return the heading of a panel: the next letter of its figure, bold and in brackets, and an
     optional note."""
     figure: Any = axes.get_figure(root=True)
-    figure.letters = [*getattr(figure, "letters", ()), axes]
-    letter = look.letters(len(figure.letters))[-1]
-    return rf"$\bf{{({letter})}}$" + (rf"$\;$ {note}" if note else "")
+    figure.letters = getattr(figure, "letters", -1) + 1
+    return rf"$\bf{{({look.letter(figure.letters)})}}$" + (rf"$\;$ {note}" if note else "")
 
 
 def heading(axes: Axes, note: str = "", room: float = np.inf) -> None:
@@ -48,24 +50,14 @@ def heading(axes: Axes, note: str = "", room: float = np.inf) -> None:
     axes.set_title(text, loc="left", pad=5, fontsize=look.HEADING)
 
 
-def legend_above(
-    axes: Axes, note: str = "", ncols: int = 2, handles: Sequence[Artist] | None = None
-) -> None:
-    """Write a letter, a note and a legend above a panel. handles: replace the panel's entries."""
-    legend = axes.legend(
-        handles=axes.get_legend_handles_labels()[0] if handles is None else handles,
-        title=lettered(axes, note),
-        title_fontsize=look.HEADING,
-        alignment="left",
-        loc="lower left",
-        bbox_to_anchor=(0.0, 1.02),
-        ncols=ncols,
-        handletextpad=0.6,
-        columnspacing=0.8,
-        borderaxespad=0.0,
-        borderpad=0.0,
-    )
-    legend.set_gid("heading")
+def legend_above(axes: Axes, note: str = "", ncols: int = 2, **more: Any) -> None:
+    """Write a letter, a note and a legend above a panel. more: other arguments of `legend`."""
+    place: look.Ink = {"loc": "lower left", "bbox_to_anchor": (0.0, 1.02), "alignment": "left"}
+    place |= {"handletextpad": 0.6, "columnspacing": 0.8, "borderaxespad": 0.0, "borderpad": 0.0}
+    more |= {"title": lettered(axes, note), "title_fontsize": look.HEADING}
+    # An empty legend has a title, too.
+    more = {"handles": axes.get_legend_handles_labels()[0]} | more
+    axes.legend(ncols=ncols, **place, **more).set_gid("heading")
 
 
 def legend_of_figure(
@@ -94,10 +86,19 @@ def ticks_outside(axes: Axes) -> None:
     axes.tick_params(which="both", direction="out", top=False, right=False)
 
 
-def logarithmic_if_wide(axes: Axes, values: np.ndarray) -> None:
-    """Make the abscissa logarithmic if all values are positive and their ratio exceeds WIDE."""
-    if values.min() > 0.0 and values.max() > WIDE * values.min():
+def logarithmic_if_wide(axes: Axes) -> None:
+    """Make the abscissa logarithmic if those of all computed points are positive and the ratio of
+    the largest to the smallest exceeds WIDE."""
+    x = _points(axes, 0)
+    if x.min() > 0.0 and x.max() > WIDE * x.min():
         logarithmic(axes)
+
+
+def _points(axes: Axes, which: int) -> np.ndarray:
+    """Return the finite abscissae (0) or ordinates (1) of all computed points in a panel."""
+    lines = [line for line in axes.get_lines() if line.get_gid() in POINTS]
+    values = np.concatenate([np.zeros(0), *(np.ravel(line.get_data()[which]) for line in lines)])
+    return values[np.isfinite(values)]
 
 
 def logarithmic(axes: Axes, limits: Sequence[float] | np.ndarray | None = None) -> None:
@@ -134,9 +135,25 @@ def edges(points: np.ndarray, logarithmic: bool) -> np.ndarray:
     return np.unique([2 * points[0] - between[0], *between, 2 * points[-1] - between[-1]])
 
 
-def unit_range(axes: Axes, low: float = 0.0, high: float = 1.0) -> None:
-    """Set the vertical range of a panel to 0 to 1, extended to `low` and `high`."""
-    low, high = np.floor(5 * min(low, 0.0)) / 5, np.ceil(5 * max(high, 1.0)) / 5
+def cells(axes: Axes, x: np.ndarray, y: np.ndarray, which: np.ndarray, **ink: Any) -> None:
+    """Draw a rectangle for each cell that is True.
+
+    x, y: edges of the cells, shapes (n + 1,) and (m + 1,). which: shape (m, n).
+    """
+    for i, j in np.argwhere(which):
+        size = x[j + 1] - x[j], y[i + 1] - y[i]
+        axes.add_patch(Rectangle((x[j], y[i]), *size, **ink))
+
+
+def rim(axes: Axes) -> None:
+    """Draw the edge of the contact, a circle with radius 1."""
+    axes.add_patch(Circle((0, 0), 1.0, fill=False, lw=0.9))
+
+
+def unit_range(axes: Axes) -> None:
+    """Set the vertical range of a panel to 0 to 1, extended to all computed points."""
+    y = _points(axes, 1)
+    low, high = np.floor(5 * y.min(initial=0.0)) / 5, np.ceil(5 * y.max(initial=1.0)) / 5
     margin = 0.04 * (high - low)
     axes.set_ylim(low - margin, high + margin)
     axes.set_yticks(np.arange(round(5 * low), round(5 * high) + 1) / 5)
@@ -147,7 +164,8 @@ def computed(axes: Axes, x: np.ndarray, *points: np.ndarray, label: str = "", **
 
     points: values, error estimates, and flags that are nonzero for converged points.
     """
-    values, errors, converged = points[0], finite_or_nan(points[1]), points[2] != 0
+    values, errors, converged = points[0], points[1], points[2] != 0
+    errors = np.where(np.isfinite(errors), errors, np.nan)
     marks: look.Ink = {"color": look.BLACK, "ls": "none", "marker": "o", "ms": 3.2, "mew": 0.7}
     marks |= {"zorder": 5, **ink}
     bars: look.Ink = {"fmt": "none", "ecolor": marks["color"], "elinewidth": 0.7, "capsize": 1.8}
@@ -155,17 +173,47 @@ def computed(axes: Axes, x: np.ndarray, *points: np.ndarray, label: str = "", **
         axes.errorbar(x, values, yerr=errors, **bars).lines[2][0].set_gid("error")
     axes.plot(x[converged], values[converged], gid="computed", label=label, **marks)
     if not converged.all():
-        marks |= {"mfc": "white", "ls": "none", "gid": "unconverged"}
-        text = once(axes, "not converged")
-        axes.plot(x[~converged], values[~converged], label=text, **marks)
-
-
-def once(axes: Axes, label: str) -> str:
-    """Return the label, prefixed with "_" (hidden in legends) if the panel already has this
-    label."""
-    return "_" + label if label in axes.get_legend_handles_labels()[1] else label
+        # A label that begins with "_" is not in the legend.
+        known = "not converged" in axes.get_legend_handles_labels()[1]
+        marks |= {"mfc": "white", "ls": "none", "label": "_" if known else "not converged"}
+        axes.plot(x[~converged], values[~converged], gid="unconverged", **marks)
 
 
 def after_layout(figure: Any, finish: Callable[[], None]) -> None:
     """Register a function that is called after the layout. The function must not move panels."""
     figure.finishing = [*getattr(figure, "finishing", ()), finish]
+
+
+# Parts of datasets
+
+
+def at_each_poisson(dataset: xr.Dataset) -> list[xr.Dataset]:
+    """Split a dataset by Poisson's ratio, in ascending order."""
+    if "poisson" not in dataset.dims:
+        return [dataset]
+    return [dataset.sel(poisson=nu) for nu in np.sort(dataset["poisson"].values)]
+
+
+def moving(dataset: xr.Dataset) -> xr.Dataset:
+    """Select the velocities above 0."""
+    if "velocity" not in dataset.dims:
+        return dataset
+    return dataset.isel(velocity=dataset["velocity"].values > 0)
+
+
+def resampled(dataset: xr.Dataset, **coordinates: Any) -> xr.Dataset:
+    """Return a certified map at coordinates. Its values outside unsolved cells are converged."""
+    fine = dataset.microslip.at(**coordinates).squeeze().assign_attrs(dataset.attrs)
+    for name in ("velocity", "amplitude"):
+        fine[name].attrs = dataset[name].attrs
+    return fine.assign(converged=np.isfinite(fine["mu_macro"]))
+
+
+def limit(dataset: xr.Dataset, name: str) -> xr.DataArray:
+    """Return a theoretical limit, on a fine axis if the dataset has one."""
+    return dataset[f"{name}_curve"] if f"{name}_curve" in dataset else dataset[name]
+
+
+def columns(dataset: xr.Dataset, *names: str) -> tuple[np.ndarray, ...]:
+    """Return the values of several variables as arrays."""
+    return tuple(dataset[name].values for name in names)

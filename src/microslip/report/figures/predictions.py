@@ -2,17 +2,14 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
 import xarray as xr
-from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
 from microslip.report.figures import panels
 from microslip.report.figures import style as look
-from microslip.report.figures.data import columns
+from microslip.report.figures.panels import columns
 
 FRICTION = (
     ("mu_apparent", "mu_apparent_error", "coefficient of friction\n", ""),
@@ -46,7 +43,10 @@ def curve(dataset: xr.Dataset) -> Figure:
     For contacts under a force, draw the speed. Values that did not converge are hollow.
     """
     abscissa, *others = sorted(dataset.dims, key=dataset.sizes.__getitem__, reverse=True)
-    x, unit = _scaled(dataset[abscissa])
+    about = {
+        name: (dataset[name].attrs["long_name"], _unit(dataset[name])) for name in dataset.dims
+    }
+    size, unit = look.prefixed(dataset[abscissa].values, about[abscissa][1])
     forced = "force_N" in dataset and bool(dataset["force_N"].notnull().any())
     shown = DRIFT if forced else FRICTION
     figure = look.new_figure(look.SINGLE, 0.4 + 1.9 * len(shown))
@@ -55,33 +55,30 @@ def curve(dataset: xr.Dataset) -> Figure:
         factor, prefixed = look.prefixed(dataset[variable].fillna(0.0).values, si)
         lines = [dataset.isel({o: k}) for o in others for k in range(dataset.sizes[o])] or [dataset]
         for line, (color, marker, ls) in zip(lines, look.LINES, strict=False):
-            title = "".join(_title(line[other]) for other in others)
-            y, band = line[variable].values / factor, line[error].values / factor
             ink: look.Ink = {"color": color, "ls": ls, "marker": marker, "ms": 2.4, "lw": 1.0}
-            panels.computed(panel, x, y, band, line["converged"].values, label=title, **ink)
+            ink["label"] = "".join(_value(*about[o], float(line[o]), 4) for o in others)
+            x, y, errors, converged = columns(line, abscissa, variable, error, "converged")
+            panels.computed(panel, x / size, y / factor, errors / factor, converged, **ink)
         panel.set_ylabel(f"{label}({prefixed or 'dimensionless'})")
         panel.set_ylim(bottom=0.0)
-        if len(shown) > 1 and not others:
+        if others and panel is axes[0]:
+            panels.legend_above(panel)
+        elif len(shown) > 1:
             panels.heading(panel)
-    if others:
-        panels.legend_above(axes[0])
-        for panel in axes[1:]:
-            panels.heading(panel)
-    panels.logarithmic_if_wide(axes[-1], x)
-    axes[-1].set_xlabel(f"{dataset[abscissa].attrs['long_name']} ({unit or 'dimensionless'})")
+    panels.logarithmic_if_wide(axes[-1])
+    axes[-1].set_xlabel(f"{about[abscissa][0]} ({unit or 'dimensionless'})")
     return figure
 
 
-def _scaled(axis: xr.DataArray) -> tuple[np.ndarray, str]:
-    """Return the values of an axis in a prefixed unit, and this unit."""
-    factor, unit = look.prefixed(axis.values, axis.attrs["units"].removeprefix("1"))
-    return axis.values / factor, unit
+def _unit(axis: xr.DataArray) -> str:
+    """Return the SI unit of an axis, "" if it is dimensionless."""
+    return axis.attrs["units"].removeprefix("1")
 
 
-def _title(value: xr.DataArray) -> str:
-    """Return the title of a line, such as "load 10 N"."""
-    number, unit = _scaled(value)
-    return f"{value.attrs['long_name']} {float(number):.4g} {unit}".strip()
+def _value(name: str, si: str, value: float, digits: int = 3) -> str:
+    """Format a value with its name and a prefixed unit, such as "load 10 N"."""
+    factor, unit = look.prefixed(value, si)
+    return f"{name} {value / factor:.{digits}g} {unit}".strip()
 
 
 def fit(dataset: xr.Dataset) -> Figure:
@@ -91,39 +88,53 @@ def fit(dataset: xr.Dataset) -> Figure:
     different colours and markers. The line is the model curve, with a band for the model error. A
     row without a model curve has a short dash at the model's friction.
     """
-    units = {name: unit for name, (_, unit) in CONDITIONS.items()}
-    units["amplitude_si"] = "rad" if dataset.attrs.get("motion") == "bore" else "m"
-    counts = {name: len(np.unique(dataset[name])) for name in CONDITIONS}
+    about = dict(CONDITIONS)
+    if dataset.attrs.get("motion") == "bore":
+        about["amplitude_si"] = ("amplitude", "rad")
+    counts = {name: len(np.unique(dataset[name])) for name in about}
     along = max(counts, key=lambda name: counts[name])
-    others = [name for name in CONDITIONS if name != along]
+    others = [name for name in about if name != along]
     what, si = MEASURED[dataset.attrs["quantity"]]
-    unit, prefixed = look.prefixed(dataset[along].values, units[along])
+    unit, prefixed = look.prefixed(dataset[along].values, about[along][1])
     factor, friction = look.prefixed(dataset["measured"].values, si)
     figure = look.new_figure(look.SINGLE, 4.0)
     upper, lower = figure.subplots(2, 1, sharex=True, height_ratios=(2.0, 1.0))
     every = np.stack(columns(dataset, *others), axis=1)
     kinds, which = np.unique(every, axis=0, return_inverse=True)
-    if len(kinds) > len(look.LINES):
-        which = np.zeros(dataset.sizes["row"], int)
-    differ = [name for name in others if counts[name] > 1 and which.any()]
-    for k, ink in zip(np.unique(which), look.LINES, strict=False):
-        rows = dataset.isel(row=which.ravel() == k)
-        texts = (_value(name, float(rows[name][0]), units[name]) for name in differ)
-        title = ", ".join(texts) or "measured; line: model"
-        x, residual, measured, error = columns(
-            rows, along, "residual", "measured", "measured_error"
-        )
-        mark: look.Ink = {"color": ink[0], "marker": ink[1], "label": title}
+    several = 1 < len(kinds) <= len(look.LINES)
+    which = which.ravel() if several else np.zeros(len(every), int)
+    for k, (color, marker, ls) in zip(np.unique(which), look.LINES, strict=False):
+        rows = dataset.isel(row=which == k)
+        texts = [_value(*about[n], float(rows[n][0])) for n in others if several and counts[n] > 1]
+        ink: look.Ink = {"color": color, "marker": marker}
+        ink["label"] = ", ".join(texts) or "measured; line: model"
+        x, measured, error = columns(rows, along, "measured", "measured_error")
         good = np.ones(x.size)
-        panels.computed(upper, x / unit, measured / factor, error / factor, good, **mark)
-        _model(upper, dataset, rows, along, unit, factor, ink=ink)
-        lower.plot(x / unit, residual, ink[1], color=ink[0], ms=3.2, gid="residual")
+        panels.computed(upper, x / unit, measured / factor, error / factor, good, **ink)
+        near = [
+            dataset[f"curve_{n}"].values == every[which == k][0, i] for i, n in enumerate(others)
+        ]
+        here = np.all(near, axis=0) & (several or len(kinds) == 1)
+        names = (f"curve_{name}" for name in (along, "fitted", "fitted_error"))
+        x, fitted, error = (values[here] for values in columns(dataset, *names))
+        line: look.Ink = {"color": color, "ls": ls, "lw": 1.0}
+        if not here.any():
+            x, fitted = columns(rows, along, "fitted")
+            line = {"color": color, "ls": "none", "marker": "_", "ms": 7.0, "mew": 1.0}
+        else:
+            low, high = (fitted - error) / factor, (fitted + error) / factor
+            band: look.Ink = {"color": color, "alpha": 0.2, "lw": 0, "gid": "model-error"}
+            upper.fill_between(x / unit, low, high, **band)
+        upper.plot(x / unit, fitted / factor, gid="fitted", **line)
+        lower.plot(
+            rows[along] / unit, rows["residual"], marker, color=color, ms=3.2, gid="residual"
+        )
     lower.axhspan(-BAND, BAND, color=look.PALE, lw=0, zorder=0.4)
     lower.axhline(0.0, color=look.GREY, lw=0.7, zorder=0.5)
-    panels.logarithmic_if_wide(lower, dataset[along].values)
+    panels.logarithmic_if_wide(upper)
     upper.set_ylabel(f"{what} ({friction or 'dimensionless'})")
     lower.set_ylabel("residual, standard\nerrors (dimensionless)")
-    lower.set_xlabel(f"{CONDITIONS[along][0]} ({prefixed})")
+    lower.set_xlabel(f"{about[along][0]} ({prefixed})")
     handles = upper.get_legend_handles_labels()[0]
     if len(handles) > 1:
         handles.append(Line2D([], [], color=look.GREY, lw=1.0, label="lines: model"))
@@ -131,33 +142,6 @@ def fit(dataset: xr.Dataset) -> Figure:
     panels.legend_above(upper, note, handles=handles)
     panels.heading(lower)
     return figure
-
-
-def _model(
-    axes: Axes, dataset: xr.Dataset, rows: xr.Dataset, along: str, unit: float, factor: float,
-    *, ink: tuple[str, str, Any],
-) -> None:  # fmt: skip
-    """Draw a model curve if the rows differ in the abscissa only, else a dash for each row."""
-    here = np.ones(dataset[f"curve_{along}"].shape, bool)
-    for name in CONDITIONS:
-        if name != along:
-            values = np.unique(rows[name])
-            here &= len(values) == 1 and dataset[f"curve_{name}"].values == values[0]
-    if here.any():
-        names = (f"curve_{name}" for name in (along, "fitted", "fitted_error"))
-        x, fitted, error = (values[here] for values in columns(dataset, *names))
-        low, high = (fitted - error) / factor, (fitted + error) / factor
-        band: look.Ink = {"color": ink[0], "alpha": 0.2, "lw": 0, "gid": "model-error"}
-        axes.fill_between(x / unit, low, high, **band)
-        axes.plot(x / unit, fitted / factor, color=ink[0], ls=ink[2], lw=1.0, gid="fitted")
-    else:
-        x, y = rows[along].values / unit, rows["fitted"].values / factor
-        axes.plot(x, y, "_", color=ink[0], ms=7.0, mew=1.0, gid="fitted")
-
-
-def _value(condition: str, value: float, si: str) -> str:
-    factor, unit = look.prefixed(value, si)
-    return f"{CONDITIONS[condition][0]} {value / factor:.3g} {unit}"
 
 
 def _parameters(dataset: xr.Dataset) -> str:

@@ -1,17 +1,22 @@
-"""Single runs: forces over the first periods, and transients (Figures 1 and 5)."""
+"""Single runs: forces over the first periods (Figure 1), tractions in the contact with the
+instantaneous centre of rotation of a steady bore (Figure 3), and transients (Figure 5)."""
 
 from __future__ import annotations
 
 import numpy as np
 import xarray as xr
+from matplotlib.colors import LinearSegmentedColormap
 from matplotlib.figure import Figure
+from matplotlib.patches import Circle
 from matplotlib.ticker import MultipleLocator
+from matplotlib.tri import Triangulation
+from scipy.interpolate import griddata
 
-from microslip.config.quantities import FORCE_FORWARD, FORCE_LATERAL
+from microslip.config.quantities import FORCE_FORWARD, FORCE_LATERAL, FORWARD, LATERAL
 from microslip.report.figures import panels
 from microslip.report.figures import style as look
 from microslip.report.figures.curves import FORCE_AND_TORQUE
-from microslip.report.figures.data import columns
+from microslip.report.figures.panels import columns
 
 MARGIN = 0.12
 """Space above and below a force, divided by its range."""
@@ -22,10 +27,22 @@ STARTS = {
 }
 """Labels of the initial states in the paper. Other states are labelled with their names."""
 QUANTITIES = (
-    ("force", "Eq 21", "transient_force_forward", look.BLUE),
-    ("torque", "Eq 22", "transient_torque", look.VERMILLION),
+    ("force", "Eq 21", "transient_force_forward", look.BLUE, look.SOLID),
+    ("torque", "Eq 22", "transient_torque", look.VERMILLION, look.DASHDOT),
 )
-"""For each quantity of a transient: name, equation of the steady value, variable, colour."""
+"""For each quantity of a transient: name, equation of the steady value, variable, colour and line
+style."""
+SPACING = 0.14
+"""Distance between the arrows, in contact radii."""
+SHADES = LinearSegmentedColormap.from_list("bound", ["#FFFFFF", "#8CC8EE"])
+"""Colours that contrast well with black arrows."""
+
+
+def _conditions(dataset: xr.Dataset, run: str, *names: str) -> str:
+    """Format the conditions of a run. run: first word of its variables."""
+    return look.conditions(
+        (look.symbol(dataset, name), float(dataset[f"{run}_{name}"])) for name in names
+    )
 
 
 def history(dataset: xr.Dataset) -> Figure:
@@ -50,10 +67,7 @@ def history(dataset: xr.Dataset) -> Figure:
     for axes in (upper, lower):
         axes.grid(axis="x", color=look.PALE, lw=0.5)
         axes.set_axisbelow(True)
-    names = "velocity", "amplitude"
-    symbols = [look.symbol(dataset, name) for name in names]
-    values = [float(dataset[f"history_{name}"]) for name in names]
-    panels.legend_above(upper, look.conditions(zip(symbols, values, strict=True)))
+    panels.legend_above(upper, _conditions(dataset, "history", "velocity", "amplitude"))
     panels.heading(lower)
     return figure
 
@@ -62,27 +76,78 @@ def transients(dataset: xr.Dataset) -> Figure:
     """Draw force and torque against the forward travel, with a panel for each initial state."""
     starts = [str(label) for label in dataset["start"].values]
     figure = look.new_figure(look.DOUBLE, 2.45)
-    grid = figure.subplots(1, len(starts), sharex=True, sharey=True, squeeze=False)[0]
+    grid = panels.grid(figure, len(starts), len(starts), sharex=True, sharey=True)
     for index, (axes, start) in enumerate(zip(grid, starts, strict=True)):
         at = dataset.isel(start=index)
-        for (what, equation, name, color), ls in zip(
-            QUANTITIES, (look.SOLID, look.DASHDOT), strict=True
-        ):
-            travel, values = columns(at, "transient_displacement", name)
-            finite = np.isfinite(travel) & np.isfinite(values)  # shorter runs end in NaN
-            ink: look.Ink = {"color": color, "ls": ls, "gid": name}
-            axes.plot(travel[finite], values[finite], label=f"{what}, computed", **ink)
-            ink = {"color": color, "ls": look.DOTTED, "lw": 1.0, "zorder": 1.5}
-            steady = float(at[f"transient_{what}_theory"])
-            axes.axhline(steady, label=f"{what}, {equation}", gid=f"{what}_theory", **ink)
+        for what, equation, name, color, ls in QUANTITIES:
+            # Shorter runs end in NaN, which is not drawn.
+            line = columns(at, "transient_displacement", name)
+            axes.plot(*line, color=color, ls=ls, label=f"{what}, computed", gid=name)
+            ink: look.Ink = {"color": color, "ls": look.DOTTED, "lw": 1.0, "zorder": 1.5}
+            ink |= {"label": f"{what}, {equation}", "gid": f"{what}_theory"}
+            axes.axhline(float(at[f"transient_{what}_theory"]), **ink)
         panels.heading(axes, STARTS.get(start, look.literal(start)))
     grid[0].set(ylabel=FORCE_AND_TORQUE)
     grid[0].set_xlim(0.0, float(dataset["transient_displacement"].max()))
     grid[len(starts) // 2].set_xlabel(r"forward travel  $v_0 t/u_\mathrm{lim}$")
     panels.unit_range(grid[0])
     panels.legend_of_figure(figure, grid[0].get_legend_handles_labels()[0])
-    text = look.conditions(
-        [(look.symbol(dataset, "velocity"), float(dataset["transient_velocity"]))]
-    )
+    text = _conditions(dataset, "transient", "velocity")
     grid[-1].text(0.97, 0.05, text, transform=grid[-1].transAxes, ha="right")
     return figure
+
+
+def field(dataset: xr.Dataset) -> Figure:
+    """Draw traction arrows over a colour map of the bound, with a horizontal lateral axis.
+
+    The longest arrow is shorter than the distance between arrows, so that arrows do not touch.
+    """
+    x, y = columns(dataset, "field_lateral_position", "field_forward_position")
+    tractions = columns(dataset, "field_traction_lateral", "field_traction_forward")
+    bound, centre = dataset["field_bound"].values, float(dataset["field_centre_lateral"])
+    figure = look.new_figure(look.SINGLE, 3.95)
+    axes = figure.add_subplot(aspect="equal")
+    panels.rim(axes)
+    # The bound is constant between the outermost cells and the rim.
+    angle = np.linspace(0.0, 2.0 * np.pi, 180, endpoint=False)
+    rim = np.cos(angle), np.sin(angle)
+    bounds = np.append(bound, griddata((x, y), bound, rim, method="nearest"))
+    mesh = Triangulation(np.append(x, rim[0]), np.append(y, rim[1]))
+    shading: look.Ink = {"shading": "gouraud", "cmap": SHADES, "vmin": 0.0, "zorder": 0}
+    shade = axes.tripcolor(mesh, bounds, **shading)
+    shade.set_clip_path(Circle((0, 0), 1.0, transform=axes.transData))
+    label = r"friction bound  $\mu p\,a^2/(\mu F_z)$"
+    panels.colour_bar(shade, axes, label, orientation="horizontal", aspect=32)
+    arrow: look.Ink = {"width": 0.006, "headwidth": 3.4, "headlength": 3.8, "headaxislength": 3.4}
+    arrow |= {"angles": "xy", "scale_units": "xy", "minlength": 0.6, "pivot": "mid"}
+    arrow |= {"scale": bound.max() / (0.8 * SPACING), "gid": "traction"}
+    arrows = axes.quiver(*_lattice(x, y, *tractions, centre=centre), **arrow)
+    axes.quiverkey(arrows, 0.7, 1.042, 0.4, r"$0.4\,\mu F_z/a^2$", labelpos="E", labelsep=0.06)
+    mark: look.Ink = {"mfc": "white", "mec": look.VERMILLION, "mew": 1.6, "zorder": 6}
+    mark |= {"gid": "centre", "label": "instantaneous centre"}
+    axes.plot([centre], [0.0], "o", ms=6.5, **mark)
+    axes.set(xlim=(min(-1.1, centre - 0.15), 1.1), ylim=(-1.1, 1.1))
+    axes.set(xlabel=look.axis(LATERAL), ylabel=look.axis(FORWARD))
+    for axis in (axes.xaxis, axes.yaxis):
+        axis.set_major_locator(MultipleLocator(0.5))
+    text = _conditions(dataset, "field", "velocity")
+    axes.text(0.035, 0.97, text, transform=axes.transAxes, va="top")
+    axes.legend(loc="lower left", bbox_to_anchor=(0.0, 1.0), handlelength=1.0, borderaxespad=0.1)
+    return figure
+
+
+def _lattice(
+    x: np.ndarray, y: np.ndarray, *fields: np.ndarray, centre: float
+) -> tuple[np.ndarray, ...]:
+    """Interpolate fields linearly from the cells onto a square lattice.
+
+    Arrows at the cells would overlap in the middle and at the rim. Nodes close to the rim and to
+    the centre of rotation are omitted. Returns lateral and forward positions, then the fields.
+    """
+    line = SPACING * np.arange(-round(1.0 / SPACING), round(1.0 / SPACING) + 1)
+    nodes = np.stack(np.meshgrid(line, line), axis=-1).reshape(-1, 2)
+    values = griddata(np.column_stack((x, y)), np.column_stack(fields), nodes)
+    visible = np.isfinite(values).all(axis=1)
+    visible &= np.hypot(*nodes.T) < 1.0 - 0.4 * SPACING
+    visible &= np.hypot(nodes[:, 0] - centre, nodes[:, 1]) > SPACING / 2.0
+    return (*nodes[visible].T, *values[visible].T)

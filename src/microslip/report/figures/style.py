@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterable
 from contextlib import AbstractContextManager
+from string import ascii_lowercase
 from typing import Any
 
 import matplotlib.style
@@ -15,7 +16,6 @@ from matplotlib.textpath import TextPath
 from matplotlib.ticker import EngFormatter
 
 from microslip.config.quantities import AMPLITUDE, DRIVES, MU_MACRO, VELOCITY, Quantity
-from microslip.report.figures.formulas import mathtext
 
 Ink = dict[str, Any]
 """Keyword arguments of a matplotlib artist."""
@@ -89,8 +89,6 @@ RC = {
     "font.size": 8,
     "axes.labelsize": LABEL,
     "axes.titlesize": HEADING,
-    "xtick.labelsize": 8,
-    "ytick.labelsize": 8,
     "legend.fontsize": 8,
     "legend.frameon": False,
     "legend.handlelength": 2.2,
@@ -98,24 +96,20 @@ RC = {
     "legend.labelspacing": 0.35,
     "axes.linewidth": 0.7,
     "lines.linewidth": 1.3,
-    "xtick.direction": "in",
-    "ytick.direction": "in",
     "xtick.top": True,
     "ytick.right": True,
-    "xtick.major.width": 0.7,
-    "ytick.major.width": 0.7,
-    "xtick.minor.width": 0.5,
-    "ytick.minor.width": 0.5,
     "hatch.linewidth": 0.6,
     "pdf.fonttype": 42,
     "figure.constrained_layout.h_pad": 0.04,
     "figure.constrained_layout.w_pad": 0.05,
 }
+for _axis in ("xtick", "ytick"):
+    RC |= {f"{_axis}.labelsize": 8, f"{_axis}.direction": "in"}
+    RC |= {f"{_axis}.major.width": 0.7, f"{_axis}.minor.width": 0.5}
 
 # The label of an axis has words, a symbol and a unit. A symbol that is a ratio needs no unit. Other
 # dimensionless symbols have the label "(dimensionless)".
-FRICTION = f"{MU_MACRO.text}  {MU_MACRO.math}  (dimensionless)"
-FRICTION_IN_TWO_LINES = FRICTION.replace("  (", "\n(")
+FRICTION = f"{MU_MACRO.text}  {MU_MACRO.math}\n(dimensionless)"
 
 
 def style() -> AbstractContextManager[None]:
@@ -143,10 +137,13 @@ def symbol(dataset: xr.Dataset, dim: str) -> str:
     return quantity(dataset, dim).latex or name
 
 
-def axis(one: Quantity) -> str:
-    """Return the label of an axis: words, the symbol, and the ratio that defines the symbol."""
+def axis(one: Quantity, short: bool = False) -> str:
+    """Return the label of an axis: words, the symbol, and the ratio that defines the symbol.
+
+    short: True to leave out a symbol that a ratio defines.
+    """
     ratio = mathtext(one.unit)
-    if not one.latex:
+    if not one.latex or (short and ratio):
         return f"{one.text}  {ratio or '(dimensionless)'}"
     return f"{one.text}  ${one.latex}{' = ' + ratio[1:-1] if ratio else ''}$"
 
@@ -235,7 +232,64 @@ def power_of_ten(value: float) -> str:
     return f"10^{{{power:.0f}}}" if np.isclose(power, np.round(power)) else number(value)
 
 
-def letters(count: int) -> list[str]:
-    """Return the letters of `count` panels: a, b, ..., z, aa, ab, ..."""
-    alphabet = "abcdefghijklmnopqrstuvwxyz"
-    return [(alphabet[i // 26 - 1] if i >= 26 else "") + alphabet[i % 26] for i in range(count)]
+def letter(index: int) -> str:
+    """Return the letter of a panel: a, b, ..., z, aa, ab, ..."""
+    return (letter(index // 26 - 1) if index >= 26 else "") + ascii_lowercase[index % 26]
+
+
+# Formulas in plain text, such as "v0 / (omega u_lim)"
+
+GREEK = {
+    name: rf"\{name}" for name in ("alpha", "beta", "delta", "kappa", "mu", "nu", "omega", "Omega")
+} | {"phi": r"\varphi", "theta": r"\vartheta"}
+"""Names of Greek letters and their LaTeX commands."""
+
+LETTERS = {
+    **{"mu": "\N{GREEK SMALL LETTER MU}", "phi": "\N{GREEK SMALL LETTER PHI}"},
+    **{"omega": "\N{GREEK SMALL LETTER OMEGA}", "Omega": "\N{GREEK CAPITAL LETTER OMEGA}"},
+}
+"""Names of Greek letters and their Unicode characters."""
+
+_WORD = re.compile(r"([A-Za-z]+)(\d*)(?:_([A-Za-z0-9]+))?")
+
+
+def mathtext(formula: str) -> str:
+    """Convert a formula to mathtext. If it contains words, only its symbols are mathtext.
+
+    A symbol is a letter or the name of a Greek letter, with an optional number or index: x, v0,
+    u_lim, phi_lk. Other sequences of letters are words.
+    """
+    if any(not _symbol(match) for match in _WORD.finditer(formula)):
+        return _WORD.sub(_in_words, formula)
+    text = re.sub(r"\s*([/()])\s*", r"\1", _WORD.sub(_symbol, formula).strip())
+    text = re.sub(r"\s+", r"\\,", text)
+    return f"${text}$" if text else ""
+
+
+def html(formula: str) -> str:
+    """Convert a formula to HTML with italic letters and subscripts."""
+
+    def symbol(match: re.Match[str]) -> str:
+        letters, number, index = match.groups()
+        below = number + (index or "")
+        letter = LETTERS.get(letters, letters)
+        return f"<i>{letter}</i>" + (f"<sub>{below}</sub>" if below else "")
+
+    text = re.sub(r"\s*([/()])\s*", r"\1", _WORD.sub(symbol, formula))
+    return text.replace("</sub> <i>", "</sub><i>").replace("</i> <i>", " ")
+
+
+def _symbol(match: re.Match[str]) -> str:
+    """Return the LaTeX symbol of a match of _WORD, or "" for a word."""
+    letters, number, index = match.groups()
+    if letters not in GREEK and len(letters) > 1:
+        return ""
+    base = GREEK.get(letters, letters)
+    below = number + (rf"\mathrm{{{index}}}" if index else "")
+    return f"{base}_{{{below}}}" if below else base
+
+
+def _in_words(match: re.Match[str]) -> str:
+    # A single letter can be a word, such as an article.
+    plain = len(match[0]) == 1 or not _symbol(match)
+    return match[0] if plain else f"${_symbol(match)}$"
