@@ -11,23 +11,6 @@ from microslip.foundation.errors import NO_WRITING, CacheError, SolverError
 from microslip.foundation.files import advice
 
 
-class _LogFile(logging.FileHandler):
-    """A log file that stores an operating system error as `problem` instead of raising it."""
-
-    problem: OSError | None = None
-
-    def handleError(self, record: logging.LogRecord) -> None:
-        # The next message, or closing the file, writes the rest.
-        if not isinstance(sys.exc_info()[1], OSError):
-            super().handleError(record)
-
-    def close(self) -> None:
-        try:
-            super().close()
-        except OSError as error:
-            self.problem = error
-
-
 @contextmanager
 def job_log(path: str | Path, shown: int = logging.WARNING) -> Iterator[logging.Logger]:
     """Context manager for a job.  It yields a logger that writes to the file `path`.
@@ -37,37 +20,36 @@ def job_log(path: str | Path, shown: int = logging.WARNING) -> Iterator[logging.
     SolverError or a full disk.
     """
     try:
-        file = _LogFile(path, mode="w", encoding="utf-8")
-        handlers: list[logging.Handler] = [file, logging.StreamHandler()]
+        file = open(path, "w", encoding="utf-8")  # noqa: SIM115 - closing it may fail
     except OSError as error:
         sys.exit(f"Error: {advice('write', path, error)}")
     log = logging.getLogger("microslip")
     log.setLevel(logging.INFO)
+    logging.raiseExceptions = False  # what a full disk has refused is written or reported below
+    handlers = [logging.StreamHandler(file), logging.StreamHandler()]
     handlers[1].setLevel(shown)
     for handler in handlers:
-        handler.setFormatter(logging.Formatter("%(message)s"))
         log.addHandler(handler)
-    failed = True
+    problem = "failed"
     try:
         yield log
-        failed = False
+        problem = ""
     except (CacheError, SolverError) as error:
         log.error("Error: %s", error)
     except Exception as error:
         if getattr(error, "errno", None) in NO_WRITING:
-            log.error(
-                "Error: %s", advice("write", getattr(error, "filename", None) or "a file", error)
-            )
+            name = getattr(error, "filename", None) or "a file"
+            log.error("Error: %s", advice("write", name, error))
         else:
             log.exception("The job failed:")
     finally:
         for handler in handlers:
             log.removeHandler(handler)
-            handler.close()
+        try:
+            file.close()
+        except OSError as error:  # an incomplete log might lack points that did not converge
+            problem = problem or f"Error: {advice('write', path, error)}"
         # The process is about to end: a last garbage collection would take a quarter of a second.
         gc.freeze()
-    if failed:
-        sys.exit(1)
-    # An incomplete log might lack points that did not converge.
-    if file.problem is not None:
-        sys.exit(f"Error: {advice('write', path, file.problem)}")
+    if problem:
+        sys.exit(1 if problem == "failed" else problem)
