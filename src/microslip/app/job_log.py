@@ -26,7 +26,7 @@ def job_log(path: str | Path, shown: int = logging.WARNING) -> Iterator[logging.
     log = logging.getLogger("microslip")
     log.setLevel(logging.INFO)
     logging.raiseExceptions = False  # what a full disk has refused is written or reported below
-    handlers = [logging.StreamHandler(file), logging.StreamHandler()]
+    handlers: list[logging.Handler] = [logging.StreamHandler(file), logging.StreamHandler()]
     handlers[1].setLevel(shown)
     for handler in handlers:
         log.addHandler(handler)

@@ -31,7 +31,7 @@ from typing import TYPE_CHECKING, Any, Generic, TypeGuard, TypeVar, cast
 from microslip.foundation import spec
 from microslip.foundation.csv_table import check_format
 from microslip.foundation.errors import InputError, described
-from microslip.foundation.files import content_of
+from microslip.foundation.files import MOST_BYTES, content_of
 
 if TYPE_CHECKING:
     from microslip.foundation.source_digest import Sources
@@ -167,7 +167,7 @@ def read(
     try:
         if not place.is_file():  # a pipe might never end
             raise ValueError("a folder" if place.is_dir() else "not a regular file")
-        content = content_of(place)
+        content = content_of(place, MOST_BYTES)
     except (OSError, ValueError) as error:
         reason = getattr(error, "strerror", None) or error
         raise InputError(argument, name, f"{place} cannot be read: {reason}") from None
