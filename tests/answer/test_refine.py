@@ -89,7 +89,7 @@ def test_three_levels_are_run_each_from_the_one_before():
 
 
 def test_levels_are_added_until_the_error_is_within_the_tolerance():
-    fake = FakeRun(3.0)
+    fake = FakeRun(0.2, power=1.0)
     result = refine(fake, LADDER, 1e-3)
     assert result.converged and value_of(result).error <= 1e-3
     cells = [resolution.cells for resolution in fake.asked]
@@ -98,6 +98,25 @@ def test_levels_are_added_until_the_error_is_within_the_tolerance():
     by_cells = dict(zip(cells, fake.runs, strict=True))
     halves = [by_cells.get(n // 2) if n > 6 else None for n in cells]
     assert fake.guesses == [halves[k] if n > 6 else None for k, n in enumerate(cells)]
+
+
+@pytest.mark.parametrize("power", [1.0, 1.25, 1.6, 3.0])
+def test_a_second_opinion_saves_finer_levels(power):
+    """The extrapolated values at n and at the level m before it bound an error of first order."""
+    accepted = 0
+    for size in np.geomspace(1e-2, 10.0, 40):
+        fake = FakeRun(size, power)
+        result = refine(fake, LADDER, 1e-3)
+        mu = {at.cells: one.mu for at, one in zip(fake.asked, fake.runs, strict=True)}
+        n, m = result.cells, fake.asked[-1].cells
+        if result.converged and m < n:
+            limits = [(4.0 * mu[k] - mu[k // 2]) / 3.0 for k in (n, m)]
+            bound = abs(limits[0] - limits[1]) * m / (n - m)
+            assert value_of(result).value == pytest.approx(limits[0], abs=1e-14)
+            assert bound - 1e-12 <= value_of(result).error <= 1e-3
+            assert abs(limits[0] - EXACT) <= value_of(result).error
+            accepted += 1
+    assert accepted
 
 
 def test_distances_and_residuals_are_weighted_as_the_runs_enter_the_value():
@@ -171,7 +190,7 @@ def test_a_run_that_does_not_converge_ends_it(cells):
 
 
 def test_the_finest_level_is_named():
-    fake = FakeRun(1e3)
+    fake = FakeRun(1e3, power=1.0)
     result = refine(fake, LADDER, 1e-4)
     assert not result.converged and result.periodic and fake.asked[-1].cells == 12 * 16
     assert result.reason == f"the error is still {value_of(result).error:.1e} with 192 cells"

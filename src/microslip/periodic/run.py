@@ -104,10 +104,14 @@ class Budget:
         if self._began is None and self.time_limit < math.inf:
             self._began = _seconds()
 
-    def take(self, effort: Effort) -> None:
-        """Count the effort of marches; raises Spent if a limit is exceeded."""
+    def take(self, effort: Effort, next_work: int = 0) -> None:
+        """Count the effort of marches.
+
+        Raises Spent if a limit is exceeded, or if the next march alone would exceed it: a fine mesh
+        takes long to build.
+        """
         self.taken += effort
-        if self.taken.work > self.most_work:
+        if self.taken.work + next_work > self.most_work:
             self.exhausted = "work"
             raise Spent(f"the work that the point may take, {self.most_work:.3g}, is spent")
         if self._began is not None and _seconds() - self._began > self.time_limit:
@@ -180,7 +184,12 @@ class Settings:
     def contact(
         self, problem: Problem, model: str, resolution: Resolution, focus: Focus | None = None
     ) -> Contact:
-        """Build a contact with the method's step solver.  The contact counts its marches."""
+        """Build a contact with the method's step solver.  The contact counts its marches.
+
+        Raises Spent, before the contact is built, if one march would exceed the budget.
+        """
+        if self.budget is not None:
+            self.budget.take(Effort(), resolution.steps * resolution.cells * resolution.angles)
         contact = self.method.dressed(contact_of(problem, model, resolution, focus or self.focus))
         return contact if self.budget is None else self.budget.metered(contact)
 
