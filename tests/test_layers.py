@@ -15,7 +15,7 @@ ROOMS = RULE.split(" < ")
 PHYSICS = ROOMS[1 : ROOMS.index("si")]
 FROM_FILES = Path("scene", "files.py")
 """Module of motions and pressures from files, the only physics with paths."""
-LISTS_FILES = Path("periodic", "method.py")
+LISTS_FILES = Path("periodic", "methods", "__init__.py")
 """Module that lists the files of methods without importing them."""
 MODULES = sorted(path.relative_to(PACKAGE) for path in PACKAGE.rglob("*.py"))
 

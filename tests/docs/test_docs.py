@@ -36,7 +36,7 @@ import microslip
 from microslip.config import load
 from microslip.contact.registry import MODELS
 from microslip.datasets import netcdf, sweep_dataset
-from microslip.periodic import method
+from microslip.periodic import methods
 from microslip.sweeps import batch, request
 
 ROOT = Path(__file__).parents[2]
@@ -381,7 +381,7 @@ def test_every_model_and_every_public_name_has_its_place():
     assert sorted(row[0] for row in table("docs/explanation/physics.md", "model")) == sorted(MODELS)
     api = (ROOT / "docs" / "reference" / "api.md").read_text()
     assert [n for n in microslip.__all__ if f":: microslip.{n}\n" not in api] == []
-    assert "my-method" not in method.names()
+    assert "my-method" not in methods.names()
 
 
 # The pages as a site

@@ -10,7 +10,7 @@ from stubs.studies_stub import configured
 import microslip
 from microslip.answer import point as trial
 from microslip.foundation import canonical
-from microslip.periodic import method as methods
+from microslip.periodic import methods
 from microslip.studies import accuracy, requests
 
 os.environ.setdefault("OMP_NUM_THREADS", "1")  # read when the package is first imported

@@ -10,7 +10,7 @@ from microslip.contact.path import SDIRK2, make_path
 from microslip.contact.reduced import slider_contact
 from microslip.contact.ring_contact import RadialContact
 from microslip.periodic.discretise import Resolution, contact_of, path_of
-from microslip.periodic.method import method_named
+from microslip.periodic.methods import method_named
 from microslip.periodic.methods.march import plain_march
 from microslip.periodic.search import Goal, PeriodMap, find_periodic_state
 from microslip.periodic.static_limit import limit_on_a_line

@@ -31,7 +31,7 @@ from microslip.answer.request import (
 )
 from microslip.foundation.arguments import real
 from microslip.foundation.errors import InputError
-from microslip.periodic.method import method_named
+from microslip.periodic.methods import method_named
 from microslip.periodic.run import Spent
 from microslip.scene.hertz import HERTZ
 from microslip.scene.motion import Motion

@@ -21,7 +21,7 @@ from microslip.foundation.arguments import (
     real,
 )
 from microslip.foundation.errors import InputError
-from microslip.periodic.method import SHIPPED, method_named, missing
+from microslip.periodic.methods import SHIPPED, method_named, missing
 from microslip.scene.by_name import motion_named, pressure_named
 from microslip.scene.hertz import HERTZ
 from microslip.scene.motion import LOOP, Motion

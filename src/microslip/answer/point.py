@@ -9,7 +9,7 @@ from microslip.answer import limits
 from microslip.answer.answer import Result, about
 from microslip.answer.request import TOLERANCE, answer_of, request_of
 from microslip.contact.registry import MODELS
-from microslip.periodic.method import SHIPPED, method_named, missing
+from microslip.periodic.methods import SHIPPED, method_named, missing
 from microslip.scene.by_name import motion_named, pressure_named
 from microslip.scene.hertz import HERTZ
 from microslip.scene.motion import Motion
@@ -74,7 +74,7 @@ def solve(
         Imposed numbers of cells and of steps per full period.  By default, they are chosen
         according to the tolerance.
     method : str
-        "shipped", or another name in periodic.method.names() for a comparison.
+        "shipped", or another name in periodic.methods.names() for a comparison.
     most_work : float or None
         Limit on the work of all runs together.  The work of a run is its number of step solves
         times its number of unknowns.  Defaults to MOST_WORK.

@@ -21,7 +21,7 @@ from microslip.answer.answer import CLOSED_FORM, Answer, Estimate, Result
 from microslip.answer.closed_forms import closed_form, no_vibration
 from microslip.foundation.arguments import is_real, without_array
 from microslip.foundation.errors import InputError
-from microslip.periodic.method import SHIPPED, method_named
+from microslip.periodic.methods import SHIPPED, method_named
 from microslip.periodic.run import Budget
 from microslip.scene.problem import Problem
 

@@ -19,8 +19,8 @@ from microslip.foundation.arguments import LARGEST
 from microslip.foundation.canonical import number
 from microslip.foundation.errors import InputError
 from microslip.foundation.spec import near_miss
-from microslip.periodic.method import names as method_names
-from microslip.periodic.method import split as split_method
+from microslip.periodic.methods import names as method_names
+from microslip.periodic.methods import split as split_method
 
 MOST_POINTS = 1_000_000
 """Largest number of points in a sweep.  With more points, planning takes more than a minute."""

@@ -20,7 +20,8 @@ import numpy as np
 from microslip.contact.contact import Contact, March
 from microslip.foundation.errors import SolverError
 from microslip.periodic.discretise import Resolution, contact_of
-from microslip.periodic.method import OWN, SHIPPED, Method
+from microslip.periodic.method import OWN, Method
+from microslip.periodic.methods import SHIPPED
 
 if TYPE_CHECKING:
     from microslip.contact.rings import Focus

@@ -19,7 +19,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from microslip.periodic.method import SHIPPED, method_named
+from microslip.periodic.methods import SHIPPED, method_named
 from microslip.studies import requests as forms
 from microslip.studies.answers import MOTIONS, Answers, Row, names_along, number
 from microslip.studies.requests import AnyPoint, Point

@@ -20,7 +20,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any, NamedTuple, Union
 
 from microslip.foundation.machine import cpu_model
-from microslip.periodic.method import SHIPPED, declared, missing, split
+from microslip.periodic.methods import SHIPPED, declared, missing, split
 from microslip.sweeps.evaluate import request_of
 
 if TYPE_CHECKING:

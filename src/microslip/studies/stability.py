@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from microslip.foundation.canonical import number as text_of_number
-from microslip.periodic.method import SHIPPED, declared, method_named, split
+from microslip.periodic.methods import SHIPPED, declared, method_named, split
 from microslip.studies import requests as forms
 from microslip.studies.answers import Answers, Row, number
 from microslip.studies.requests import Point
