@@ -237,7 +237,7 @@ def test_a_new_input_takes_one_line_in_the_table(monkeypatch, capsys, tmp_path):
     result = microslip.predict("continuous-bore", **SPUN, temperature="293 K")
     assert result.temperature_K == 293.0 and result.to_dict()["temperature_K"] == 293.0
     assert re.search(r"^temperature +293 K$", str(result), re.M)
-    assert "| `temperature` | K | above 0 K | temperature of the room" in output.reference_page()
+    assert "| `temperature` | above 0 K | temperature of the room" in output.reference_page()
     (tmp_path / "rooms.csv").write_text("temperature [K],load [N]\n280,10\n300,20\n")
     words = options(**SPUN | {"load": None})
     table = columns_of_file(tmp_path, [*words, "--table", str(tmp_path / "rooms.csv")])

@@ -99,6 +99,11 @@ class Table:
         return {n: [number(k, n, c or "", limits[n]) for k, c in one] for n, one in columns.items()}
 
 
+def source_name(source: Any) -> str | list:
+    """Name of a table for messages: the path, or the names of the columns."""
+    return str(source) if isinstance(source, str | os.PathLike) else list(source)
+
+
 def check_format(decimal: str, encoding: str) -> None:
     """Raise InputError for an unknown decimal mark or encoding."""
     if decimal not in (".", ","):

@@ -19,8 +19,7 @@ remaining error of the coarse map is of second order.
 from __future__ import annotations
 
 import math
-import os
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from dataclasses import dataclass, field
 from functools import cache
 from typing import TYPE_CHECKING, Any, NamedTuple
@@ -29,13 +28,13 @@ import numpy as np
 
 from microslip.answer.point import solve
 from microslip.foundation.arguments import LARGEST, SMALLEST_TOLERANCE
-from microslip.foundation.csv_table import LABELS, table_of
+from microslip.foundation.csv_table import LABELS, source_name, table_of
 from microslip.foundation.errors import InputError
 from microslip.foundation.number_text import prefixed, prefixed_text
 from microslip.si.contact import Contact, contact_of
 from microslip.si.inputs import INPUTS, Input, read_input, read_inputs, read_quantity
 from microslip.si.map import FrictionMap
-from microslip.si.output import line
+from microslip.si.output import column, line
 from microslip.si.warnings import broken_rules, warnings_of
 
 if TYPE_CHECKING:
@@ -43,11 +42,14 @@ if TYPE_CHECKING:
 
 MOTIONS = ("transverse", "longitudinal", "zigzag")
 CONDITIONS = ("speed", "amplitude", "load", "frequency")
-UNITS = {"speed": "m/s", "amplitude": "m", "frequency": "Hz", "load": "N"}
-UNITS |= {"friction": "N", "friction_error": "N", "mu": "", "mu_error": ""}
+COLUMNS = {name: INPUTS[name]._replace(exact=True) for name in CONDITIONS}
+for _name, _unit in (("friction", "N"), ("mu", "")):
+    COLUMNS[_name] = Input("", _unit, "", -math.inf, exact=True)
+    COLUMNS[f"{_name}_error"] = Input("", _unit, "", exact=True)
+UNITS = {name: one.unit or "" for name, one in COLUMNS.items()}
 """SI units of the allowed columns."""
-PARAMETERS = {"mu": ("", ""), "u_lim": ("_m", "m"), "shear_modulus": ("_Pa", "Pa")}
-"""For each parameter: the suffix of its name in a Fit, and its SI unit."""
+PARAMETERS = {"mu": "", "u_lim": "m", "shear_modulus": "Pa"}
+"""SI units of the parameters."""
 MOST_ROWS, MOST_SOLVED = 10_000, 200
 """Largest number of rows with a map, and without."""
 TOLERANCE, LARGEST_TOLERANCE, CONFIDENCE = 1e-3, 0.02, 0.95
@@ -69,11 +71,12 @@ WIDEST_MU = 2.0
 """Largest allowed ratio between the upper and the lower end of the interval for mu."""
 UNLIKELY = 0.01
 """Probability below which a sum of squares leads to a warning."""
-REGION, SIDES = 801, np.array([0.0, -1.0, 1.0])
-"""Number of values of ln u_lim in the confidence region, and the signs by which errors of the model
-shift the value and the ends of an interval."""
+REGION = 801
+"""Number of values of ln u_lim in the confidence region."""
 PIECES = 60
 """Number of linearly and of logarithmically spaced points on a curve of the figure."""
+ROW_UNITS = {"_Pa": "Pa", "_m_s": "m s-1", "_Hz": "Hz", "_N": "N", "_m": "m", "_si": "m"}
+"""Units in a dataset, by the end of a name."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -104,30 +107,31 @@ class Fit:
     labels: dict[str, list] = field(repr=False)
 
     def __getattr__(self, name: str) -> Any:
-        for table in (self.__dict__.get("values", {}), self.__dict__.get("rows", {})):
-            if name in table:
-                return table[name]
-        raise AttributeError(name)
+        tables = self.__dict__.get("values", {}) | self.__dict__.get("rows", {})
+        if name not in tables:
+            raise AttributeError(name)
+        return tables[name]
 
     def __str__(self) -> str:
         """The lines that `microslip fit` prints."""
-        kinds = {"friction": "the friction force", "mu": "the coefficient of friction"}
-        unit = UNITS[self.quantity]
-        load = prefixed_text(self.load_N, "N")
+        kind = (
+            "the friction force" if self.quantity == "friction" else "the coefficient of friction"
+        )
         lines = [line(name.replace("_", " "), text) for name, text in self.understood.items()]
-        text = f"{len(self.measured)}, of {kinds[self.quantity]}; mean load {load}"
-        lines += [line("rows", text), ""]
-        for name, (suffix, si) in PARAMETERS.items():
-            if self.values[f"{name}{suffix}"] is not None:
-                ends = [self.values[f"{name}{part}{suffix}"] for part in ("", "_low", "_high")]
-                value, low, high = (_digits(end, si, 4) for end in ends)
+        load = prefixed_text(self.load_N, "N")
+        lines += [line("rows", f"{len(self.measured)}, of {kind}; mean load {load}"), ""]
+        for name, unit in PARAMETERS.items():
+            ends = [self.values[column(name, unit, part)] for part in ("value", "low", "high")]
+            if ends[0] is not None:
+                value, low, high = (_digits(end, unit, 4) for end in ends)
                 lines.append(line(_title(name), f"{value}, from {low} to {high}"))
         shares = zip(self.told, (self.mu_model_share, self.scale_model_share), strict=False)
         model = ", ".join(f"of {_title(n)} {_digits(100.0 * x, '', 2)} %" for n, x in shares)
-        text = f"{100.0 * self.confidence:g} %, plus the model error: {model}"
-        lines.append(line("intervals", text))
+        level = f"{100.0 * self.confidence:g} %, plus the model error: {model}"
+        lines.append(line("intervals", level))
         if self.standard_error is not None:
-            lines.append(line("scatter", f"{_digits(self.standard_error, unit, 4)} a row"))
+            scatter = _digits(self.standard_error, UNITS[self.quantity], 4)
+            lines.append(line("scatter", f"{scatter} a row"))
         else:
             chance = "" if self.p_value is None else f", p = {self.p_value:.2g}"
             text = f"{self.chi_square:.3g} for {self.degrees_of_freedom} degrees of freedom{chance}"
@@ -146,22 +150,20 @@ class Fit:
         numbers no dimension.  Texts are attributes."""
         import xarray as xr
 
-        texts = {"understood": "; ".join(f"{n}: {text}" for n, text in self.understood.items())}
+        values = dict(self.values)
+        texts = {"understood": "; ".join(f"{n}: {x}" for n, x in values.pop("understood").items())}
+        texts |= {n: x for n, x in values.items() if isinstance(x, str)}
+        texts |= {n: "; ".join(x) for n, x in values.items() if isinstance(x, tuple)}
         variables: dict[str, tuple] = {n: ("row", cells) for n, cells in self.labels.items()}
-        for name, value in self.values.items():
-            if isinstance(value, str | tuple):
-                texts[name] = value if isinstance(value, str) else "; ".join(value)
-            elif name != "understood":
-                variables[name] = (), np.nan if value is None else value
-        variables |= {name: ("row", values) for name, values in self.rows.items()}
+        numbers = {n: x for n, x in values.items() if n not in texts}
+        variables |= {n: ((), np.nan if x is None else x) for n, x in numbers.items()}
+        variables |= {name: ("row", x) for name, x in self.rows.items()}
         variables |= {f"curve_{name}": ("curve_point", x) for name, x in self.curve.items()}
-        friction = UNITS[self.quantity] or "1"
-        units = {"_Pa": "Pa", "_m_s": "m s-1", "_Hz": "Hz", "_N": "N", "_m": "m", "_si": "m"}
-        units |= dict.fromkeys(("measured", "fitted", "d_error"), friction)
+        friction = dict.fromkeys(("measured", "fitted", "d_error"), UNITS[self.quantity] or "1")
         dataset = xr.Dataset(variables, attrs=texts)
-        for name in dataset.variables.keys() - self.labels.keys():
-            unit = (one for end, one in units.items() if str(name).endswith(end))
-            dataset[name].attrs["units"] = next(unit, "1")
+        for name in variables.keys() - self.labels.keys():
+            units = (one for end, one in (ROW_UNITS | friction).items() if name.endswith(end))
+            dataset[name].attrs["units"] = next(units, "1")
         return dataset
 
 
@@ -244,7 +246,7 @@ def fit(
     """
     if not isinstance(motion, str) or motion not in MOTIONS:
         raise InputError("motion", motion, f"allowed is one of {', '.join(MOTIONS)}")
-    shared = {"speed": speed, "amplitude": amplitude, "frequency": frequency, "load": load}
+    shared = {"speed": speed, "amplitude": amplitude, "load": load, "frequency": frequency}
     rows = _read_rows(measured, shared, decimal=decimal, encoding=encoding)
     bodies, texts = _read_bodies(nu, radius, counterbody)
     level = CONFIDENCE
@@ -260,13 +262,13 @@ def fit(
         accepted = TOLERANCE if tolerance is None else tolerance
         accuracy = read_quantity("tolerance", accepted, limits).si
         model = _solver_model(rows, motion, bodies.poisson or 0.0, accuracy)
-    return _fitted(rows, model, bodies, {"motion": motion, "confidence": level}, texts)
+    return _fitted(rows, model, bodies, level, {"motion": motion} | texts)
 
 
 # Rows and bodies
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(eq=False)
 class Rows:
     """Measurements.
 
@@ -278,8 +280,6 @@ class Rows:
         Measured values and standard errors, N or dimensionless.  An unknown error is NaN.
     quantity : str
         "friction" or "mu".
-    mean_load : float
-        Mean load, N.
     texts, labels, left_out, name
         Common conditions as text, columns of labels, messages about unreadable lines, and the name
         of the table.
@@ -289,28 +289,22 @@ class Rows:
     value: np.ndarray
     error: np.ndarray
     quantity: str
-    mean_load: float
     texts: dict
     labels: dict
     left_out: tuple
     name: str | list
 
-    @property
-    def has_errors(self) -> bool:
-        return bool(np.isfinite(self.error).all())
+    def __post_init__(self) -> None:
+        self.has_errors = bool(np.isfinite(self.error).all())
+        self.mean_load = float(self.conditions["load"].mean())
+        self.ratio, self.sizes = self.groups(self.conditions)
+        self.weight = self.factor(self.conditions["load"])
 
-    @property
-    def moving(self) -> np.ndarray:
-        """Whether each row vibrates, shape (n,)."""
-        return self.conditions["amplitude"] > 0.0
-
-    @property
-    def weight(self) -> np.ndarray:
+    def factor(self, load: np.ndarray) -> np.ndarray:
         """Factor that converts a coefficient of friction to the measured quantity."""
-        load = self.conditions["load"]
         return load if self.quantity == "friction" else np.ones_like(load)
 
-    def groups(self, conditions: Mapping[str, np.ndarray]) -> tuple[np.ndarray, np.ndarray]:
+    def groups(self, conditions: dict[str, np.ndarray]) -> tuple[np.ndarray, np.ndarray]:
         """Ratio of velocity to amplitude, dimensionless, and the amplitude in m divided by (load /
         mean load)^(2/3)."""
         speed, amplitude, load, frequency = (conditions[name] for name in CONDITIONS)
@@ -320,85 +314,71 @@ class Rows:
         return ratio, amplitude / (load / self.mean_load) ** (2.0 / 3.0)
 
 
-def _read_rows(source: Any, shared: Mapping[str, Any], **form: str) -> Rows:
+def _read_rows(source: Any, shared: dict[str, Any], **form: str) -> Rows:
     """Read and check the rows of a file or of a table of columns.  Raises InputError."""
     table = table_of("measured", source, UNITS, need_units=True, **form)
-    name = str(source) if isinstance(source, str | os.PathLike) else list(source)
+    name, errors = source_name(source), dict(table.errors)
 
-    def refuse(*problems: tuple[object, str]) -> None:
-        for wrong, text in problems:
-            if wrong:
-                raise InputError("measured", name, text)
+    def refuse(wrong: object, text: str) -> None:
+        if wrong:
+            raise InputError("measured", name, text)
 
     names = [one for one in table.cells if one not in LABELS]
     unknown = [repr(one) for one in names if one not in UNITS] or ["nothing"] * (not names)
     what, other = ("friction", "mu") if "friction" in names else ("mu", "friction")
-    refuse(
-        (unknown, f"a column {''.join(unknown[:1])}; allowed are some of {', '.join(UNITS)}"),
-        (len({*map(len, table.cells.values())}) > 1, "columns of several lengths; allowed is one"),
-        (what not in names, "has neither friction nor mu; allowed is one of them"),
-        (other in names, "has both friction and mu; allowed is one of them"),
-        (f"{other}_error" in names, f"has {other}_error without {other}"),
-    )
-    columns, rows, kept, left_out = table.columns, [], [], []
+    refuse(unknown, f"a column {''.join(unknown[:1])}; allowed are some of {', '.join(UNITS)}")
+    refuse(len({*map(len, table.cells.values())}) > 1, "columns of several lengths; allowed is one")
+    refuse(what not in names, "has neither friction nor mu; allowed is one of them")
+    refuse(other in names, "has both friction and mu; allowed is one of them")
+    refuse(f"{other}_error" in names, f"has {other}_error without {other}")
+    columns, kept = table.columns, {}
     for k, cells in enumerate(zip(*(columns[one] for one in names), strict=True)):
-        if k in table.errors:
-            left_out.append(table.errors[k])
-        elif any(cell is not None for cell in cells):
-            try:
-                rows.append([_number(*pair) for pair in zip(names, cells, strict=True)])
-                kept.append(k)
-            except InputError as error:
-                if not table.lines:
-                    allowed = f"{error.allowed}, in row {k + 1}"
-                    raise InputError(error.argument, error.value, allowed) from None
-                problem = f"{error.argument} is {error.allowed}" if error.value is None else error
-                left_out.append(f"line {table.lines[k]}: {problem}")
-    count, texts = len(kept), {}
-    refuse((not kept, (left_out or ["no rows; allowed is a row for each measurement"])[0]))
-    numbers = dict(zip(names, np.array(rows).T, strict=True))
-    for one in CONDITIONS:
-        if (one in names) == (shared[one] is not None):
+        if k in errors or all(cell is None for cell in cells):
+            continue
+        try:
+            kept[k] = [_number(*pair) for pair in zip(names, cells, strict=True)]
+        except InputError as error:
+            if not table.lines:
+                allowed = f"{error.allowed}, in row {k + 1}"
+                raise InputError(error.argument, error.value, allowed) from None
+            problem = f"{error.argument} is {error.allowed}" if error.value is None else error
+            errors[k] = f"line {table.lines[k]}: {problem}"
+    count, left_out = len(kept), tuple(errors[k] for k in sorted(errors))
+    refuse(not kept, (*left_out, "no rows; allowed is a row for each measurement")[0])
+    numbers, texts = dict(zip(names, np.array(list(kept.values())).T, strict=True)), {}
+    for one, value in shared.items():
+        if (one in names) == (value is not None):
             where = "both a column and an argument" if one in names else "missing"
             allowed = f"it is {where}; allowed is a column, or one value for all rows"
-            raise InputError(one, shared[one], allowed)
+            raise InputError(one, value, allowed)
         if one not in names:
-            quantity = read_input(one, shared[one])
+            quantity = read_input(one, value)
             numbers[one], texts[one] = np.full(count, quantity.si), quantity.text
     conditions, value = {one: numbers[one] for one in CONDITIONS}, numbers[what]
-    errors = numbers.get(f"{what}_error", np.full(count, np.nan))
+    sigma = numbers.get(f"{what}_error", np.full(count, np.nan))
     least = 2 if f"{what}_error" in names else 3
     more = ", or two with errors of their own" if least == 3 else ""
-    negative, positive = (value < 0.0).sum(), (value > 0.0).sum()
-    against = "allowed is a positive sign for a force against the motion"
-    sign = f"{what} is negative in {negative} of {count} rows, and above 0 in none; {against}"
-    refuse(
-        (count > MOST_ROWS, f"{count} rows; allowed are at most {MOST_ROWS} rows"),
-        (
-            not (numbers["amplitude"] > 0.0).any(),
-            "no row with an amplitude above 0, so that nothing vibrates",
-        ),
-        (count < least, f"{count} rows; two numbers take at least {least}{more}"),
-        (not positive and negative, sign),
-        (not positive, f"the rows determine neither number: {what} is 0 in all rows"),
-        (
-            len(np.unique(np.stack(list(conditions.values())), axis=1).T) < 2,
-            "all rows are of one condition; allowed: two or more conditions",
-        ),
+    negative, positive = (value < 0.0).sum(), (value > 0.0).any()
+    sign = f"{what} is negative in {negative} of {count} rows, and above 0 in none; allowed is a "
+    still, same = (
+        not conditions["amplitude"].any(),
+        len(np.unique([*conditions.values()], axis=1).T),
     )
+    refuse(count > MOST_ROWS, f"{count} rows; allowed are at most {MOST_ROWS} rows")
+    refuse(still, "no row with an amplitude above 0, so that nothing vibrates")
+    refuse(count < least, f"{count} rows; two numbers take at least {least}{more}")
+    refuse(negative and not positive, f"{sign}positive sign for a force against the motion")
+    refuse(not positive, f"the rows determine neither number: {what} is 0 in all rows")
+    refuse(same < 2, "all rows are of one condition; allowed: two or more conditions")
     labels = {n: [cells[k] for k in kept] for n, cells in table.labels.items()}
-    mean = float(numbers["load"].mean())
-    return Rows(conditions, value, errors, what, mean, texts, labels, tuple(left_out), name)
+    return Rows(conditions, value, sigma, what, texts, labels, left_out, name)
 
 
 def _number(name: str, cell: object) -> float:
     if cell is None:
         allowed = "empty; allowed: a number in every row; leave out the row, or fill the cell"
         raise InputError(name, None, allowed)
-    if name in CONDITIONS:
-        return read_input(name, cell).si
-    low = 0.0 if name.endswith("_error") else -math.inf
-    return read_quantity(name, cell, Input("", UNITS[name], "", low, exact=True)).si
+    return read_quantity(name, cell, COLUMNS[name]).si
 
 
 class Bodies(NamedTuple):
@@ -459,9 +439,9 @@ class Model(NamedTuple):
 
 def _map_model(dataset: Any, motion: str, poisson: float | None) -> Model:
     """Friction interpolated in the dataset of a sweep; see datasets.accessor."""
+    source = FrictionMap(dataset, motion)
     from xarray import DataArray
 
-    source = FrictionMap(dataset, motion)
     axes = [dataset[name].values for name in ("velocity", "amplitude")]
     ends = [(float(axis[axis > 0.0].min()), float(axis.max())) for axis in axes]
 
@@ -489,11 +469,10 @@ def _map_model(dataset: Any, motion: str, poisson: float | None) -> Model:
 
 def _solver_model(rows: Rows, motion: str, poisson: float, tolerance: float) -> Model:
     """Friction from the solver, and a coarse map over ln amplitude and ln ratio."""
-    from scipy.interpolate import RectBivariateSpline
-
     if len(rows.value) > MOST_SOLVED:
         allowed = f"rows; allowed are at most {MOST_SOLVED}, or any number with a map"
         raise InputError("measured", len(rows.value), allowed)
+    from scipy.interpolate import RectBivariateSpline
 
     @cache
     def point(ratio: float, amplitude: float, **settings: Any) -> tuple[float, float]:
@@ -505,7 +484,7 @@ def _solver_model(rows: Rows, motion: str, poisson: float, tolerance: float) -> 
             raise InputError("tolerance", settings["tolerance"], problem)
         return result.mu_macro, result.mu_macro_error
 
-    ratio = np.clip(rows.groups(rows.conditions)[0], SLOWEST, FASTEST)
+    ratio = np.clip(rows.ratio, SLOWEST, FASTEST)
     spans, axes = np.log([(LEAST, MOST), (ratio.min(), ratio.max())]) + [-0.1, 0.1], []
     for (low, high), a_decade in zip(spans, NODES_A_DECADE, strict=True):
         count = max(4, 1 + math.ceil((high - low) / math.log(10.0) * a_decade))
@@ -532,22 +511,32 @@ class Profile:
 
     Attributes
     ----------
-    x : np.ndarray, shape (NODES,)
-        Tabulated values of ln u_lim.
+    x, sums : np.ndarray, shape (NODES,)
+        Tabulated values of ln u_lim, and the least sums of squares there.
     macro : scipy.interpolate.CubicSpline
         mu_macro of the rows as a function of x.
     error, y, weight : np.ndarray, shape (n,)
         Errors of the rows; measured values, and values of the model at mu = mu_macro = 1, both
         divided by the errors.
+    best : float
+        x with the least sum of squares.
     """
 
     def __init__(self, rows: Rows, x: np.ndarray, ratios: np.ndarray):
         from scipy.interpolate import CubicSpline
+        from scipy.optimize import minimize_scalar
 
         scale = np.full_like(rows.value, np.abs(rows.value).max())
         self.error = rows.error if rows.has_errors else scale
         self.x, self.macro = x, CubicSpline(x, ratios)
         self.y, self.weight = rows.value / self.error, rows.weight / self.error
+        self.sums = self.mu(x)[1]
+        k = int(np.argmin(self.sums))
+        bounds = x[max(k - 1, 0)], x[min(k + 1, NODES - 1)]
+        least = minimize_scalar(
+            lambda one: self.mu(one)[1], bounds=bounds, method="bounded", options={"xatol": 1e-9}
+        )
+        self.best = float(least.x if least.fun < self.sums[k] else x[k])
 
     def mu(self, x: Any) -> tuple[Any, Any, Any]:
         """The best mu at x, the least sum of squares, and half of its second derivative by mu."""
@@ -556,169 +545,152 @@ class Profile:
         mu = np.clip(slope @ self.y / norm, SMALLEST_MU, INPUTS["mu"].high)
         return mu, ((self.y - mu[..., None] * slope) ** 2).sum(axis=-1), norm
 
-    def squares(self, x: Any) -> Any:
-        """Least sum of squares at x."""
-        return self.mu(x)[1]
-
-    def best(self) -> float:
-        """x with the least sum of squares."""
-        from scipy.optimize import minimize_scalar
-
-        sums = self.squares(self.x)
-        k = int(np.argmin(sums))
-        bounds = self.x[max(k - 1, 0)], self.x[min(k + 1, NODES - 1)]
-        options = {"xatol": 1e-9}
-        one = minimize_scalar(self.squares, bounds=bounds, method="bounded", options=options)
-        return float(one.x if one.fun < sums[k] else self.x[k])
-
-    def ends(self, x: float, allowed: float) -> list[float]:
-        """Ends of the interval around x in which the sum of squares is at most `allowed`. An end is
-        infinite if the interval reaches the end of the table."""
+    def ends(self, allowed: float) -> list[float]:
+        """Ends of the interval around the best x in which the sum of squares is at most `allowed`.
+        An end is infinite if the interval reaches the end of the table."""
         from scipy.optimize import brentq
 
         ends = []
-        for nodes, end in ((self.x[self.x < x][::-1], -math.inf), (self.x[self.x > x], math.inf)):
-            above = np.flatnonzero(self.squares(nodes) > allowed) if len(nodes) else nodes
+        for side in (-1.0, 1.0):
+            beyond = side * (self.x - self.best) > 0.0
+            nodes, sums = ((one[beyond])[:: int(side)] for one in (self.x, self.sums))
+            end, above = side * math.inf, np.flatnonzero(sums > allowed)
             if len(above):
-                inner = nodes[above[0] - 1] if above[0] else x
-                excess = lambda one: float(self.squares(one)) - allowed  # noqa: E731
+                inner = nodes[above[0] - 1] if above[0] else self.best
+                excess = lambda one: float(self.mu(one)[1]) - allowed  # noqa: E731
                 end = float(brentq(excess, inner, nodes[above[0]], xtol=1e-7))
             ends.append(end)
         return ends
 
-    def second(self, x: float, allowed: float) -> float | None:
-        """x of a minimum of at most `allowed` that differs from x by more than a factor of 2."""
-        sums = np.pad(self.squares(self.x), 1, constant_values=np.inf)
-        lowest = (sums[1:-1] <= sums[:-2]) & (sums[1:-1] <= sums[2:]) & (sums[1:-1] < allowed)
-        others = self.x[lowest & (np.abs(self.x - x) > math.log(2.0))]
-        return float(min(others, key=self.squares)) if len(others) else None
+    def second(self, allowed: float) -> float | None:
+        """x of a minimum of at most `allowed` that differs from the best by more than a factor of
+        2."""
+        sums = np.pad(self.sums, 1, constant_values=np.inf)
+        lowest = (self.sums <= sums[:-2]) & (self.sums <= sums[2:]) & (self.sums < allowed)
+        lowest &= np.abs(self.x - self.best) > math.log(2.0)
+        places = np.flatnonzero(lowest)
+        return float(self.x[min(places, key=lambda k: self.sums[k])]) if len(places) else None
 
 
-def _profile(rows: Rows, model: Model) -> tuple[Profile, float, np.ndarray]:
-    """The profile, ln u_lim of the best fit, and errors of mu_macro."""
-    (ratio, sizes), moving = rows.groups(rows.conditions), rows.moving
-    ends = math.log(sizes[moving].min() / MOST), math.log(sizes.max() / LEAST)
-    x = np.linspace(*ends, NODES)
-    ratios, errors = model.row_curves(ratio, sizes, x[:, None]), np.zeros(len(sizes))
+def _profile(rows: Rows, model: Model) -> tuple[Profile, np.ndarray]:
+    """The profile, and errors of mu_macro."""
+    moving = rows.sizes > 0.0
+    least, most = rows.sizes[moving].min(), rows.sizes.max()
+    x = np.linspace(math.log(least / MOST), math.log(most / LEAST), NODES)
+    ratios, errors = model.row_curves(rows.ratio, rows.sizes, x[:, None]), np.zeros(len(moving))
     profile = Profile(rows, x, ratios)
-    at = profile.best()
     for _ in range(MOST_PASSES):
-        last = at, profile.mu(at)[0]
-        macro, errors[moving] = model.exact(ratio[moving], sizes[moving] / math.exp(at))
-        ratios[:, moving] += macro - profile.macro(at)[moving]
+        last = profile
+        at, mu = last.best, last.mu(last.best)[0]
+        macro, errors[moving] = model.exact(rows.ratio[moving], rows.sizes[moving] / math.exp(at))
+        ratios[:, moving] += macro - last.macro(at)[moving]
         profile = Profile(rows, x, ratios)
-        at = profile.best()
-        if max(abs(at - last[0]), abs(math.log(profile.mu(at)[0] / last[1]))) <= SETTLED:
+        change = profile.best - at, math.log(profile.mu(profile.best)[0] / mu)
+        if max(map(abs, change)) <= SETTLED:
             break
-    return profile, at, errors
+    return profile, errors
 
 
-def _fitted(
-    rows: Rows, model: Model, bodies: Bodies, settings: dict[str, Any], texts: dict[str, str]
-) -> Fit:
-    """The fit.  settings: motion and confidence.  Raises InputError if the rows do not determine
-    mu."""
+def _fitted(rows: Rows, model: Model, bodies: Bodies, level: float, texts: dict[str, str]) -> Fit:
+    """The fit at a confidence level.  Raises InputError if the rows do not determine mu."""
     from scipy.stats import chi2, f
 
-    profile, at, errors = _profile(rows, model)
-    macro, free, level = profile.macro(at), len(rows.value) - 2, settings["confidence"]
+    profile, errors = _profile(rows, model)
+    at, free = profile.best, len(rows.value) - 2
+    macro, weight, errors_known = profile.macro(at), profile.weight, rows.has_errors
     mu, squares = (float(one) for one in profile.mu(at)[:2])
-    off = mu * profile.weight * errors
-    noise = chi2.ppf(level, 1) if rows.has_errors else f.ppf(level, 1, free) * squares / free
+    off = mu * weight * errors
+    noise = chi2.ppf(level, 1) if errors_known else f.ppf(level, 1, free) * squares / free
     least = 1e-12 * float(profile.y @ profile.y)  # rounding errors
     allowed = max(float(noise), float(np.mean(off**2)), least) + squares
     # Logarithms of the parameters at the best fit and in the confidence region.  The shear modulus
     # G follows from u_lim = mu unit G^(-2/3).
-    u_lim = profile.ends(at, allowed)
+    u_lim = profile.ends(allowed)
     determined = bool(np.isfinite(u_lim).all())
     x = np.linspace(max(u_lim[0], profile.x[0]), min(u_lim[1], profile.x[-1]), REGION)
     centre, sums, norm = profile.mu(x)
     half = np.sqrt(np.maximum(allowed - sums, 0.0) / norm)
     mus = np.log(np.clip([centre - half, centre + half], SMALLEST_MU, INPUTS["mu"].high))
-    logs = {"mu": (math.log(mu), mus.min(), mus.max()), "u_lim": (at, *u_lim)}
+    logs = {"mu": [math.log(mu), mus.min(), mus.max()], "u_lim": [at, *u_lim]}
     scale, unit = "u_lim", 0.0
     if bodies.radius is not None:
         scale, unit = "shear_modulus", math.log(bodies.contact(1.0, 1.0, rows.mean_load).u_lim)
         moduli = 1.5 * (mus + unit - x)
         low = moduli.min() if u_lim[1] < math.inf else -math.inf
         high = moduli.max() if u_lim[0] > -math.inf else math.inf
-        logs[scale] = 1.5 * (math.log(mu) + unit - at), low, high
+        logs[scale] = [1.5 * (math.log(mu) + unit - at), low, high]
     # Largest changes of the logarithms due to errors of the model, to first order.
     told = ("mu", scale) if determined else ("mu",)
-    slopes = mu * np.stack([macro, profile.macro(at, 1)], axis=1) * profile.weight[:, None]
+    slopes = mu * np.stack([macro, profile.macro(at, 1)], axis=1) * weight[:, None]
     shifts = np.zeros((2, len(off)))
     shifts[: len(told)] = np.linalg.pinv(slopes[:, : len(told)])
-    changes = dict(zip(logs, (*shifts, 1.5 * (shifts[0] - shifts[1])), strict=False))
-    shares = {name: float(np.abs(one) @ off) for name, one in changes.items()}
-    values: dict[str, Any] = {}
-    for name, (suffix, _) in PARAMETERS.items():
-        ends = np.array(logs.get(name, [math.nan] * 3)) + shares.get(name, 0.0) * SIDES
-        if not (determined or name == "mu"):
-            ends[0] = math.nan
-        for side, end in zip(("", "_low", "_high"), ends, strict=True):
-            number = math.exp(min(end, 700.0)) if math.isfinite(end) else None
-            values[f"{name}{side}{suffix}"] = number
-    low, high = values["mu_low"], values["mu_high"]
-    if not high < WIDEST_MU * low:
-        problem = f"mu from {low:.3g} to {high:.3g} fits as well with another u_lim"
-        hint = "add rows without vibration, or rows where vibration reduces friction more"
-        message = f"the rows determine neither number: {problem}; {hint}"
-        raise InputError("measured", rows.name, message)
-    chance = float(chi2.sf(squares, free)) if rows.has_errors and free else None
-    sigma = profile.error if rows.has_errors else profile.error * math.sqrt(squares / free)
-    suffix, si = PARAMETERS[scale]
-    reason, which = "", f"any {_title(scale)}"
+    changes = zip(PARAMETERS, (*shifts, 1.5 * (shifts[0] - shifts[1])), strict=True)
+    shares = {name: float(np.abs(one) @ off) for name, one in changes}
+    ends: dict[str, Any] = {}
+    for name, si in PARAMETERS.items():
+        middle, low, high = logs.get(name, [math.nan] * 3)
+        middle = middle if determined or name == "mu" else math.nan
+        parts = {"value": middle, "low": low - shares[name], "high": high + shares[name]}
+        for part, end in parts.items():
+            known = math.isfinite(end)
+            ends[column(name, si, part)] = math.exp(min(end, 700.0)) if known else None
+    if not ends["mu_high"] < WIDEST_MU * ends["mu_low"]:
+        problem = (
+            f"mu from {ends['mu_low']:.3g} to {ends['mu_high']:.3g} fits as well with another "
+        )
+        problem += (
+            "u_lim; add rows without vibration, or rows where vibration reduces friction more"
+        )
+        raise InputError("measured", rows.name, f"the rows determine neither number: {problem}")
+    sigma = profile.error if errors_known else profile.error * math.sqrt(squares / free)
+    chance = float(chi2.sf(squares, free)) if errors_known and free else None
+    reason, si, doubts = "", PARAMETERS[scale], []
     if not determined:
-        for side, word in (("high", "below"), ("low", "above")):
-            if (end := values[f"{scale}_{side}{suffix}"]) is not None:
+        which = f"any {_title(scale)}"
+        for part, word in (("high", "below"), ("low", "above")):
+            if (end := ends[column(scale, si, part)]) is not None:
                 which = f"any {_title(scale)} {word} {end:.3g} {si}"
         reason = f"the rows determine mu alone: {which} fits them as well"
-    doubts = []
     if chance is not None and chance < UNLIKELY:
         problem = f"the residuals are larger than the errors of the rows allow (p = {chance:.1g})"
         doubt = "the theory does not describe these rows, or the errors are too small"
         doubts.append(f"{problem}: {doubt}")
-    modulus = math.exp(logs[scale][0]) if bodies.radius is not None else None
-    doubts += _warnings(rows, settings["motion"], bodies, mu, modulus)
-    if determined and (other := profile.second(at, allowed)) is not None:
+    doubts += _warnings(rows, texts["motion"], bodies, mu, math.exp(logs[scale][0]))
+    if determined and (other := profile.second(allowed)) is not None:
         second = float(profile.mu(other)[0])
         size = other if scale == "u_lim" else 1.5 * (math.log(second) + unit - other)
         text = f"mu {second:.3g} with {math.exp(size):.3g} {si}"
         doubts.append(f"{text} fits nearly as well: two answers")
     values = {
-        **{"motion": settings["motion"], "quantity": rows.quantity},
-        **values,
+        **{"motion": texts["motion"], "quantity": rows.quantity},
+        **ends,
         **{"load_N": rows.mean_load, "confidence": level},
         "mu_model_share": math.expm1(shares["mu"]),
         "scale_model_share": math.expm1(shares[scale]),
-        "standard_error": None if rows.has_errors else float(sigma[0]),
-        "chi_square": squares if rows.has_errors else None,
+        "standard_error": None if errors_known else float(sigma[0]),
+        "chi_square": squares if errors_known else None,
         **{"p_value": chance, "degrees_of_freedom": free, "told": told, "reason": reason},
-        "warnings": tuple(doubts),
-        "understood": {"motion": settings["motion"]} | texts | rows.texts,
-        "left_out": rows.left_out,
+        **{"warnings": tuple(doubts), "understood": texts | rows.texts, "left_out": rows.left_out},
     }
     speed, amplitude, load, frequency = rows.conditions.values()
     local = math.exp(at) * (load / rows.mean_load) ** (2.0 / 3.0)
-    rest = rows.value - mu * rows.weight * macro
+    friction = mu * rows.weight * macro
+    rest = rows.value - friction
     columns = {
         **{"speed_m_s": speed, "amplitude_si": amplitude},
         **{"frequency_Hz": frequency, "row_load_N": load},
         "velocity": speed / (2.0 * math.pi * frequency * local),
         "amplitude": amplitude / local,
         **{"measured": rows.value, "measured_error": rows.error},
-        "fitted": mu * rows.weight * macro,
-        "fitted_error": mu * rows.weight * errors,
+        **{"fitted": friction, "fitted_error": mu * rows.weight * errors},
         "residual": np.divide(rest, sigma, out=0.0 * rest, where=sigma > 0.0),
     }
     return Fit(values, columns, _curve(rows, model, mu, at, macro, errors), rows.labels)
 
 
-def _warnings(
-    rows: Rows, motion: str, bodies: Bodies, mu: float, modulus: float | None
-) -> list[str]:
+def _warnings(rows: Rows, motion: str, bodies: Bodies, mu: float, modulus: float) -> list[str]:
     """Assumptions of the theory that do not hold at the best fit."""
-    if modulus is None:
+    if bodies.radius is None:
         return broken_rules({"mu": mu})
     k = int(np.argmax(rows.conditions["amplitude"]))
     moving = {name: float(rows.conditions[name][k]) for name in CONDITIONS if name != "load"}
@@ -735,10 +707,11 @@ def _curve(
     rows is interpolated.
     """
     conditions = rows.conditions
-    along = max(conditions, key=lambda name: len(np.unique(conditions[name])))
+    distinct = {name: len(np.unique(conditions[name])) for name in conditions}
+    along = max(distinct, key=lambda name: distinct[name])
     others = np.stack([conditions[name] for name in CONDITIONS if name != along])
     _, which = np.unique(others, axis=1, return_inverse=True)
-    correction = macro - model.row_curves(*rows.groups(conditions), at)
+    correction = macro - model.row_curves(rows.ratio, rows.sizes, at)
     parts = [np.empty((6, 0))]
     for members in (np.flatnonzero(which.ravel() == one) for one in np.unique(which)):
         values, first = np.unique(conditions[along][members], return_index=True)
@@ -750,8 +723,8 @@ def _curve(
         fine = {n: np.full(len(axis), one[members[0]]) for n, one in conditions.items()}
         fine[along] = axis
         more, error = (np.interp(axis, values, one[members[first]]) for one in (correction, errors))
-        factor = mu * (fine["load"] if rows.quantity == "friction" else 1.0)
+        factor = mu * rows.factor(fine["load"])
         friction = model.row_curves(*rows.groups(fine), at) + more
-        parts.append(np.stack([*(fine[n] for n in CONDITIONS), factor * friction, factor * error]))
+        parts.append(np.stack([*fine.values(), factor * friction, factor * error]))
     titles = ("speed_m_s", "amplitude_si", "row_load_N", "frequency_Hz", "fitted", "fitted_error")
     return dict(zip(titles, np.concatenate(parts, axis=1), strict=True))

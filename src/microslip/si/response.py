@@ -10,7 +10,6 @@ forward [um],lateral [um],load [N]
 from __future__ import annotations
 
 import math
-import os
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from importlib import import_module
@@ -19,7 +18,7 @@ from typing import Any
 import numpy as np
 
 from microslip.answer.along import response
-from microslip.foundation.csv_table import LABELS, table_of
+from microslip.foundation.csv_table import LABELS, source_name, table_of
 from microslip.foundation.errors import InputError, shown
 from microslip.scene.files import UNITS
 from microslip.si.contact import Contact, contact_of
@@ -132,7 +131,7 @@ def predict_response(
         if isinstance(value, float):
             si, unit = units[name], UNITS[name]
             text = f"{value * si:.6g} {unit} ({value:.6g} times {si:.6g} {unit})"
-        raise InputError("path", _name(path), f"{name} = {text}: {error.allowed}") from None
+        raise InputError("path", source_name(path), f"{name} = {text}: {error.allowed}") from None
     force = real.mu * real.load
     torque = force * real.contact_radius * answer.problem.pressure.torque
     sizes = {"N": force, "N m": torque, "J": force * real.u_lim, "1": 1.0}
@@ -178,13 +177,8 @@ def read_path(path: Any, **form: str) -> dict[str, np.ndarray]:
     except ValueError as error:
         if isinstance(error, InputError):
             raise
-        raise InputError("path", _name(path), str(error)) from None
+        raise InputError("path", source_name(path), str(error)) from None
     return {"forward": np.zeros(len(numbers))} | columns
-
-
-def _name(source: Any) -> str | list:
-    """Name of a table for messages: the path, or the names of the columns."""
-    return str(source) if isinstance(source, str | os.PathLike) else list(source)
 
 
 def _number(where: int, name: str, cell: object, unit: str) -> float:

@@ -5,10 +5,9 @@ from __future__ import annotations
 import math
 import os
 import re
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
-from functools import partial
-from itertools import product
+from itertools import product, repeat
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -211,9 +210,9 @@ def grid_of(motion: str, given: Mapping[str, Any]) -> Cases:
     Raises InputError if a range is invalid, if there is no range, or if there are too many
     combinations.
     """
-    kind, axes, texts, shared = kind_of(motion), {}, {}, dict(given)
+    kind, axes, texts = kind_of(motion), {}, {}
     for name in [name for name in given if name in INPUTS and INPUTS[name].unit is not None]:
-        values = shared[name]
+        values = given[name]
         if is_range(name, values):
             values = values_of(name, values)
         if isinstance(values, str) or np.ndim(values) != 1:
@@ -224,19 +223,17 @@ def grid_of(motion: str, given: Mapping[str, Any]) -> Cases:
         si = [read_quantity(name, value, free).si for value in values]
         axes[input_column(name, unit)] = name, unit, si
         texts[name] = list(values)
-        del shared[name]
     count = math.prod(map(len, texts.values()))
     if not axes or not 1 <= count <= MOST_CASES:
         allowed = f"the ranges have {count} combinations; allowed are 1 to {MOST_CASES}"
         name = max(texts, key=lambda one: len(texts[one])) if axes else "amplitude"
         raise InputError(name, given.get(name), allowed if axes else RANGES)
-    cases = list(zip(*product(*texts.values()), strict=True))
+    cases = zip(*product(*texts.values()), strict=True)
     columns = {name: list(values) for name, values in zip(texts, cases, strict=True)}
     starts = {name: [_short(text) for text in values] for name, values in columns.items()}
-    names = [
-        ", ".join(f"{name} {text}" for name, text in zip(starts, one, strict=True))
-        for one in zip(*starts.values(), strict=True)
-    ]
+    places = ([f"{name} {text}" for text in texts] for name, texts in starts.items())
+    names = [", ".join(one) for one in zip(*places, strict=True)]
+    shared = {name: value for name, value in given.items() if name not in texts}
     return Cases(motion, columns, shared, names, starts, {}, axes)
 
 
@@ -293,83 +290,76 @@ def dataset_of(cases: Cases, answers: Answers) -> xr.Dataset:
     """The predictions as a dataset over the dimension `case`, or over the axes of a grid."""
     import xarray as xr
 
-    sizes = {name: len(values) for name, (_, _, values) in cases.axes.items()}
-    sizes = sizes or {"case": len(answers)}
-    rows: list[dict[str, Any]] = [
-        one.to_dict() if isinstance(one, Prediction) else {"converged": False} for one in answers
-    ]
-    names = dict.fromkeys(name for row in rows for name in row if name not in ("motion", "inputs"))
-    attributes: dict[str, dict[str, str]] = {}
-    for row, one in zip(rows, answers, strict=True):
-        if isinstance(one, Prediction) and not attributes.keys() >= row.keys() & set(names):
-            attributes |= {
-                key: {"units": unit or "1", "long_name": text}
-                for key, unit, text, _ in one.numbers()
-            }
-            attributes |= {name: {} for name in row if name not in attributes}
-    columns: dict[str, list[Any]] = {}
-    for name in [one for one in names if one not in sizes]:
-        values = columns[name] = [row.get(name) for row in rows]
-        if name in (*TEXTS, *REASONS):
-            columns[name] = [one or "" for one in values]
-        elif any(isinstance(one, list) for one in values):
-            columns[name] = ["; ".join(one or ()) for one in values]
-        elif name != "converged":
-            columns[name] = [math.nan if one is None else float(one) for one in values]
-    for name, values in cases.columns.items() if not cases.axes else ():
-        texts = ["" if one is None else str(one) for one in values]
-        columns[name if name in LABELS else f"case_{name}"] = texts
-    errors = ["" if isinstance(one, Prediction) else str(one) for one in answers]
-    columns["error"], attributes["error"] = errors, {"long_name": "error message of the case"}
-    coordinates: dict[str, Any] = {
+    axes: dict[str, Any] = {
         key: (key, values, {"long_name": name.replace("_", " "), "units": unit or "1"})
         for key, (name, unit, values) in cases.axes.items()
     }
-    if not cases.axes:
-        coordinates["case"] = np.arange(len(answers))
-    shape = tuple(sizes.values())
+    axes = axes or {"case": np.arange(len(answers))}
+    shape = [len(values) for _, _, values in cases.axes.values()] or [len(answers)]
+    rows: list[dict[str, Any]] = []
+    about: dict[str, dict[str, str]] = {"error": {"long_name": "error message of the case"}}
+    for one in answers:
+        rows.append(one.to_dict() if isinstance(one, Prediction) else {"converged": False})
+        if isinstance(one, Prediction) and not about.keys() >= rows[-1].keys():
+            about |= dict.fromkeys(rows[-1], {}) | {
+                key: {"units": unit or "1", "long_name": text}
+                for key, unit, text, _ in one.numbers()
+            }
+    columns: dict[str, list[Any]] = {}
+    for name in dict.fromkeys(name for row in rows for name in row):
+        if name not in ("motion", "inputs", *axes):
+            columns[name] = _cells(name, [row.get(name) for row in rows])
+    for name, values in cases.columns.items() if not cases.axes else ():
+        texts = ["" if one is None else str(one) for one in values]
+        columns[name if name in LABELS else f"case_{name}"] = texts
+    columns["error"] = ["" if isinstance(one, Prediction) else str(one) for one in answers]
     variables = {
-        name: (tuple(sizes), np.array(values).reshape(shape), attributes.get(name, {}))
+        name: (list(axes), np.array(values).reshape(shape), about.get(name, {}))
         for name, values in columns.items()
     }
-    return xr.Dataset(variables, coordinates, {"motion": str(cases.motion)})
+    return xr.Dataset(variables, axes, {"motion": str(cases.motion)})
+
+
+def _cells(name: str, values: list[Any]) -> list[Any]:
+    """A column of a dataset: texts, truth values, or numbers with NaN for None."""
+    if name == "converged":
+        return values
+    if name in (*TEXTS, *REASONS):
+        return [one or "" for one in values]
+    if any(isinstance(one, list) for one in values):
+        return ["; ".join(one or ()) for one in values]
+    return [math.nan if one is None else float(one) for one in values]
 
 
 def table_text(cases: Cases, answers: Answers) -> str:
     """The printed table, with a row for each contact and remarks below."""
     predicted = [one for one in answers if isinstance(one, Prediction)]
-    cells: list[tuple[str, Callable[[Prediction], str]]] = []
-
-    def add(title: str, value: Callable[[Prediction], Value | None]) -> None:
-        """Add columns for a value and its error, and a column for its standard uncertainty if an
-        input is uncertain."""
-        numbers = [one for one in map(value, predicted) if one is not None]
-        titles = [title] if numbers else []
-        titles += ["+-"] * any(one.error for one in numbers)
-        if any(one.spread is not None for one in numbers):
-            titles = [title, "+-", "uncertainty"]
-        for place, heading in enumerate(titles):
-            cells.append((heading, partial(_cell, value, place)))
-
-    for name, title in PRINTED.items():
-        add(title, partial(_output, name))
-    for name in dict.fromkeys(one.search for one in predicted if one.search not in (None, "speed")):
-        unit = next(one.input_units[name] for one in predicted if one.search == name)
-        add(f"{name} {unit}", partial(_result, name))
+    columns = {title: [_output(name, one) for one in predicted] for name, title in PRINTED.items()}
+    searched = {one.search: one.input_units[one.search] for one in predicted if one.search}
+    searched.pop("speed", None)
+    for name, unit in searched.items():
+        sizes = [one.input_values[name] if one.search == name else None for one in predicted]
+        columns[f"{name} {unit}"] = sizes
+    texts: list[Any] = []
+    for title, values in columns.items():
+        numbers = [one for one in values if one is not None]
+        spread = any(one.spread is not None for one in numbers)
+        used = bool(numbers), spread or any(one.error for one in numbers), spread
+        parts = zip(*map(_digits, values), strict=True)
+        titles = (title, "+-", "uncertainty")
+        texts += [part for *part, use in zip(titles, parts, used, strict=False) if use]
     if any(one.outcome for one in predicted):
-        cells.append(("outcome", lambda one: one.outcome or ""))
-    lines = [
-        "".join(f"{title:>{WIDTH}}" for title in (*cases.starts, *(title for title, _ in cells)))
-    ]
+        texts.append(("outcome", [one.outcome or "" for one in predicted]))
+    rows = iter(zip(*(cells for _, cells in texts), strict=True)) if texts else repeat(())
+    lines = ["".join(f"{title:>{WIDTH}}" for title in (*cases.starts, *(one for one, _ in texts)))]
     remarks: dict[str, list[str]] = {}
-    for name, starts, one in zip(
-        cases.names, zip(*cases.starts.values(), strict=True), answers, strict=True
-    ):
-        start = "".join(f" {text:>{WIDTH - 1}}" for text in starts)
+    starts = zip(*cases.starts.values(), strict=True)
+    for name, start, one in zip(cases.names, starts, answers, strict=True):
+        lines.append("".join(f" {text:>{WIDTH - 1}}" for text in start))
         if not isinstance(one, Prediction):
-            lines.append(f"{start}  no prediction")
+            lines[-1] += "  no prediction"
             continue
-        lines.append(start + "".join(f"{cell(one):>{WIDTH}}" for _, cell in cells))
+        lines[-1] += "".join(f"{text:>{WIDTH}}" for text in next(rows))
         away = [f"it {one.reason}"] if one.outcome == RUNS_AWAY else []
         for text in (*away, *one.remarks, *one.problems):
             remarks.setdefault(text, []).append(name)
@@ -382,15 +372,6 @@ def table_text(cases: Cases, answers: Answers) -> str:
 def _output(name: str, one: Prediction) -> Value | None:
     """An output, or the speed as an input."""
     return one.values.get(name) or (one.input_values.get(name) if name == "speed" else None)
-
-
-def _result(name: str, one: Prediction) -> Value | None:
-    """The result of a search for an input."""
-    return one.input_values[name] if one.search == name else None
-
-
-def _cell(value: Callable[[Prediction], Value | None], place: int, one: Prediction) -> str:
-    return _digits(value(one))[place]
 
 
 def _digits(one: Value | None) -> tuple[str, str, str]:

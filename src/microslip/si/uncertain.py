@@ -12,7 +12,7 @@ the inputs if there are at most as many.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 from itertools import pairwise
 from typing import Any, NamedTuple
@@ -58,7 +58,7 @@ Solve = Callable[[Inputs], tuple[Contact, Answer, Value | None]]
 
 
 class _Line(NamedTuple):
-    """A line through the draws, along which a value is interpolated.
+    """A line through the draws, along which values are interpolated.
 
     Attributes
     ----------
@@ -67,32 +67,33 @@ class _Line(NamedTuple):
         deviations.
     inputs_at, place_at : callable
         inputs_at(level) -> Inputs, and place_at(level) -> coordinate.
+    nodes : list
+        Level, place and values by name of each node.
     """
 
     places: np.ndarray
     levels: np.ndarray
     inputs_at: Callable[[float], Inputs]
     place_at: Callable[[float], float]
+    nodes: list[tuple[float, float, dict[str, float]]]
 
-    def add(self, nodes: dict, level: float, value: Callable[[Inputs], float]) -> None:
-        """Add the value at a level to the nodes. If this level has no value, a level nearer to the
-        centre is used. nodes: level, place and value, keyed by the requested level."""
-        for factor in NEARER:
+    def add(self, level: float, solve: Callable[[Inputs], dict[str, float]]) -> None:
+        """Add a node at a level.  If this level has no values, a level nearer to the centre is
+        used."""
+        for one in (factor * level for factor in NEARER):
             try:
-                number = value(self.inputs_at(factor * level))
+                self.nodes.append((one, self.place_at(one), solve(self.inputs_at(one))))
             except (InputError, ArithmeticError):  # outside the range of the theory or the solver
                 continue
-            nodes[level] = factor * level, self.place_at(factor * level), number
             return
 
-    def values(self, nodes: dict) -> np.ndarray:
+    def values(self, name: str) -> np.ndarray:
         """Values of all draws: interpolated between the nodes, constant outside, and NaN where the
         nearest node has no value."""
         from scipy.interpolate import PchipInterpolator
 
-        _, places, values = np.array(sorted(nodes.values(), key=lambda node: node[1])).T
-        places, first = np.unique(places, return_index=True)
-        values = values[first]
+        pairs = {place: values.get(name, math.nan) for _, place, values in self.nodes}
+        places, values = np.array(sorted(pairs.items())).T
         good = np.isfinite(values)
         x, y = places[good], values[good]
         if len(x) < 2:
@@ -122,21 +123,30 @@ class Draws:
     """
 
     def __init__(self, inputs: Inputs, contact: Contact, answer: Answer, solve: Solve):
-        self._inputs, self._centre, self._solve = inputs, contact, solve
+        self._inputs, self._centre = inputs, contact
         self._normal = normal_numbers(len(inputs.uncertain))
-        self._solutions: dict[tuple, dict[str, float]] = {}
         drawn, central = self._drawn(self._normal), answer.values
         self.contact = Contact(contact.inputs.at(**drawn))
-        lines = self._lines(False)
-        known = {name: self._interpolated(name, lines) for name in central if name != "static"}
-        if "static" in central:
-            limits = self._interpolated("static", lines) if inputs.search else self._static(central)
-            known["static"] = limits
-            if central.get("threshold") == central["static"]:
-                known["threshold"] = limits
+
+        def solution(other: Inputs) -> dict[str, float]:
+            """The answer, and as "root" the logarithm of the result of a search."""
+            try:
+                _, answer, root = solve(other)
+            except NoSolutionError:
+                return {}
+            values = {name: one.value for name, one in answer.values.items()}
+            return values | ({"root": math.log(root.value)} if root else {})
+
+        middle = solution(inputs)
+        limit = None if inputs.search else middle.pop("static", None)
+        known = self._total(middle, self._lines(False, middle), LEVELS, solution)
+        if limit is not None:
+            known["static"] = self._static(limit)
         if inputs.search is not None:
-            drawn[inputs.search] = np.exp(self._interpolated("root", lines))
+            drawn[inputs.search] = np.exp(known.pop("root"))
             self.contact = Contact(inputs.at(**drawn))
+        elif central.get("threshold") == central.get("static", 0.0):
+            known["threshold"] = known["static"]
         if inputs.force is not None:  # draws that stay or run away
             force = self.contact.drive(known["mean_load"])["force"]
             velocity = np.maximum(known["velocity"], 0.0)
@@ -154,72 +164,50 @@ class Draws:
         names = enumerate(self._inputs.uncertain)
         return {name: _clipped(self._inputs, name, normal[..., k]) for k, name in names}
 
-    def _solution(self, inputs: Inputs) -> dict[str, float]:
-        """The answer for other inputs; empty if nothing was solved.  "root" is the logarithm of the
-        result of a search.  Raises InputError."""
-        key = tuple(float(one.si) for one in inputs.quantities.values())
-        if key not in self._solutions:
-            self._solutions[key] = {}
-            try:
-                _, answer, root = self._solve(inputs)
-                self._solutions[key] = {name: one.value for name, one in answer.values.items()}
-                self._solutions[key] |= {"root": math.log(root.value)} if root else {}
-            except NoSolutionError:
-                pass
-        return self._solutions[key]
-
-    def _interpolated(self, name: str, lines: list[_Line]) -> np.ndarray:
-        """A value of the answer for all draws."""
-
-        def value(inputs: Inputs) -> float:
-            return self._solution(inputs).get(name, math.nan)
-
-        return self._total(value(self._inputs), lines, LEVELS, value)
-
     def _total(
         self,
-        central: float,
+        central: dict[str, float],
         lines: list[_Line],
         levels: Sequence[float],
-        value: Callable[[Inputs], float],
-        refine: Callable[[_Line, dict], None] = lambda line, nodes: None,
-    ) -> np.ndarray:
-        """The central value and its changes along all lines.  refine: adds more nodes."""
-        total = np.full(DRAWS, central)
+        solve: Callable[[Inputs], dict[str, float]],
+        refine: Callable[[_Line], None] = lambda line: None,
+    ) -> dict[str, np.ndarray]:
+        """The central values and their changes along all lines.  refine: adds more nodes."""
+        totals = {name: np.full(DRAWS, value) for name, value in central.items()}
         for line in lines:
-            nodes = {0.0: (0.0, line.place_at(0.0), central)}
             for level in levels:
-                line.add(nodes, level, value)
-            refine(line, nodes)
-            total += line.values(nodes) - central
-        return total
+                line.add(level, solve)
+            refine(line)
+            for name, value in central.items():
+                totals[name] += line.values(name) - value
+        return totals
 
-    def _static(self, central: Mapping[str, Value]) -> np.ndarray:
+    def _static(self, central: float) -> np.ndarray:
         """The static limit for all draws.  Points are added where it vanishes and where it is close
         to the force."""
-        force, lines = self.contact.drive().get("force"), self._lines(True)
+        force, lines = self.contact.drive().get("force"), self._lines(True, {"static": central})
 
-        def limit(inputs: Inputs) -> float:
+        def limit(inputs: Inputs) -> dict[str, float]:
             contact = Contact(inputs)
             if contact.amplitude <= 0.0:
-                return 1.0
-            return static_limit(contact).mu_macro if math.isfinite(contact.amplitude) else 0.0
+                return {"static": 1.0}
+            finite = math.isfinite(contact.amplitude)
+            return {"static": static_limit(contact).mu_macro if finite else 0.0}
 
-        def refine(line: _Line, nodes: dict) -> None:
+        def refine(line: _Line) -> None:
             for _ in range(REFINEMENTS):
-                pairs = pairwise(sorted(nodes.values()))
-                ends = [
-                    (a, b) for (a, _, x), (b, _, y) in pairs if (x > VANISHING) != (y > VANISHING)
-                ]
+                sizes = sorted((level, values["static"]) for level, _, values in line.nodes)
+                pairs = pairwise(sizes)
+                ends = [(a, b) for (a, x), (b, y) in pairs if (x > VANISHING) != (y > VANISHING)]
                 if ends:
-                    line.add(nodes, 0.5 * sum(ends[0]), limit)
+                    line.add(0.5 * sum(ends[0]), limit)
             for _ in range(REFINEMENTS if force is not None and len(lines) == 1 else 0):
-                distance = np.abs(line.values(nodes) - force)
+                distance = np.abs(line.values("static") - force)
                 closest = np.argpartition(distance, DRAWS // CLOSEST)[: DRAWS // CLOSEST]
-                line.add(nodes, float(np.median(line.levels[closest])), limit)
+                line.add(float(np.median(line.levels[closest])), limit)
 
-        total = self._total(central["static"].value, lines, STATIC_LEVELS, limit, refine)
-        return np.clip(total, 0.0, 1.0)
+        total = self._total({"static": central}, lines, STATIC_LEVELS, limit, refine)
+        return np.clip(total["static"], 0.0, 1.0)
 
     def _groups(self, contact: Contact, static: bool) -> np.ndarray:
         """Groups of a contact relative to the centre, shape (draws, groups)."""
@@ -233,9 +221,10 @@ class Draws:
             columns.append(np.atleast_1d(change))
         return np.nan_to_num(np.stack(np.broadcast_arrays(*columns), axis=-1))
 
-    def _lines(self, static: bool) -> list[_Line]:
+    def _lines(self, static: bool, central: dict[str, float]) -> list[_Line]:
         """The lines along which the answer, or the static limit, varies: the principal axes of the
-        groups, or the axes of the inputs if there are at most as many."""
+        groups, or the axes of the inputs if there are at most as many.  The first node of each line
+        is at the centre."""
         normal, count = self._normal, len(self._inputs.uncertain)
         base = self._centre.inputs if static else self._inputs
         groups = self._groups(self.contact, static)
@@ -262,7 +251,8 @@ class Draws:
                 return float((self._groups(contact, static)[0] - middle) @ axes[axis])
 
             place = float if by_inputs else place_at
-            return _Line(scores[:, axis], levels[:, axis], inputs_at, place)
+            nodes = [(0.0, place(0.0), central)]
+            return _Line(scores[:, axis], levels[:, axis], inputs_at, place, nodes)
 
         return [line(axis) for axis in range(scores.shape[1])]
 
