@@ -22,35 +22,27 @@ SNAKEMAKE = [str(Path(sys.executable).with_name("snakemake")), "-s", str(ROOT / 
 
 # Refused arguments and configurations
 
-CORES = "allowed is a whole number of at least 1, or all"
-REFUSED = [
-    ("--cores=0", "--cores = 0", CORES),
-    ("-c -1", "--cores = -1", CORES),
-    ("-nj0", "--jobs = 0", CORES),
-    ("--no-such-option", "unrecognized arguments: --no-such-option"),
-    ("--cores 1 --configfile", "argument --configfile", "expected at least one argument"),
-    ("al", "TARGET = 'al'", "did you mean all?", "allowed is one of all, transverse, bore"),
-    ("extendd", "TARGET = 'extendd'", "did you mean extended?"),
-    ("fig2_transverse", "TARGET = 'fig2_transverse'", "did you mean fig2_transverse_map?"),
-    ("-n --config poisson", "--config = 'poisson'", "KEY=VALUE"),
-    ("-n --configfile none.yaml", "--configfile = 'none.yaml'", "no such file", "a YAML file"),
-    ("--configfile good.yaml results/x.nc", "'results/x.nc'", "targets go before --configfile"),
-    ("--configfile good.yaml made.nc", "--configfile = 'made.nc'", "targets go before"),
-    ("-n --configfile good.yaml fig2", "'fig2': no such file", "targets go before --configfile"),
-    ("-n --configfile good.yaml --configfile good.yaml", "--configfile", "--configfile A B"),
-    ("-n --configfile good.yaml tabs.yaml", "tabs.yaml: not valid YAML:"),
-    (
-        "-n --configfile good.yaml --config points_per_job=0",
-        "good.yaml, --config: points_per_job: 0 is not allowed; allowed: a whole number >= 1",
-    ),
-    ("-n --configfile good.yaml --config result=here", "--config: result: unknown key; did you"),
-    (
-        "-n --configfile good.yaml --config results=good.yaml",
-        "good.yaml, --config: results: good.yaml is not a folder; allowed: a folder, or a new",
-    ),
-    ("-c1 --configfile good.yaml --config sweeps={bore:3}", "--config: sweeps.bore"),
-    ("-n --configfile good.yaml bore", "--configfile = 'bore'", "no such file"),
-]
+GIVEN = "-n --configfile good.yaml"
+REFUSED = {
+    "--cores=0": "--cores = 0",
+    "-c -1": "--cores = -1",
+    "-nj0": "--jobs = 0",
+    "--no-such-option": "unrecognized arguments: --no-such-option",
+    "--cores 1 --configfile": "argument --configfile",
+    "al": "TARGET = 'al': did you mean all?",
+    "extendd": "TARGET = 'extendd': did you mean extended?",
+    "-n --config poisson": "--config = 'poisson'",
+    "-n --configfile none.yaml": "--configfile = 'none.yaml'",
+    f"{GIVEN} results/x.nc": "'results/x.nc'",
+    "--configfile made.nc": "--configfile = 'made.nc'",
+    f"{GIVEN} fig2": "'fig2': no such file",
+    f"{GIVEN} {GIVEN}": "--configfile",
+    f"{GIVEN} tabs.yaml": "tabs.yaml: not valid YAML:",
+    f"{GIVEN} --config points_per_job=0": "good.yaml, --config: points_per_job: 0 is not allowed",
+    f"{GIVEN} --config result=here": "--config: result: unknown key; did you mean results?",
+    f"{GIVEN} --config results=good.yaml": "good.yaml, --config: results: good.yaml is not a folder",
+    f"{GIVEN} --config sweeps={{bore:3}}": "--config: sweeps.bore",
+}
 
 
 @pytest.fixture
@@ -62,12 +54,12 @@ def here(monkeypatch, tmp_path):
     return tmp_path
 
 
-@pytest.mark.parametrize(("arguments", "parts"), [(first, rest) for first, *rest in REFUSED])
-def test_bad_arguments_are_one_line_before_snakemake_starts(arguments, parts, here):
+@pytest.mark.parametrize("arguments", REFUSED)
+def test_bad_arguments_are_one_line_before_snakemake_starts(arguments, here):
     (here / "good.yaml").write_text(GOOD)
     (here / "tabs.yaml").write_bytes(FILES["tabs"][0])
     (here / "made.nc").write_bytes(b"")
-    refused(in_process.run("sweep", *arguments.split()), parts)
+    refused(in_process.run("sweep", *arguments.split()), REFUSED[arguments])
 
 
 @pytest.mark.parametrize("place", ["the package", "here"])
@@ -97,13 +89,13 @@ def test_a_bad_key_is_one_line_in_a_file_and_in_the_default(here):
         (here / file).write_text(changed({"sweeps.bores": "[-1]"}))
         with pytest.raises(load.ConfigError) as caught:
             load.load(file)
-        refused(in_process.run("sweep", *arguments), [f"microslip sweep: {caught.value}\n"])
+        refused(in_process.run("sweep", *arguments), f"microslip sweep: {caught.value}\n")
 
 
-def refused(process, parts):
+def refused(process, part):
     assert (process.returncode, process.stdout, process.stderr.count("\n")) == (2, "", 1)
     assert process.stderr.startswith("microslip sweep: ")
-    assert [part for part in parts if part not in process.stderr] == []
+    assert part in process.stderr
 
 
 def test_a_folder_that_is_gone_is_one_line(tmp_path):
