@@ -40,7 +40,7 @@ REFUSED = {
     f"{GIVEN} tabs.yaml": "tabs.yaml: not valid YAML:",
     f"{GIVEN} --config points_per_job=0": "good.yaml, --config: points_per_job: 0 is not allowed",
     f"{GIVEN} --config result=here": "--config: result: unknown key; did you mean results?",
-    f"{GIVEN} --config results=good.yaml": "good.yaml, --config: results: good.yaml is not a folder",
+    f"{GIVEN} --config results=good.yaml": "--config: results: good.yaml is not a folder",
     f"{GIVEN} --config sweeps={{bore:3}}": "--config: sweeps.bore",
 }
 
