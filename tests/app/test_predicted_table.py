@@ -10,7 +10,6 @@ from stubs import certified_stub
 
 import microslip
 from microslip.app import cli
-from microslip.datasets import netcdf
 
 SHARED = {"material": "steel", "radius": "5 mm", "mu": "0.3", "frequency": "20 kHz"}
 WORDS = [word for name, text in SHARED.items() for word in (f"--{name}", text)]
@@ -122,20 +121,6 @@ def test_under_a_force_each_line_has_its_outcome_threshold_and_probabilities(fol
     assert stays["speed m/s"] == "0" and away["speed m/s"] == ""
 
 
-@pytest.mark.long
-def test_each_line_may_look_for_something_else(folder, capsys):
-    text = "load [N],amplitude [um],reduction\n10,,0.3\n,0.3,0.3\n10,0.3,\n"
-    (folder / "contacts.csv").write_text(text)
-    assert cli.main([*COMMAND, "--speed", "10 mm/s", "--output", "found.nc"]) == 0
-    heading, first, second, third, *_ = capsys.readouterr().out.splitlines()
-    assert heading.split()[-8:] == ["speed", "m/s", "amplitude", "m", "+-", "load", "N", "+-"]
-    assert [len(row.split()) for row in (first, second, third)] == [8, 8, 6]
-    dataset = xr.load_dataset(folder / "found.nc")
-    assert dataset.search.values.tolist() == ["amplitude", "load", ""]
-    assert dataset.load_error_N.values[1] > 0.0
-    assert float(second.split()[-2]) == pytest.approx(dataset.load_N.values[1], rel=1e-3)
-
-
 RANGED = ["predict", "transverse", *WORDS, "--tolerance", "0.01", "--load", "10 N"]
 RANGED += ["--amplitude", "0..0.4 um, 3", "--speed", "5..20 mm/s, 2"]
 
@@ -187,25 +172,3 @@ def test_a_long_period_gives_a_hint_to_fold_before_any_work(folder, capsys):
     hint, problem = capsys.readouterr().err.splitlines()
     assert "MOTION = 'file:record.csv'" in hint and "microslip fold" in hint
     assert "--load: needed" in problem
-
-
-@pytest.mark.long
-def test_a_map_is_found_by_its_name_and_by_its_path(folder, capsys):
-    axes = {"velocity": [0.05, 1], "amplitude": [0.5, 2], "error": 2e-2}
-    map_ = certified_stub.configured("transverse", **axes)
-    dataset = certified_stub.built(map_, certified_stub.solved)
-    (folder / "results").mkdir()
-    netcdf.write(folder / "results" / "certified_transverse.nc", dataset)
-    words = ["predict", "transverse", "--young", "210 GPa", "--nu", "0", "--radius", "5 mm"]
-    words += ["--mu", "0.3", "--frequency", "20 kHz", "--load", "10 N", "--speed", "10 mm/s"]
-    words += ["--amplitude", "0.2..0.3 um, 3", "--tolerance", "0.05", "--json"]
-    found = []
-    for name in ("certified_transverse", "results/certified_transverse.nc"):
-        assert cli.main([*words, "--map", name]) == 0
-        found.append(json.loads(capsys.readouterr().out))
-    assert found[0] == found[1] and {one["model"] for one in found[0]} == {"map"}
-    bore = [word if word != "transverse" else "bore" for word in words]
-    bore[bore.index("--amplitude") + 1] = "0.1 deg"
-    assert cli.main([*bore, "--map", "certified_transverse"]) == 2
-    (line,) = capsys.readouterr().err.splitlines()
-    assert line.startswith("microslip predict: --map = 'certified_transverse': allowed is")

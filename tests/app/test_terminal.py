@@ -12,8 +12,6 @@ import pytest
 from stubs import in_process
 from stubs.in_process import ENVIRONMENT
 
-from microslip.foundation.compiled import OPTIONS
-
 COMMAND = [sys.executable, "-m", "microslip"]
 INTERRUPTED = (130, "", "microslip: interrupted\n")
 pytestmark = pytest.mark.skipif(os.name != "posix", reason="signals and devices of POSIX")
@@ -117,10 +115,6 @@ def test_a_signal_ends_a_command_in_the_middle_of_a_kernel(number, code, word, t
     command = [sys.executable, "-c", KERNEL.format(ready=str(ready))]
     result = stopped(command, lambda _: ready.exists(), number)
     assert result == (code, "", f"microslip: {word}\n")
-
-
-def test_kernels_hold_no_lock_that_would_keep_an_interrupt_waiting():
-    assert OPTIONS["nogil"] is True
 
 
 WRITING = """

@@ -194,10 +194,6 @@ def test_a_terminal_shows_that_the_solver_is_compiled(tmp_path):
     assert shown(tmp_path, *BOTH) == []
 
 
-def test_unoptimised_code_gives_the_same_numbers(tmp_path):
-    assert call(tmp_path, "float64", NUMBA_OPT="0") == ""
-
-
 @pytest.mark.parametrize("command", ["point transverse --velocity 1 --amplitude 1", "sweep -n"])
 def test_without_a_compiler_one_line_refuses(command, tmp_path):
     process = subprocess.run(

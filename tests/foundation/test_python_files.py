@@ -8,7 +8,6 @@ import pytest
 from stubs.new_process import output
 
 import microslip
-from microslip.app.cli import main
 from microslip.config import load
 from microslip.foundation import named_files
 from microslip.foundation.errors import InputError
@@ -63,19 +62,6 @@ def test_a_class_in_a_file_is_used_like_one_of_the_package(mine):
     assert motion_named(f"{NAME}:share=0.5").waves["lateral"].share == 0.5
     assert pressure_named("mine/cone.py:exponent=2").depth(0.5) == 0.25
     assert motion_named(NAME) is motion_named(str(mine / "side_ways.py"))
-
-
-def test_the_command_line_takes_a_path(mine, capsys):
-    place = ("--velocity", "5", "--amplitude", "1", "--tolerance", "0.01", "--json")
-    assert main(["point", f"{NAME}:share=0.5", *place, "--pressure", "mine/cone.py"]) == 0
-    answer = json.loads(capsys.readouterr().out)
-    assert answer["motion"] == motion_named(f"{NAME}:share=0.5").name
-    assert answer["pressure"] == pressure_named("mine/cone.py").name
-    assert main(["point", "mine/none.py", *place]) == 2
-    assert main(["point", "transverse", *place, "--pressure", "mine/none.py"]) == 2
-    lines = capsys.readouterr().err.splitlines()
-    assert len(lines) == 2 and "MOTION = 'mine/none.py'" in lines[0]
-    assert "--pressure = 'mine/none.py'" in lines[1]
 
 
 def test_the_name_in_results_has_a_digest_in_place_of_the_folder(mine):
@@ -157,21 +143,15 @@ BAD = [
     ("mine/none.py", None, "mine/none.py cannot be read: No such file; looked for "),
     ("mine", None, "allowed is one of transverse, "),
     ("mine/x.py", "A = 1", "it has 0 subclasses of microslip.Motion; allowed is one in a file"),
-    ("mine/x.py", PRESSURE, "it has 0 subclasses of microslip.Motion; allowed"),
     ("mine/x.py", TWO, "it has 2 subclasses of microslip.Motion: Sideways, Other; allowed"),
     ("mine/x.py", "def x(", "cannot be imported: SyntaxError in line 1: "),
     ("mine/x.py", "\n1 / 0", "cannot be imported: ZeroDivisionError in line 2: "),
-    ("mine/x.py", "raise SystemExit('stop')", "cannot be imported: SystemExit in line 1: stop"),
-    ("mine/x.py", "import nothing_here", "No module named 'nothing_here'"),
+    ("mine/x.py", "raise SystemExit", "cannot be imported: SystemExit in line 1:"),
     ("mine/x.py:shar=2", MOTION, "unknown number shar; allowed: share"),
     ("mine/x.py:share", MOTION, "in it 'share': allowed are numbers as in x.py:key=0.5"),
     ("mine/x.py:share=2", MOTION, "= 2: allowed is a share in 0..1"),
     ("mine/x.py", MOTION.replace("share: float = 1.0", "share: float = 'a' + 1"), "TypeError in"),
-    (
-        "mine/x.py",
-        MOTION.replace("self.share)", "1 / 0)"),
-        "x.py: ZeroDivisionError in line 16: ",
-    ),
+    ("mine/x.py", MOTION.replace("self.share)", "1 / 0)"), "x.py: ZeroDivisionError in line 16: "),
 ]
 
 

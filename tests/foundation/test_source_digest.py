@@ -132,21 +132,6 @@ def test_scratch_and_hidden_files_do_not_count(package):
 # Files are read once, and parse results are stored
 
 
-def test_a_digest_is_of_the_files_as_they_were_first_read(package, monkeypatch):
-    monkeypatch.setattr(source_digest, "LOADED", Sources(package))
-    monkeypatch.setattr(source_digest, "of_solver", lambda: before)
-    monkeypatch.setattr(source_digest, "PACKAGE", package)
-    before = source_digest.LOADED.digest(SOLVER)
-    now = [Sources(package)]
-    monkeypatch.setattr(source_digest, "Sources", lambda: now[0])
-    (package / "periodic/run.py").write_text(FILES["periodic/run.py"] + "  # a comment")
-    assert not source_digest.is_edited()
-    now[0] = Sources(package)
-    (package / "periodic/run.py").write_text("edited = True")
-    assert source_digest.is_edited()
-    assert source_digest.LOADED.digest(SOLVER) == before
-
-
 def test_a_second_process_parses_only_edited_files(package, monkeypatch):
     before = Sources(package).digest(SOLVER)
     (package / "periodic/run.py").write_text("A = 2")
@@ -157,16 +142,6 @@ def test_a_second_process_parses_only_edited_files(package, monkeypatch):
     after = Sources(package).digest(SOLVER)
     assert after != before and parsed == [b"A = 2"]
     assert Sources(package).digest(SOLVER) == after and len(parsed) == 1
-
-
-@pytest.mark.parametrize("damage", [lambda b: b[:-9], lambda b: b"", lambda b: b"[1, 2]"])
-def test_damaged_parse_results_are_replaced(damage, package):
-    first = Sources(package).digest(SOLVER)
-    (cache,) = (package / "__pycache__").glob("sources.*.json")
-    whole = cache.read_bytes()
-    cache.write_bytes(damage(whole))
-    assert Sources(package).digest(SOLVER) == first
-    assert cache.read_bytes() == whole
 
 
 def test_importing_the_package_computes_no_digest():
