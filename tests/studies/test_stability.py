@@ -166,7 +166,8 @@ def test_step_solvers_find_the_one_solution_of_a_step(method):
     path = path_of(motion, contact, 8)
     start = forward_slip(contact)
     one = contact.march(path, start, 1e-10).state
-    other = method_named(method).dressed(contact).march(path, start, 1e-10).state
+    parts = method_named(method)
+    other = parts.dress(contact, **parts.parameters).march(path, start, 1e-10).state
     assert energy_norm(contact, one - other) < 1e-7
 
 

@@ -31,7 +31,6 @@ from microslip.answer.request import (
 )
 from microslip.foundation.arguments import real
 from microslip.foundation.errors import InputError
-from microslip.periodic.methods import method_named
 from microslip.periodic.run import Spent
 from microslip.scene.hertz import HERTZ
 from microslip.scene.motion import Motion
@@ -117,9 +116,8 @@ def under_force(request: Request) -> Result:
 
 def _under(force: float, request: Request) -> Request:
     """Copy a request and replace its force."""
-    drive = request.problem.drive
-    assert drive is not None
-    return replace(request, problem=replace(request.problem, drive=Force(force, drive.mass)))
+    assert isinstance(request.problem.drive, Force)
+    return request.at(drive=replace(request.problem.drive, force=force))
 
 
 def _without_runs(
@@ -164,8 +162,7 @@ def _static(request: Request, force: float) -> Result:
     """Compute the static limit, just accurately enough to compare it with the force."""
 
     def at_rest(tolerance: float | None) -> Result:
-        problem = replace(request.problem, velocity=0.0, drive=None)
-        return answer_of(replace(request, problem=problem, tolerance=tolerance))
+        return answer_of(replace(request, tolerance=tolerance).at(velocity=0.0, drive=None))
 
     rough, tolerance = ROUGH_TOLERANCE, request.tolerance
     while tolerance is not None and tolerance < rough:
@@ -198,7 +195,7 @@ def _moving(request: Request, moving_force: float) -> Result:
         near, slope = _velocity_near(request)
     except Spent as spent:
         return _unknown(original, str(spent))
-    request = replace(request, problem=replace(request.problem, velocity=near))
+    request = request.at(velocity=near)
     scale = SCALE_SHARE * near
     while True:
         answer = runs(request, request.accuracy * max(1.0, scale), "velocity", slope=slope)
@@ -230,12 +227,9 @@ def _velocity_near(request: Request) -> tuple[float, float]:
     from microslip.periodic.simulate import simulate
 
     force, moving = request.problem.force or 0.0, replace(request.problem, velocity=FIRST_VELOCITY)
-    ladder = ladder_of(replace(request, problem=moving), COARSE_TOLERANCE)
+    ladder = ladder_of(request.at(velocity=FIRST_VELOCITY), COARSE_TOLERANCE)
     coarse = ladder.resolution(ladder.levels(COARSE_TOLERANCE)[0])
-    settings, unit = (
-        Settings(method_named(request.method), budget=request.budget),
-        moving.unit_drift,
-    )
+    settings, unit = Settings(budget=request.budget), moving.unit_drift
     if request.progress is not None:
         request.progress(coarse)
 
@@ -378,8 +372,7 @@ def shakedown(
     endless = {"displacement": Estimate(math.inf, {"model": math.inf})}
     answer = Answer(problem, {"imposed": False}, endless, away)
     if not away:
-        planned = replace(request, problem=replace(problem, velocity=PLANNED_VELOCITY))
-        ladder = ladder_of(planned, request.accuracy)
+        ladder = ladder_of(request.at(velocity=PLANNED_VELOCITY), request.accuracy)
         # the contact must come to rest in the coarsest run too
         ladder, share = replace(ladder, start=2 * ladder.start), REST_SHARE * RUN_SHARE
         answer = runs(request, request.accuracy, "displacement", ladder=ladder, share=share)
@@ -404,6 +397,5 @@ def _threshold(request: Request) -> tuple[Estimate, str]:
     if away:
         return Estimate(math.nan, {"model": math.inf}), away
     tolerance = min(request.tolerance or STATIC_TOLERANCE, STATIC_TOLERANCE)
-    still = replace(problem, drive=None)
-    changes: dict[str, Any] = {"problem": still, "chosen": True, "tolerance": tolerance}
-    return answer_of(replace(request, **changes)).friction, ""
+    still = replace(request, chosen=True, tolerance=tolerance).at(drive=None)
+    return answer_of(still).friction, ""

@@ -115,8 +115,7 @@ def solve(
 
         answer = under_force(request)
     elif problem.velocity < 0.0:  # the mirror image
-        behind = replace(problem, velocity=-problem.velocity, backward=not problem.backward)
-        answer = answer_of(replace(request, problem=behind))
+        answer = answer_of(request.at(velocity=-problem.velocity, backward=not problem.backward))
         answer = answer.changed(mean_velocity=-answer.mean_velocity, friction=-answer.friction)
     else:
         answer = answer_of(request)

@@ -89,6 +89,10 @@ class Request:
         """The tolerance to which the runs are refined."""
         return TOLERANCE if self.tolerance is None else self.tolerance
 
+    def at(self, **changes: Any) -> Request:
+        """The request for a problem with other fields."""
+        return replace(self, problem=replace(self.problem, **changes))
+
     def result(self, estimates: dict[str, Estimate], reason: str = "", **values: Any) -> Result:
         """Build the Result.  Missing values are those of a result that needs no run."""
         own: dict[str, Any] = {
@@ -148,8 +152,8 @@ def answer_of(request: Request) -> Result:
     moves = problem.motion.periodic and problem.velocity > 0.0
     if drive is not None and not (moves and limits.oscillates(problem)):
         # under a constant force the length of the spring is constant
-        problem = replace(problem, drive=None)
-        request = replace(request, problem=problem)
+        request = request.at(drive=None)
+        problem = request.problem
     exact, tolerance = no_vibration(problem), request.tolerance
     imposed = problem.velocity > 0.0 and not (request.cells is None and request.steps is None)
     if not (exact or imposed) and request.chosen and request.method == SHIPPED:

@@ -64,14 +64,6 @@ def focus_strength(drift: float) -> float:
     return float(np.clip(1.0 - layer, WEAKEST_FOCUS, STRONGEST_FOCUS))
 
 
-def _focus(problem: Problem) -> Focus | float | None:
-    """Grading of the rings towards the radius at which slip starts."""
-    radius = problem.focus
-    if radius is None or not problem.motion.periodic:
-        return radius
-    return Focus((radius,), focus_strength(problem.drift))
-
-
 def contact_of(
     problem: Problem,
     model: str,
@@ -92,8 +84,11 @@ def contact_of(
     focus : mesh.Focus or None
         Grading of the rings.  By default, they are graded towards the radius at which slip starts.
     """
-    place = focus or _focus(problem)
-    contact = MODELS[model].build(problem, resolution.cells, resolution.angles, place)
+    radius = problem.focus
+    place: Focus | float | None = radius
+    if radius is not None and problem.motion.periodic:
+        place = Focus((radius,), focus_strength(problem.drift))
+    contact = MODELS[model].build(problem, resolution.cells, resolution.angles, focus or place)
     if problem.depth is None:
         return contact
     deepest = problem.motion.deepest(problem.size, problem.pressure)
@@ -117,17 +112,17 @@ def path_of(problem: Problem, contact: Any, steps: int, integrator: Integrator =
     integrator : path.Integrator
         Time integrator; it sets the positions of the stages.
     """
-    grading = turning_point_grading(problem.drift, problem.stroke)
-    if contact.grading is not None:
-        grading = contact.grading
-    return _path(problem, steps, grading, integrator)
+    return _path(problem, steps, contact.grading, integrator)
 
 
 @lru_cache(maxsize=32)
-def _path(problem: Problem, steps: int, grading: float, integrator: Integrator) -> Path:
+def _path(problem: Problem, steps: int, grading: float | None, integrator: Integrator) -> Path:
+    drift, stroke = problem.drift, problem.stroke
+    if grading is None:
+        grading = turning_point_grading(drift, stroke)
     # on a loop the slip can reverse at any phase
     on_a_line = problem.straight and problem.motion.periodic
-    width = turning_point_width(problem.drift, problem.stroke) if on_a_line else math.inf
+    width = turning_point_width(drift, stroke) if on_a_line else math.inf
     phases = phases_between(problem.turns, steps, grading, width)
     return make_path(problem.displacement, phases, integrator, problem.depth)
 

@@ -9,7 +9,6 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 
-from microslip.contact.contact import Contact
 from microslip.contact.path import EULER, SDIRK2, Integrator, theta_method
 from microslip.periodic.methods import SHIPPED
 
@@ -58,10 +57,6 @@ class Method:
     resolution: tuple[int, int, int] | None = None
     requires: str = ""
     turns: bool = True
-
-    def dressed(self, contact: Contact) -> Contact:
-        """The contact with the step solver of this method."""
-        return contact if self.dress is None else self.dress(contact, **self.parameters)
 
 
 OWN = {

@@ -93,17 +93,7 @@ class Budget:
         self.most_work, self.time_limit = most_work, time_limit
         self.taken = Effort()
         self.exhausted = ""
-        self._began: float | None = None
-
-    def metered(self, contact: Contact) -> Contact:
-        """Wrap a contact so that its marches are counted, and start the clock."""
-        self.start()
-        return _Metered(contact, self)
-
-    def start(self) -> None:
-        """Start the clock, unless it runs."""
-        if self._began is None and self.time_limit < math.inf:
-            self._began = _seconds()
+        self.began: float | None = None
 
     def take(self, effort: Effort, next_work: int = 0) -> None:
         """Count the effort of marches.
@@ -115,7 +105,7 @@ class Budget:
         if self.taken.work + next_work > self.most_work:
             self.exhausted = "work"
             raise Spent(f"the work that the point may take, {self.most_work:.3g}, is spent")
-        if self._began is not None and _seconds() - self._began > self.time_limit:
+        if self.began is not None and _seconds() - self.began > self.time_limit:
             self.exhausted = "time"
             raise Spent(f"the time limit of {self.time_limit:g} s is over")
 
@@ -127,12 +117,14 @@ def _seconds() -> float:
     return time.monotonic() - compile_seconds()
 
 
-class _Metered:
-    """A contact (see contact.Contact) that counts its marches."""
+class Metered:
+    """A contact (see contact.Contact) that counts its marches.  The first one starts the clock."""
 
     def __init__(self, contact: Contact, budget: Budget):
         self._contact: Any = contact  # not every contact has every method
         self._budget = budget
+        if budget.began is None and budget.time_limit < math.inf:
+            budget.began = _seconds()
 
     def __getattr__(self, name: str) -> Any:
         return getattr(self._contact, name)
@@ -191,8 +183,10 @@ class Settings:
         """
         if self.budget is not None:
             self.budget.take(Effort(), resolution.steps * resolution.cells * resolution.angles)
-        contact = self.method.dressed(contact_of(problem, model, resolution, focus or self.focus))
-        return contact if self.budget is None else self.budget.metered(contact)
+        contact, method = contact_of(problem, model, resolution, focus or self.focus), self.method
+        if method.dress is not None:
+            contact = method.dress(contact, **method.parameters)
+        return contact if self.budget is None else Metered(contact, self.budget)
 
 
 AS_SHIPPED = Settings()

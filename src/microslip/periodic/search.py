@@ -143,11 +143,6 @@ class DriftRate:
             excess = max(abs(force), abs(self.full - force))
         return excess * change / self.gain
 
-    @property
-    def sticking(self) -> float:
-        """Mean forward force below which a state sticks; NaN if unknown."""
-        return self.static_force if np.isnan(self.least) else self.least
-
 
 class PeriodMap:
     """The map of a contact's state over a path.
@@ -291,7 +286,8 @@ def find_periodic_state(
     inner = max(tightest, min(loosest, NOISE * rate.gain / path.solves))
     state = above = np.append(start, place)
     pairs, count = np.empty((2, DEPTH + 1, state.size)), 0
-    last, forgets, returns, iterations, sticking = np.inf, True, 0, 0, rate.sticking
+    last, forgets, returns, iterations = np.inf, True, 0, 0
+    sticking = rate.static_force if np.isnan(rate.least) else rate.least
     march, best = None, None
     for marches in range(1, goal.most_marches + 1):
         march = period_map.march(state, inner, march)

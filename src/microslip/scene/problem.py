@@ -208,24 +208,21 @@ class Problem:
     def _sign(self) -> float:
         return -1.0 if self.backward else 1.0
 
-    def _displacement(
-        self, phase: np.ndarray, velocity: float
+    def displacement(
+        self, phase: np.ndarray, velocity: float | None = None
     ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Rigid displacement at a velocity."""
+        """Rigid displacement (forward, lateral, angle) at a phase, by default for the velocity of
+        the problem."""
         motion, sign = self.motion, self._sign
-        amplitude = (self.size, self.poisson)
-        forward, lateral, angle = motion.displacement(phase, sign * velocity, *amplitude)
+        velocity = sign * (self.velocity if velocity is None else velocity)
+        forward, lateral, angle = motion.displacement(phase, velocity, self.size, self.poisson)
         if self.follows:
-            forward = forward - motion.displacement(phase, 0.0, *amplitude)[0]
+            forward = forward - motion.displacement(phase, 0.0, self.size, self.poisson)[0]
         return sign * forward, lateral, sign * angle
-
-    def displacement(self, phase: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Rigid displacement (forward, lateral, angle) at a phase."""
-        return self._displacement(phase, self.velocity)
 
     def oscillation(self, phase: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Rigid displacement (forward, lateral, angle) at a phase, for velocity 0."""
-        return self._displacement(phase, 0.0)
+        return self.displacement(phase, 0.0)
 
     @cached_property
     def turns(self) -> tuple[float, ...]:
