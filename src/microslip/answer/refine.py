@@ -21,10 +21,10 @@ Fluids Eng. 116, 1994) with both pairs of levels.  Two cases show that the last 
 chance: the differences change sign, or the observed order is far above 2.  Then the last level is
 not better than the one before, and D is the difference of the first two levels.
 
-An estimate above the tolerance has a second opinion.  The extrapolated values at n and at the level
-before it, m = 2 n / 3 or 3 n / 4, share no run.  If their errors decrease with the first order or a
-higher one, the error at n is at most their difference times m / (n - m).  This bound replaces the
-estimate if it is within the tolerance.
+An estimate above the tolerance has a second opinion if the differences of the levels decrease.  The
+extrapolated values at n and at the level before it, m = 2 n / 3 or 3 n / 4, share no run.  If their
+errors decrease with the first order or a higher one, the error at n is at most their difference
+times m / (n - m).  This bound replaces the estimate if it is within the tolerance.
 """
 
 from __future__ import annotations
@@ -175,6 +175,8 @@ def refine(
             if enough or answer.reason:
                 return answer
             least, goal = SMALLEST_SHARE * min(goal, LOOSEST), tolerance - rest
+            if not order > 0.0:
+                continue
             before = LEVELS[LEVELS.index(level) - 1]  # the next level needs these runs as well
             pair = [run_at(before // RATIO), run_at(before)]
             apart = abs(one.value - np.dot(WEIGHTS[1:], [other.values[name] for other in pair]))
