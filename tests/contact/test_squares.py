@@ -7,8 +7,14 @@ from reference_march import solved_stage
 from scipy.integrate import dblquad
 
 from microslip.contact.contact import coulomb_residual, project
-from microslip.contact.convolution import convolve, influence, square_convolution, workspace
-from microslip.contact.squares import PATIENCE, CartesianContact, DescentSolver
+from microslip.contact.convolution import (
+    PATIENCE,
+    convolve,
+    influence,
+    square_convolution,
+    workspace,
+)
+from microslip.contact.squares import CartesianContact, DescentSolver
 from microslip.theory.hertz import G_STAR
 
 NUS = [0.0, 0.4]

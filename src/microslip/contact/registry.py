@@ -102,10 +102,11 @@ def _build(
         place = (problem.poisson, focus, pressure)
         return polar_contact(cells, angles, motion.rotates, *place, whole=whole)
     if model == "cartesian":
-        from microslip.contact.squares import MIRRORED, TURN, CartesianContact
+        from microslip.contact.convolution import MIRROR, TURN
+        from microslip.contact.squares import CartesianContact
 
         # symmetry of the tractions, if the pressure has the same one
-        symmetry = "" if whole else MIRRORED if motion.rotates else TURN
+        symmetry = "" if whole else MIRROR if motion.rotates else TURN
         return CartesianContact(cells, problem.poisson, pressure, symmetry)
     from microslip.contact import reduced
 

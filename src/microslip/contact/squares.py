@@ -14,6 +14,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from microslip.contact import convolution
 from microslip.contact.contact import (
     LATERAL,
     MIRROR,
@@ -23,15 +24,6 @@ from microslip.contact.contact import (
     March,
     Step,
     march_by_steps,
-)
-from microslip.contact.convolution import MIRROR as MIRRORED
-from microslip.contact.convolution import (
-    PATIENCE,
-    TURN,
-    convolve,
-    descend,
-    square_convolution,
-    workspace,
 )
 from microslip.contact.path import Path
 from microslip.scene.hertz import HERTZ
@@ -65,8 +57,8 @@ class CartesianContact(Contact):
     pressure : pressure.Pressure
         Any pressure.
     symmetry : str
-        Symmetry of the motion: TURN for translations, MIRRORED for rotations without a
-        lateral displacement, "" for other motions.  The symmetry is used only if the pressure is
+        Symmetry of the motion: convolution.TURN for translations, convolution.MIRROR for rotations
+        without a lateral displacement, "" for other motions.  It is used only if the pressure is
         symmetric as well.
 
     Attributes
@@ -112,18 +104,23 @@ class CartesianContact(Contact):
         self.area = self.images * area
         self.weight = np.full(self.bound.shape, self.area)
         self.stiffness = pressure.stiffness
-        self.convolution, self.scale, self.largest = square_convolution(
+        self.convolution, self.scale, self.largest = convolution.square_convolution(
             cells, poisson, pressure.G_star, self.images, symmetry, pressure.half_widths
         )
         self.compliance = np.full(self.bound.shape, self.scale)
         self.resultants = np.ones(3)
         if self.images > 1:  # the images of the cells cancel this force
-            self.resultants[LATERAL if symmetry == MIRRORED else TORQUE] = 0.0
+            self.resultants[LATERAL if symmetry == convolution.MIRROR else TORQUE] = 0.0
 
     def displacement(self, state: np.ndarray) -> np.ndarray:
         """Elastic displacement A q of each cell under tractions q, with the shape of the state."""
         out = np.empty_like(state)
-        convolve(self.convolution, workspace(self.convolution), np.ascontiguousarray(state), out)
+        convolution.convolve(
+            self.convolution,
+            convolution.workspace(self.convolution),
+            np.ascontiguousarray(state),
+            out,
+        )
         return out
 
     def mirrored(self, state: np.ndarray) -> np.ndarray:
@@ -158,11 +155,13 @@ class DescentSolver:
         Largest allowed residual of a step, as a force divided by mu F_z.
     """
 
-    def __init__(self, contact: CartesianContact, tolerance: float, patience: int = PATIENCE):
+    def __init__(
+        self, contact: CartesianContact, tolerance: float, patience: int = convolution.PATIENCE
+    ):
         self.contact, self.tolerance, self.patience = contact, float(tolerance), patience
         self._length = 1.0 / contact.scale
         rows, columns = contact.bound.shape
-        self._scratch = workspace(contact.convolution), np.empty((4, rows, columns))
+        self._scratch = convolution.workspace(contact.convolution), np.empty((4, rows, columns))
 
     def solve(self, b: np.ndarray, guess: np.ndarray, share: float = 1.0) -> Step:
         """Solve a step for the imposed displacement b.
@@ -172,7 +171,7 @@ class DescentSolver:
         """
         contact, q, slip = self.contact, np.array(guess), np.empty_like(b)
         while True:
-            count, residual, self._length = descend(
+            count, residual, self._length = convolution.descend(
                 contact.convolution,
                 (contact.area, contact.scale, contact.largest),
                 (contact.bound, b, q, slip),
@@ -219,7 +218,7 @@ def _images(loads: np.ndarray, symmetry: str, poisson: float) -> int:
     """
     if len(loads) % 2 or not symmetry:
         return 1
-    if symmetry == MIRRORED:
+    if symmetry == convolution.MIRROR:
         return 2 if _is_like(loads, loads[::-1]) else 1
     even = _is_like(loads, loads[::-1]) and _is_like(loads, loads[:, ::-1])
     if even and poisson == 0.0:
@@ -237,6 +236,6 @@ def _mean_of_images(loads: np.ndarray, images: int, symmetry: str) -> np.ndarray
     if images == 1:
         return loads
     ahead = len(loads) // 2
-    image = loads[::-1, ::-1] if images == 2 and symmetry == TURN else loads[::-1]
+    image = loads[::-1, ::-1] if images == 2 and symmetry == convolution.TURN else loads[::-1]
     mean = 0.5 * (loads + image)[ahead:]
     return 0.5 * (mean + mean[:, ::-1])[:, ahead:] if images == 4 else mean

@@ -7,6 +7,7 @@ import math
 import re
 from collections.abc import Iterable, Mapping
 from dataclasses import fields
+from functools import cached_property
 from typing import Any
 
 from microslip.foundation.arguments import is_real, without_array
@@ -183,7 +184,7 @@ def text_of(record: Any) -> str:
 class Named:
     """Base class of dataclasses of numbers, such as motions and pressures."""
 
-    @property
+    @cached_property
     def name(self) -> str:
         """Name of the class, followed by the numbers that differ from their defaults."""
         return text_of(self)

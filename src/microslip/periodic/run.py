@@ -13,6 +13,7 @@ import math
 import time
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from operator import add, sub
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -58,10 +59,10 @@ class Effort:
         return Effort(solves, iterations, solves * unknowns, iterations * unknowns)
 
     def __add__(self, other: Effort) -> Effort:
-        return Effort(*(vars(self)[name] + value for name, value in vars(other).items()))
+        return Effort(*map(add, vars(self).values(), vars(other).values()))
 
     def __sub__(self, other: Effort) -> Effort:
-        return Effort(*(vars(self)[name] - value for name, value in vars(other).items()))
+        return Effort(*map(sub, vars(self).values(), vars(other).values()))
 
 
 class Spent(SolverError):

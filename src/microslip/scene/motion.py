@@ -139,18 +139,18 @@ class Motion(spec.Named):
             return {name: wave._replace(degrees=0.0) for name, wave in waves.items()}
         return waves
 
-    @property
+    @cached_property
     def loads(self) -> bool:
         """Whether the normal load oscillates, as described by `depth`, `deepest` and
         `mean_load`."""
         return not self.components.keys().isdisjoint(NORMAL)
 
-    @property
+    @cached_property
     def rotates(self) -> bool:
         """Whether the contact rotates.  In a rotation, the tractions depend on the polar angle."""
         return "angle" in self.components
 
-    @property
+    @cached_property
     def half_disc(self) -> bool:
         """Whether the tractions on one half of a round contact follow by symmetry from those on the
         other half.
@@ -160,14 +160,14 @@ class Motion(spec.Named):
         """
         return not {"angle", "lateral"} <= self.components.keys()
 
-    @property
+    @cached_property
     def half_period_mirror(self) -> bool:
         """Whether the second half of a period equals the first half with the lateral displacement
         and the angle reversed.  If False, a march covers a whole period."""
         odd = {name: wave.cycles % 2 == 1 for name, wave in self.components.items()}
         return bool(odd) and all(one == (name in ("lateral", "angle")) for name, one in odd.items())
 
-    @property
+    @cached_property
     def straight(self) -> bool:
         """Whether the oscillation alone follows a straight line and turns at the phases -pi/2 and
         pi/2."""
@@ -176,7 +176,7 @@ class Motion(spec.Named):
             return not plane
         return all(wave.cycles == 1 and wave.lead % np.pi == 0.0 for wave in plane)
 
-    @property
+    @cached_property
     def propels(self) -> bool:
         """Whether the oscillation alone can propel the contact, so that the mean friction can be
         negative.
@@ -199,12 +199,12 @@ class Motion(spec.Named):
         load = max(cycles.get(name, 0) for name in NORMAL)
         return cycles["forward"] // common % 2 == 0 or load // common % 2 == 1
 
-    @property
+    @cached_property
     def cycles(self) -> int:
         """Largest number of cycles that a component has in a period."""
         return max((int(wave.cycles) for wave in self.components.values()), default=1)
 
-    @property
+    @cached_property
     def _sines(self) -> bool:
         """Whether the displacement is a sum of sines, so that closed forms for sines apply."""
         sines = all(wave.form is np.sin for wave in self.components.values())
@@ -290,7 +290,7 @@ class Motion(spec.Named):
 
     # Normal load
 
-    @property
+    @cached_property
     def _normal(self) -> Wave:
         waves = [self.components[name] for name in NORMAL if name in self.components]
         return waves[0] if waves else Wave(0.0)
@@ -322,7 +322,7 @@ class Motion(spec.Named):
 
     # Closed forms
 
-    @property
+    @cached_property
     def _longitudinal(self) -> bool:
         return self.components.keys() == {"forward"} and self.straight and self._sines
 

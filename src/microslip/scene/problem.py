@@ -177,12 +177,12 @@ class Problem:
 
     # Symmetries that both the motion and the pressure have
 
-    @property
+    @cached_property
     def half_period_mirror(self) -> bool:
         """Whether the second half of a period is the mirror image of the first half; see Motion."""
         return self.motion.half_period_mirror and self.pressure.mirrored
 
-    @property
+    @cached_property
     def straight(self) -> bool:
         """Whether the oscillation alone follows a straight line; see Motion."""
         return self.motion.straight and not self.follows
@@ -199,12 +199,12 @@ class Problem:
 
     # Kinematics
 
-    @property
+    @cached_property
     def size(self) -> float:
         """The amplitude; 0 for a steady motion."""
         return 0.0 if self.amplitude is None else self.amplitude
 
-    @property
+    @cached_property
     def _sign(self) -> float:
         return -1.0 if self.backward else 1.0
 
@@ -234,7 +234,7 @@ class Problem:
             return (*first, *(phase + np.pi for phase in first[1:]))
         return first
 
-    @property
+    @cached_property
     def focus(self) -> float | None:
         """Radius towards which rings are graded, or None; see Motion."""
         return self.motion.focus(self._sign * self.velocity, self.size, self.pressure)
@@ -272,7 +272,7 @@ class Problem:
 
     # Normal load
 
-    @property
+    @cached_property
     def depth(self) -> Callable[[np.ndarray], np.ndarray] | None:
         """Function of the phase that returns the indentation depth divided by its reference value.
 

@@ -43,15 +43,15 @@ class _Samples(Motion):
     height: np.ndarray | None
     by_load: bool
 
-    @property
+    @cached_property
     def loads(self) -> bool:
         return self.height is not None
 
-    @property
+    @cached_property
     def rotates(self) -> bool:
         return self._varies(2)
 
-    @property
+    @cached_property
     def half_disc(self) -> bool:
         return not (self.rotates and self._varies(1))
 
@@ -174,7 +174,7 @@ class Sampled(spec.NamedByText, _Samples):
         """Displacements at the phases LOOP for A = 1, shape (phases, 3)."""
         return self._plane(LOOP)
 
-    @property
+    @cached_property
     def readings(self) -> tuple[Motion, ...]:
         """The motion through every second sample."""
         if len(self.rows) < 2 * FEWEST_SAMPLES:
@@ -256,7 +256,7 @@ class Sampled(spec.NamedByText, _Samples):
         height = 1.0 + amplitude * self._height_spline(self._fine_phases)
         return float(np.mean(height <= ROUNDING))
 
-    @property
+    @cached_property
     def _fine_phases(self) -> np.ndarray:
         return np.linspace(0.0, 2.0 * np.pi, 64 * len(self.rows), endpoint=False)
 

@@ -155,9 +155,8 @@ UNDER_ANY = {
 
 def kinks_of(motion: str, pressure: str = "hertz") -> Kinks:
     """Kinks for a motion and a pressure, both given by name. Most motions have no kinks."""
-    of_hertz = KINKS if pressure == "hertz" else {}
-    kinks = UNDER_ANY | of_hertz
-    return kinks[motion] if motion in kinks else _of_family(motion)
+    known = UNDER_ANY | (KINKS if pressure == "hertz" else {})
+    return known[motion] if motion in known else _of_family(motion)
 
 
 def _of_family(motion: str) -> Kinks:
