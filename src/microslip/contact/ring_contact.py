@@ -96,14 +96,10 @@ class RingContact(Contact):
         self.area, self._waves, self.stiffness = area, waves, float(stiffness)
         self.forward_position, self.lateral_position = positions
         self.angles = len(self.forward_position)
+        self.shape = positions.shape
         self.weight, self.compliance = area / self.angles, np.diag(influence)
         if growth is not None:
             self.edges = growth.edges
-
-    @property
-    def shape(self) -> tuple[int, int, int]:
-        """Shape of a state."""
-        return (2, *self.forward_position.shape)
 
     @cached_property
     def operators(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
