@@ -545,36 +545,6 @@ def test_a_folder_that_cannot_keep_results_is_refused_before_work(
     assert sorted(names) == ["batches", "file"]
 
 
-@pytest.mark.parametrize(
-    ("make", "part"),
-    [
-        (lambda there: there.symlink_to("nowhere"), "results is not a folder"),
-        (lambda there: (there.mkdir(), (there / "points").touch()), "points is not a folder"),
-        (lambda there: (there / "bore.nc").mkdir(parents=True), "bore.nc is a folder"),
-    ],
-)
-def test_files_and_folders_that_have_changed_places_are_refused(make, part, tmp_path):
-    there = tmp_path / "results"
-    needed = [there / "points", there / "figures"], [there / "bore.nc"]
-    files.refuse_unusable(*needed)  # nothing is there yet
-    make(there)
-    before = sorted(tmp_path.rglob("*"))
-    with pytest.raises(CacheError, match="allowed") as caught:
-        files.refuse_unusable(*needed)
-    one_line(caught.value, part)
-    assert sorted(tmp_path.rglob("*")) == before
-
-
-def test_a_damaged_batch_is_computed_again(tmp_path, caplog):
-    path = tmp_path / "a.jsonl"
-    batch.solve([REQUEST], path)
-    content = path.read_bytes()
-    path.write_bytes(content[:-100])
-    batch.solve([REQUEST], path)
-    assert caplog.messages == [f"{path} is damaged; run again: finished points are kept"]
-    assert path.read_bytes() == content
-
-
 @pytest.mark.long
 def test_sweep_runs_where_the_home_takes_no_files(tmp_path):
     (tmp_path / "home").write_text("no folder")
