@@ -30,8 +30,10 @@ Exact = dict[str, Estimate]
 
 def no_vibration(problem: Problem) -> Exact | None:
     """Closed form for any model if the amplitude is 0, otherwise None."""
-    still = problem.motion.periodic and problem.amplitude == 0.0
-    return _of_drag(problem, _within(1.0, ROUNDING), _within(1.0, ROUNDING)) if still else None
+    if not problem.motion.periodic or problem.amplitude != 0.0:
+        return None
+    work = _work(problem)
+    return _exact(1.0, ROUNDING, work, ROUNDING * abs(work))
 
 
 def closed_form(problem: Problem, tolerance: float) -> Exact | None:
@@ -58,7 +60,8 @@ def closed_form(problem: Problem, tolerance: float) -> Exact | None:
         exact = motion.closed_form(velocity, problem.size, problem.pressure)
         if exact is not None:
             error = WHOLE_ROUNDING if velocity > 0.0 else ROUNDING
-            return _exact(*exact, error if problem.pressure.hertzian else OF_RECORD)
+            error = error if problem.pressure.hertzian else OF_RECORD
+            return _exact(exact[0], error, exact[1], error * max(1.0, exact[1]))
     if velocity == 0.0:
         limit = STATIC_LIMITS.get(motion.name)
         if limit is None or (problem.poisson > 0.0 and not limit.any_poisson):
@@ -82,8 +85,8 @@ def _fast_sliding(problem: Problem, tolerance: float) -> Exact | None:
     if error > tolerance:
         return None
     excess = 0.5 * drop / (4.0 - 2.0 * drop)
-    drag = _within(1.0 + excess, excess + ROUNDING)
-    return _of_drag(problem, _within(1.0 - 0.5 * drop, error), drag)
+    work = _work(problem)
+    return _exact(1.0 - 0.5 * drop, error, work * (1.0 + excess), abs(work) * (excess + ROUNDING))
 
 
 def _steady_bore(problem: Problem) -> Exact | None:
@@ -97,10 +100,8 @@ def _steady_bore(problem: Problem) -> Exact | None:
         both, error = indenters.bore_of(problem.pressure.bound, velocity), QUADRATURE
     else:
         return None
-    return {
-        name: _within(float(value), error)
-        for name, value in zip(("friction", "torque"), both, strict=True)
-    }
+    forward, torque = (Estimate(float(value), {"model": error}) for value in both)
+    return {"friction": forward, "torque": torque}
 
 
 def _static(problem: Problem, of_sphere: Callable) -> Exact | None:
@@ -112,30 +113,21 @@ def _static(problem: Problem, of_sphere: Callable) -> Exact | None:
     from microslip.theory import indenters as limits  # imported here because it loads slowly
 
     error = ROUNDING if sphere else OF_RECORD
-    if not motion.rotates:
+    if motion.rotates:
+        place = float(hertz.bore_angle(amplitude, problem.poisson)), problem.poisson
+        mu = of_sphere(amplitude) if sphere else limits.static_bore(pressure, *place)
+        energy, energy_error = limits.torsion_energy(pressure, *place), OF_RECORD
+    else:
         mu = of_sphere(amplitude) if sphere else limits.static_transverse(pressure, amplitude)
-        return _exact(float(mu), float(masing.loop_energy(amplitude, pressure.loading)), error)
-    place = float(hertz.bore_angle(amplitude, problem.poisson)), problem.poisson
-    mu = of_sphere(amplitude) if sphere else limits.static_bore(pressure, *place)
-    energy = limits.torsion_energy(pressure, *place)
-    return _exact(float(mu), energy, OF_RECORD) | {"friction": _within(float(mu), error)}
+        energy, energy_error = float(masing.loop_energy(amplitude, pressure.loading)), error
+    return _exact(float(mu), error, energy, energy_error * max(1.0, energy))
 
 
-def _within(value: float, error: float) -> Estimate:
-    """Estimate of a value in closed form."""
-    return Estimate(value, {"model": error})
+def _exact(mu: float, mu_error: float, energy: float, energy_error: float) -> Exact:
+    friction = Estimate(mu, {"model": mu_error})
+    return {"friction": friction, "dissipation": Estimate(energy, {"model": energy_error})}
 
 
-def _exact(mu: float, energy: float, error: float) -> Exact:
-    """Friction and energy; the error is absolute for the friction, and relative for an energy above
-    1."""
-    return {
-        "friction": _within(mu, error),
-        "dissipation": _within(energy, error * max(1.0, energy)),
-    }
-
-
-def _of_drag(problem: Problem, friction: Estimate, drag: Estimate) -> Exact:
-    """Closed form in which the dissipated energy is the work of the mean force `drag`."""
-    work = 2.0 * math.pi * problem.mean_load * problem.drift
-    return {"friction": friction, "dissipation": work * drag}
+def _work(problem: Problem) -> float:
+    """Work of full friction on the drift of a period."""
+    return 2.0 * math.pi * problem.mean_load * problem.drift

@@ -257,19 +257,9 @@ Step = tuple[np.ndarray, np.ndarray, int, float, float]
 of a driven body (0 without a body)."""
 
 
-class StepSolver(Protocol):
-    """Solver of the Coulomb steps of a march."""
-
-    def solve(self, b: np.ndarray, guess: np.ndarray) -> Step:
-        """Solve a step for the imposed displacement b from a guess of the tractions."""
-
-    def balance(self, b: np.ndarray, guess: np.ndarray, stiffness: float, load: float) -> Step:
-        """Solve a step of a driven body: stiffness d + forward force = load."""
-
-
 def march_by_steps(
     contact: Contact,
-    solver: StepSolver,
+    solver: Any,
     path: Path,
     state: np.ndarray,
     previous: March | None = None,
@@ -277,7 +267,12 @@ def march_by_steps(
     body: Body | None = None,
     start: np.ndarray | None = None,
 ) -> March:
-    """March along a path; for the arguments, see contact.Contact and RingContact.march."""
+    """March along a path; for the other arguments, see contact.Contact and RingContact.march.
+
+    The `solver` has two methods that return a Step from a guess of the tractions:
+    solve(b, guess) for the imposed displacement b, and, if there is a driven body,
+    balance(b, guess, stiffness, load), whose step fulfils stiffness d + forward force = load.
+    """
     stages, total, end = len(path.carry), len(path.motion) - 1, path.end
     guess = None if previous is None else previous.fields
     if guess is None or guess.shape != (1 + total, *state.shape):

@@ -79,7 +79,7 @@ class DenseContact:
         return march_by_steps(self.contact, self, path, state, previous)
 
     def solve(self, b: np.ndarray, guess: np.ndarray) -> Step:
-        """Solve a step, see contact.StepSolver.  The initial guess is the solution of the last
+        """Solve a step, see contact.march_by_steps.  The initial guess is the solution of the last
         step, since some methods fail from an extrapolated guess."""
         try:
             q, slip, count, residual = self._solve(
@@ -99,10 +99,6 @@ class DenseContact:
                 f"residual {residual:.1e}"
             )
         return q.reshape(b.shape), slip.reshape(b.shape), count, residual, 0.0
-
-    def balance(self, b: np.ndarray, guess: np.ndarray, stiffness: float, load: float) -> Step:
-        """Driven bodies are not supported."""
-        raise NotImplementedError
 
 
 def dense(solve: Solve, prepare: Callable | None = None) -> Callable:
