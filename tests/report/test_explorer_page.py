@@ -11,7 +11,6 @@ from stubs.in_node import needs_node, page_says
 
 import microslip
 from microslip.report.explorer import contact_form, page
-from microslip.si.materials import MATERIALS
 from microslip.theory import paper
 
 pytestmark = [pytest.mark.slow, needs_node]
@@ -192,32 +191,18 @@ def quantity(contents, name):
     return f"{contents[name]} {contents[f'{name}_unit']}".strip()
 
 
-def random_contents(rng, motion):
-    """Contents of the form, whose amplitude is near that of full slip."""
-    decades = 10 ** rng.uniform(-1, 1, 5)
-    numbers = {
-        "radius": 5 * decades[0],
-        "load": 10 * decades[1],
-        "mu": rng.uniform(0.05, 1.3),
-        "speed": 10 * decades[2],
-        "frequency": 20 * decades[3],
-        "stroke": 0.3 * decades[4],
-        "angle": decades[4],
-        "young": rng.uniform(20, 300),
-        "nu": rng.uniform(0, 0.5),
-        "counter_young": rng.uniform(20, 300),
-        "counter_nu": rng.uniform(0, 0.5),
-    }
-    contents = {"motion": motion}
-    for name, field in contact_form.FIELDS.items():
-        contents |= {name: f"{numbers[name]:.4g}", f"{name}_unit": field.units[0]}
-    elastic = [name for name in MATERIALS if name != "rigid"]
-    contents["material"] = str(rng.choice([contact_form.OF_NUMBERS, *elastic]))
-    return contents | {"counterbody": str(rng.choice([contact_form.OF_NUMBERS, *MATERIALS]))}
+CASES = [
+    ("transverse", "steel", "steel", "5", "10", "0.3", "10", "20", "0.3"),
+    ("transverse", "PTFE", "rigid", "20", "1.5", "1.2", "0.4", "2", "30"),
+    ("transverse", contact_form.OF_NUMBERS, "rigid", "1", "90", "0.05", "99", "150", "0.04"),
+    ("bore", contact_form.OF_NUMBERS, contact_form.OF_NUMBERS, "8", "40", "0.6", "3", "5", "2"),
+    ("bore", "aluminium", contact_form.OF_NUMBERS, "40", "2", "0.2", "50", "60", "9"),
+]
+NAMES = ("motion", "material", "counterbody", "radius", "load", "mu", "speed", "frequency")
 
 
-def predicted(contents, monkeypatch):
-    """The prediction for the contents of the form, with made-up friction."""
+def predicted(contents):
+    """The prediction for the contents of the form, and its arguments."""
     names = "radius", "load", "mu", "speed", "frequency"
     arguments = {name: quantity(contents, name) for name in names}
     swing = {"transverse": "stroke", "bore": "angle"}[contents["motion"]]
@@ -234,19 +219,19 @@ def predicted(contents, monkeypatch):
     ), arguments | {"counterbody": counter}
 
 
-@pytest.mark.parametrize("motion", ["transverse", "bore"])
-def test_sizes_warnings_and_the_command_are_those_of_predict(made, motion, monkeypatch):
-    rng = np.random.default_rng(5)
-    contents = [random_contents(rng, motion) for _ in range(6)]
-    answers = page_says(
-        made[1],
-        *(
-            f"[contactOf({one}), warningsOf(contactOf({one})), commandOf({one})]"
-            for one in map(repr, contents)
-        ),
+def test_sizes_warnings_and_the_command_are_those_of_predict(made):
+    contents = []
+    for *values, swing in CASES:
+        one = dict(zip(NAMES, values, strict=True)) | {"stroke": swing, "angle": swing}
+        one |= {"young": "70", "nu": "0.2", "counter_young": "0.5", "counter_nu": "0.48"}
+        units = {f"{name}_unit": field.units[0] for name, field in contact_form.FIELDS.items()}
+        contents.append(one | units)
+    calls = (
+        f"[contactOf({one}), warningsOf(contactOf({one})), commandOf({one})]" for one in contents
     )
+    answers = page_says(made[1], *calls)
     for one, (contact, texts, command) in zip(contents, answers, strict=True):
-        truth, arguments = predicted(one, monkeypatch)
+        truth, arguments = predicted(one)
         names = {"a": "contact_radius", "u_lim": "u_lim", "pressure": "largest_pressure"}
         names |= {name: name for name in ("velocity", "amplitude", "poisson", "indentation")}
         for ours, name in names.items():
@@ -256,7 +241,7 @@ def test_sizes_warnings_and_the_command_are_those_of_predict(made, motion, monke
         assert [text[:20] for text in warnings] == [text[:20] for text in truth.warnings]
         assert [text for kind, _, text in told if kind != "Warning"] == list(truth.not_checked)
         program, verb, kind, *words = shlex.split(command)
-        assert [program, verb, kind] == ["microslip", "predict", motion]
+        assert [program, verb, kind] == ["microslip", "predict", one["motion"]]
         options = dict(zip(words[::2], words[1::2], strict=True))
         assert options == {f"--{name}": text for name, text in arguments.items()}
 

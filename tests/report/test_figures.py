@@ -1,69 +1,61 @@
-"""Figures of the paper show the values of their datasets; messages for bad datasets and files."""
+"""Figures of the paper, of drives and of commands show the values of their datasets."""
 
 from __future__ import annotations
 
-import json
-from pathlib import Path
-
-import matplotlib
 import numpy as np
 import pytest
 import xarray as xr
 from matplotlib.lines import Line2D
 from matplotlib.patches import Rectangle
-from PIL import Image
+from stubs import drives_stub, fit_stub
 from stubs import figures_stub as stub
 from stubs.figures_stub import artists, words
 
-from microslip.foundation.files import CacheError
 from microslip.report.figures import drawing, runs
 
 pytestmark = [pytest.mark.slow, pytest.mark.usefixtures("without_layout")]
 
 
-@pytest.fixture(scope="module")
-def datasets() -> dict[str, xr.Dataset]:
-    """Small datasets with every variable of the paper's figures."""
-    maps = {"transverse": stub.fake_transverse(), "bore": stub.fake_bore()}
-    return maps | {"continuous_bore": stub.fake_continuous_bore()}
+def draw(kind, *datasets):
+    return drawing.draw(kind, dict(enumerate(datasets)))
+
+
+def ordinates(figure, *gids):
+    """Ordinates of all lines with one of the ids, in this order."""
+    return [line.get_ydata() for gid in gids for line in artists(figure, gid)]
 
 
 @pytest.mark.parametrize(
-    ("key", "overlays"),
+    ("dataset", "overlays"),
     [
-        ("transverse", ("slider", "stick_zone", "")),
-        ("bore", ("stick_zone", "stick_zone_printed", "")),
+        (stub.fake_transverse(), ("mu_static_slider", "mu_static_stick_zone", "mu_static")),
+        (stub.fake_bore(), ("mu_static_stick_zone", "mu_static_stick_zone_printed", "mu_static")),
     ],
 )
-def test_maps_show_the_points_and_limits_of_their_dataset(key, overlays, datasets):
-    figure, dataset = drawing.draw("map", {key: datasets[key]}), datasets[key]
-    for overlay in overlays:
-        variable = f"mu_static_{overlay}".rstrip("_")
-        (line,) = artists(figure, variable)
-        np.testing.assert_array_equal(line.get_xdata(), dataset["amplitude"])
-        np.testing.assert_array_equal(line.get_ydata(), dataset[variable])
-    (line,) = artists(figure, "mu_large_amplitude")
+def test_a_map_shows_its_points_and_limits_along_two_edges(dataset, overlays):
+    figure = draw("map", dataset)
     large = dataset["mu_large_amplitude"]
     large = large.isel(amplitude=-1) if "amplitude" in large.dims else large
-    np.testing.assert_array_equal(line.get_ydata(), large)
-    static, top = artists(figure, "computed")
-    np.testing.assert_array_equal(static.get_ydata(), dataset["mu_macro"][:, 0])
-    np.testing.assert_array_equal(top.get_ydata(), dataset["mu_macro"][-1])
+    expected = [*(dataset[one] for one in overlays), large]
+    expected += [dataset["mu_macro"][:, 0], dataset["mu_macro"][-1]]
+    drawn = ordinates(figure, *overlays, "mu_large_amplitude", "computed")
+    for values, truth in zip(drawn, expected, strict=True):
+        np.testing.assert_array_equal(values, truth)
+    np.testing.assert_array_equal(artists(figure, overlays[0])[0].get_xdata(), dataset["amplitude"])
     assert not artists(figure, "error")
 
 
-def test_the_steady_bore_shows_its_curves_histories_and_field(datasets):
-    dataset = datasets["continuous_bore"]
-    figure = drawing.draw("curves", {"a": dataset})
+def test_the_steady_bore_shows_its_curves_transients_and_field():
+    dataset = stub.fake_continuous_bore()
+    figure = draw("curves", dataset)
     names = "mu_forward_theory", "mu_torque_theory", "mu_macro", "mu_torque"
-    lines = [*artists(figure, "limit"), *artists(figure, "computed")]
-    for line, variable in zip(lines, names, strict=True):
-        np.testing.assert_array_equal(line.get_ydata(), dataset[variable])
-    figure = drawing.draw("transients", {"a": dataset})
+    for values, variable in zip(ordinates(figure, "limit", "computed"), names, strict=True):
+        np.testing.assert_array_equal(values, dataset[variable])
+    assert figure.axes[0].get_xscale() == "log"
+    figure = draw("transients", dataset)
     for variable in ("transient_force_forward", "transient_torque"):
-        lines = artists(figure, variable)
-        np.testing.assert_array_equal([line.get_ydata() for line in lines], dataset[variable])
-    figure = drawing.draw("field", {"a": dataset})
+        np.testing.assert_array_equal(ordinates(figure, variable), dataset[variable])
+    figure = draw("field", dataset)
     (arrows,), (centre,) = artists(figure, "traction"), artists(figure, "centre")
     assert centre.get_xdata()[0] == -0.8
     x, y = arrows.XY.T
@@ -77,70 +69,160 @@ def test_the_steady_bore_shows_its_curves_histories_and_field(datasets):
     np.testing.assert_allclose(arrows.V[far], (-bound * (x + 0.8) / away)[far], atol=0.03)
 
 
-def test_the_history_has_its_mean_and_its_phase_in_periods(datasets):
-    dataset = datasets["transverse"].copy()
-    (mean,) = artists(drawing.draw("history", {"transverse": dataset}), "mean")
+def test_the_history_has_its_mean_and_its_phase_in_periods():
+    dataset = stub.fake_transverse()
+    figure = draw("history", dataset)
     last = dataset["history_force_forward"].values[-101:]
-    assert mean.get_ydata()[0] == pytest.approx((last[1:].mean() + last[:-1].mean()) / 2)
-    (line,) = artists(drawing.draw("history", {"transverse": dataset}), "forward")
-    assert line.get_xdata()[-1] == pytest.approx(4.0)
+    mean = ordinates(figure, "mean")[0][0]
+    assert mean == pytest.approx((last[1:].mean() + last[:-1].mean()) / 2)
+    assert artists(figure, "forward")[0].get_xdata()[-1] == pytest.approx(4.0)
 
 
-def test_points_that_are_not_converged_are_hatched_and_hollow(datasets):
-    bad = datasets["bore"].copy(deep=True)
+def test_points_that_are_not_converged_are_hatched_and_hollow():
+    bad = stub.fake_bore()
     bad["converged"][2:4, 0:2] = 0
     bad["mu_macro_error"][2, 0], bad["mu_macro_error"][3, 0] = 0.1, np.inf
     bad["mu_macro"][2, 1] = np.nan
-    figure = drawing.draw("map", {"bore": bad})
+    figure = draw("map", bad)
     cells = [one for one in artists(figure, "unconverged") if isinstance(one, Rectangle)]
     (points,) = [one for one in artists(figure, "unconverged") if isinstance(one, Line2D)]
     assert len(cells) == 4 and all(cell.get_hatch() for cell in cells)
+    for cell in cells:  # around a point of the map
+        (low, left), (high, right) = ((cell.get_y(), cell.get_x()), cell.get_corners()[2][::-1])
+        inside = (bad.velocity > left) & (bad.velocity < right)
+        inside = inside & (bad.amplitude > low) & (bad.amplitude < high)
+        assert inside.sum() == 1 and not bad["converged"].where(inside, 0).any()
     np.testing.assert_array_equal(points.get_xdata(), bad["amplitude"][2:4])
     assert points.get_markerfacecolor() == "white" and artists(figure, "error")
     assert "4 of 81" in words(figure)
     bad["converged"][:], bad["mu_macro"][:], bad["mu_macro_error"][:] = 0, np.nan, np.inf
-    assert "81 of 81" in words(drawing.draw("map", {"bore": bad}))
+    assert "81 of 81" in words(draw("map", bad))
 
 
 @pytest.mark.parametrize(("poisson", "label"), [(0.0, "exact limit"), (0.3, r"limit at $\nu = 0$")])
-def test_the_transverse_limit_is_called_exact_only_where_it_is(datasets, poisson, label):
-    data = {"transverse": datasets["transverse"].assign_coords(poisson=poisson)}
-    (line,) = artists(drawing.draw("map", data), "mu_static")
+def test_the_transverse_limit_is_called_exact_only_where_it_is(poisson, label):
+    (line,) = artists(
+        draw("map", stub.fake_transverse().assign_coords(poisson=poisson)), "mu_static"
+    )
     assert line.get_label() == label
 
 
-# Files
+# Curves over an axis
 
 
-def test_a_file_contains_its_provenance(datasets, tmp_path):
-    attributes = {"title": "friction", "source_digest": "f00d", "author": "nobody"}
-    made = datasets["continuous_bore"].assign_attrs(attributes)
-    figure = drawing.draw("curves", {"continuous_bore": made})
-    with Image.open(drawing.save(figure, tmp_path / "figure.png")) as image:
-        (provenance,) = json.loads(image.info["Description"])
-        assert image.size[0] == pytest.approx(300 * figure.get_size_inches()[0], abs=1)
-    assert provenance["source_digest"] == "f00d" and "author" not in provenance
-    assert b"f00d" in drawing.save(figure, tmp_path / "figure.pdf").read_bytes()
+def test_lines_show_the_limit_and_markers_the_smallest_velocity():
+    slow = stub.static("line", velocity=(0.0, 1e-3))
+    loop = stub.static("loop", velocity=(1e-3,))
+    loop["converged"][3, 0] = 0
+    figure = draw("curves", slow, loop)
+    (line,) = ordinates(figure, "limit")  # the second dataset has no limit
+    np.testing.assert_array_equal(line, slow["mu_macro"].sel(velocity=0))
+    first, solved = ordinates(figure, "computed")
+    np.testing.assert_array_equal(first, slow["mu_macro"].sel(velocity=1e-3))
+    (failed,) = artists(figure, "unconverged")
+    assert len(solved) == 6 and failed.get_markerfacecolor() == "white"
+    assert "markers: velocity $0.001$" in words(figure)
 
 
-def test_a_failed_save_leaves_the_old_file(datasets, tmp_path, monkeypatch):
-    figure, path = drawing.draw("history", {"a": datasets["transverse"]}), tmp_path / "figure.png"
-    path.write_text("old")
-
-    def fail(target, **_):
-        Path(target).write_text("half")
-        raise OSError("disk full")
-
-    monkeypatch.setattr(figure, "savefig", fail)
-    with pytest.raises(CacheError, match="disk full"):
-        drawing.save(figure, path)
-    assert [file.read_text() for file in tmp_path.iterdir()] == ["old"]
+@pytest.mark.parametrize(("poisson", "points"), [(0.0, 50), (0.3, 7)])
+def test_a_limit_from_theory_is_drawn_on_its_finer_axis_where_it_holds(poisson, points):
+    fine = np.linspace(0, 1.2, 50)
+    curve = ("amplitude_curve", np.maximum(1 - fine, 0))
+    data = stub.static("a", mu_static=("amplitude", np.zeros(7)), mu_static_curve=curve)
+    data = data.assign_coords(amplitude_curve=fine, poisson=poisson)
+    (line,) = ordinates(draw("curves", data), "limit")
+    assert len(line) == points
 
 
-def test_the_users_matplotlib_settings_are_ignored_and_restored(datasets, tmp_path):
-    shown = "transients", {"a": datasets["continuous_bore"]}
-    expected = drawing.save(drawing.draw(*shown), tmp_path / "a.png").read_bytes()
-    with matplotlib.rc_context({"font.size": 20, "savefig.dpi": 50, "lines.linewidth": 9}):
-        result = drawing.save(drawing.draw(*shown), tmp_path / "b.png").read_bytes()
-        assert matplotlib.rcParams["font.size"] == 20
-    assert result == expected
+def test_the_points_of_all_drives_are_drawn_over_velocity_and_over_mass():
+    datasets = drives_stub.pulled()
+    datasets["drive_body"].attrs["drive"] = "mass, stiffness"
+    left, right = drawing.draw("curves", datasets).axes
+    velocity, force, soft, stiff = artists(left, "computed")
+    assert np.array_equal(velocity.get_ydata(), datasets["transverse"]["mu_macro"][0])
+    assert soft.get_ydata() == pytest.approx(stiff.get_ydata() - 0.1)
+    # the abscissa of a force is its mean velocity; here it lies on the curve
+    assert force.get_ydata() == pytest.approx(force.get_xdata() / (1 + force.get_xdata()))
+    (level,) = ordinates(right, "reference")
+    assert level[0] == pytest.approx(0.1 / 1.1)
+    assert len(artists(right, "computed")) == 2 and right.get_xscale() == "log"
+
+
+def test_maps_of_drift_show_threshold_rest_and_the_rigid_contact():
+    datasets = [drives_stub.drift("transverse"), drives_stub.drift("bore")]
+    datasets[1]["converged"][2, 3] = 0
+    figure = draw("map", *datasets)
+    for axes, dataset in zip(artists(figure, "map"), datasets, strict=True):
+        (line,) = artists(axes, "mu_static")
+        np.testing.assert_array_equal(
+            line.get_data(), (dataset["mu_static_curve"], dataset["amplitude_curve"])
+        )
+        assert artists(axes, "rest") and artists(axes, "rigid")
+        assert len(artists(axes, "unconverged")) == (dataset is datasets[1])
+    assert "not converged (1 of 108)" in words(figure)
+
+
+# Figures of commands
+
+
+def predictions():
+    """Invented predictions over a speed and a load, one of them not converged."""
+    speed, load = np.array([0.001, 0.01, 0.1]), np.array([5.0, 10.0])
+    mu = np.add.outer(0.01 * np.arange(2), 0.1 * np.arange(1, 4))
+    variables = {"mu_apparent": mu, "friction_force_N": mu * load[:, None]}
+    variables |= {"mu_apparent_error": 0.01 * mu, "converged": mu != 0.2}
+    variables["friction_force_error_N"] = 0.01 * variables["friction_force_N"]
+    variables["force_N"] = np.full(mu.shape, np.nan)
+    dims = ("load_N", "speed_m_s")
+    return xr.Dataset(
+        {name: (dims, values) for name, values in variables.items()},
+        {
+            "speed_m_s": ("speed_m_s", speed, {"units": "m/s", "long_name": "speed"}),
+            "load_N": ("load_N", load, {"units": "N", "long_name": "load"}),
+        },
+    )
+
+
+def test_predictions_have_the_values_of_the_dataset():
+    dataset = predictions()
+    upper, lower = draw("curve", dataset).axes
+    assert lower.get_xlabel() == "speed (mm/s)" and lower.get_xscale() == "log"
+    assert "friction force (N)" in lower.get_ylabel() and "dimensionless" in upper.get_ylabel()
+    titles = [text.get_text() for text in upper.get_legend().get_texts()]
+    assert titles == ["load 5 N", "not converged", "load 10 N"]
+    for axes, name in ((upper, "mu_apparent"), (lower, "friction_force_N")):
+        _, second = artists(axes, "computed")
+        assert second.get_xdata() == pytest.approx([1.0, 10.0, 100.0])
+        assert second.get_ydata() == pytest.approx(dataset[name].values[1])
+        (hollow,) = ordinates(axes, "unconverged")
+        assert hollow == pytest.approx(dataset[name].values[0, 1:2])
+        bars = artists(axes, "error")[1].get_segments()
+        assert np.max(bars) == pytest.approx(max(100.0, 1.01 * dataset[name].values[1].max()))
+
+
+def test_under_a_force_the_speed_is_drawn():
+    force = {"force_N": ("force_N", [1.0, 2.0, 3.0], {"units": "N", "long_name": "force"})}
+    variables = {"speed_m_s": [0.0, 1e-6, 5e-6], "speed_error_m_s": [0.0, 1e-8, 5e-8]}
+    variables["converged"] = [True] * 3
+    columns = {name: ("force_N", values) for name, values in variables.items()}
+    (panel,) = draw("curve", xr.Dataset(columns, force)).axes
+    assert ordinates(panel, "computed")[0] == pytest.approx([0.0, 1.0, 5.0])
+    assert "speed" in panel.get_ylabel() and panel.get_xlabel() == "force (N)"
+
+
+def test_a_fit_shows_its_rows_its_model_and_residuals():
+    dataset = fit_stub.fitted()
+    upper, lower = draw("fit", dataset).axes
+    assert len(artists(upper, "fitted")) == 2 and lower.get_xscale() == "log"
+    drawn = np.concatenate([line.get_xydata() for line in artists(upper, "fitted")])
+    # in mm/s and N; the model curve has more points than there are rows
+    expected = np.stack([1e3 * dataset.curve_speed_m_s, dataset.curve_fitted], axis=1)
+    assert drawn == pytest.approx(expected)
+    assert lower.get_xlabel() == "speed (mm/s)" and upper.get_ylabel() == "friction force (N)"
+    for axes, gid, name in ((upper, "computed", "measured"), (lower, "residual", "residual")):
+        assert np.concatenate(ordinates(axes, gid)) == pytest.approx(dataset[name].values)
+    titles = [text.get_text() for text in upper.get_legend().get_texts()]
+    assert titles == ["amplitude 300 nm", "amplitude 600 nm", "lines: model"]
+    assert [len(axes.patches) for axes in (upper, lower)] == [0, 1]  # the band
+    for number in (r"0.3 \pm 0.01$", r"300 \pm 30$ nm"):
+        assert number in upper.get_legend().get_title().get_text()

@@ -146,9 +146,7 @@ def test_its_panels_have_letters_and_its_axes_quantities_with_units(name):
         assert has_unit or re.search(r"\$[^$]*/[^$]*\$|tilde|motion$", label), label
 
 
-@pytest.mark.parametrize(
-    ("low", "high"), [(0.1, 0.13), (0.05, 0.2), (0.02, 0.6), (1e-3, 10), (2e-5, 3e-5), (1e-6, 1e6)]
-)
+@pytest.mark.parametrize(("low", "high"), [(0.1, 0.13), (0.02, 0.6), (1e-3, 10), (1e-6, 1e6)])
 @pytest.mark.parametrize("width", [1.6, 3.0])
 def test_labels_of_a_logarithmic_axis_do_not_collide(low, high, width):
     with look.style():
