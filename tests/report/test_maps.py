@@ -66,9 +66,11 @@ def test_a_number_is_on_its_contour_apart_from_the_others_inside_the_frame():
         assert frame.count_contains(text.get_window_extent().corners()) == 4
         height = text.get_fontsize() * axes.get_figure(root=True).dpi / 72
         for level, path in zip(lines.levels, lines.get_paths(), strict=True):
+            away = axes.transData.transform(path.vertices) - axes.transData.transform(place)
             if abs(level - value) > 0.05:
-                away = axes.transData.transform(path.vertices) - axes.transData.transform(place)
                 assert np.hypot(*away.T).min() > 0.7 * height
+            else:  # apart from the ends of its own contour
+                assert np.hypot(*away[[0, -1]].T).min() > 2.0 * height
 
 
 def test_a_group_is_drawn_with_one_scale_and_shared_labels():
@@ -143,6 +145,8 @@ def test_every_value_of_a_map_is_visible_as_colour_or_marker(dataset, values, no
     at = figure.axes[0].transData.transform(points.values).round().astype(int)
     assert len(at) and max(image[y - 3 : y + 4, x - 3 : x + 4].min() for x, y in at) <= 240
     assert note in words(figure)
+    (bare,) = artists(figure.axes[0], "bare-points")
+    assert len(bare.get_offsets()) == (len(points) if dataset is not COARSE else 0)
 
 
 @pytest.mark.parametrize("velocity", [0.1, 1e-3])
@@ -155,7 +159,7 @@ def test_figure_2_names_the_velocities_of_the_markers_and_of_the_limits(velocity
 
 def test_all_computed_values_of_a_cut_are_inside_its_panel():
     """Values can exceed 1, and static friction can vanish well before the largest amplitude."""
-    markers = artists(draw(stub.at_ratios(stub.fake_transverse(9), 0.0, 0.2, 0.4)), "computed")
+    markers = artists(draw(stub.at_ratios(stub.fake_transverse(9), 0.0, 0.2, 0.5)), "computed")
     assert len(markers) == 6
     for line in markers:
         box = line.axes.get_window_extent().padded(1)

@@ -10,7 +10,7 @@ from scipy.optimize import brentq
 from stubs.claims_stub import answered, configured, friction, result
 
 from microslip.datasets import netcdf
-from microslip.report import claims_page
+from microslip.report import pages
 from microslip.studies import registry
 from microslip.studies.claims import verdicts
 from microslip.theory import oscillating_load, paper
@@ -238,7 +238,7 @@ def test_a_solver_that_gives_up_leaves_gaps_and_no_more():
     assert {verdict[claim] for claim in (1, 2, 5, 6, 7, 8, 9, 10)} == {NOT_DECIDED}
     assert np.isnan(data["bore_paper"]).all()
     assert "patch_share" not in data
-    assert "none" in claims_page.page(data, ["a line"])
+    assert "none" in pages.page(data, ["a line"])
 
 
 # The dataset

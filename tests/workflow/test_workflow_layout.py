@@ -7,7 +7,7 @@ import pytest
 import yaml
 
 from microslip.config.kinds import KINDS
-from microslip.report import dataset_page
+from microslip.report import pages
 
 ROOT = Path(__file__).parents[2]
 
@@ -54,7 +54,7 @@ def test_a_page_about_a_dataset_lists_no_more_than_can_be_read():
         def __contains__(self, name):
             return False
 
-    page = dataset_page.page(Dataset(), [f"line {i}" for i in range(100)])
+    page = pages.text_page(Dataset(), [f"line {i}" for i in range(100)])
     assert page.startswith("Many\n\nline 0\n")
     assert "line 39\n... and 60 lines more" in page
     assert page.endswith("a: [1, 2]\n")

@@ -27,10 +27,10 @@ from microslip.sweeps.batch import SourcesEdited
 from microslip.sweeps.request import Batch
 
 BUILDERS = {
-    "sweep": ("datasets/sweep_dataset.py", "report/dataset_page.py"),
-    "certified": ("datasets/certified_map.py", "report/dataset_page.py"),
-    **dict.fromkeys(("accuracy", "stability"), ("studies", "report/dataset_page.py")),
-    "claims": ("studies", "report/claims_page.py", "report/claims.html"),
+    "sweep": ("datasets/sweep_dataset.py", "report/pages.py"),
+    "certified": ("datasets/certified_map.py", "report/pages.py"),
+    **dict.fromkeys(("accuracy", "stability"), ("studies", "report/pages.py")),
+    "claims": ("studies", "report/pages.py", "report/claims.html"),
     "explorer": ("report/explorer", "sweeps/period_codec.py"),
 }
 """Modules and folders that make a kind of product. Imported modules are added to them."""

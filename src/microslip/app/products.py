@@ -61,7 +61,7 @@ def make(plan: Plan, name: str, stem: Path, inputs: list[Path]) -> None:
 
 def _make_dataset(plan: Plan, name: str, files: dict[str, Path], inputs: list[Path]) -> None:
     from microslip.datasets import certified_map, netcdf, sweep_dataset
-    from microslip.report import claims_page, dataset_page
+    from microslip.report import pages
     from microslip.studies import registry
 
     configuration, failed = plan.configuration, []
@@ -82,7 +82,7 @@ def _make_dataset(plan: Plan, name: str, files: dict[str, Path], inputs: list[Pa
     netcdf.write(files[".nc"], root, groups)
     shown = netcdf.whole(files[".nc"]) if builder is registry else root
     lines = list(builder.report(shown, name))
-    (claims_page if name == "claims" else dataset_page).write(files[".html"], shown, lines)
+    pages.write(files[".html"], shown, lines)
     for line in lines:
         log.info(line)
 

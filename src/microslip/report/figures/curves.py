@@ -36,24 +36,19 @@ class Line(NamedTuple):
     ----------
     points : xarray.Dataset
         Points along one dimension.
-    dim : str
-        This dimension.
-    variable, title : str
-        Variable that is drawn, and text of the legend.
+    x, y : str
+        Variables of the abscissa and the ordinate.
+    title : str
+        Text of the legend.
     limit : tuple or None
         Abscissa, ordinate and label of a closed form or of the computed static limit.
     """
 
     points: xr.Dataset
-    dim: str
-    variable: str
+    x: str
+    y: str
     title: str
-    limit: tuple[np.ndarray, np.ndarray, str] | None
-
-    @property
-    def abscissa(self) -> str:
-        """Name of the abscissa."""
-        return "velocity" if self.dim == "force" else self.dim
+    limit: tuple[np.ndarray, np.ndarray, str] | None = None
 
 
 def closed_forms(dataset: xr.Dataset) -> list[ClosedForm]:
@@ -78,11 +73,11 @@ def draw(*datasets: xr.Dataset) -> Figure:
     shown = [_static_map(one) if "cell_error" in one else one.squeeze() for one in datasets]
     alone = len(shown) == 1
     lines = [line for one in shown for line in _lines(one, not alone)]
-    abscissae = list(dict.fromkeys(line.abscissa for line in lines))
+    abscissae = list(dict.fromkeys(line.x for line in lines))
     figure = look.new_figure(*((look.SINGLE, 2.7) if alone else (look.DOUBLE, 3.3)))
     grid = panels.grid(figure, len(abscissae), len(abscissae))
     for axes, abscissa in zip(grid, abscissae, strict=True):
-        _panel(axes, [line for line in lines if line.abscissa == abscissa], shown)
+        _panel(axes, [line for line in lines if line.x == abscissa], shown)
         if len(grid) > 1:
             panels.legend_above(axes, ncols=1)
     if len(grid) == 1:
@@ -118,6 +113,14 @@ def _lines(dataset: xr.Dataset, titled: bool) -> Iterator[Line]:
         points = dataset.isel(at)
         texts = [look.conditions([(look.symbol(points, one), float(points[one]))]) for one in at]
         text = ", ".join(filter(None, [title, *texts]))
+        if over_force:
+            moves = points.isel(force=points["velocity"].values > 0)
+            # A contact at rest has no place on a logarithmic axis of velocities.
+            if at_rest := points.sizes["force"] - moves.sizes["force"]:
+                text = f"{text or 'computed'} ({at_rest} at rest: not drawn)"
+            moves = moves.assign(force_error=xr.zeros_like(moves["force"]))
+            yield Line(moves, "velocity", "force", text)
+            continue
         rest = still.isel(at, missing_dims="ignore") if still else None
         for variable in variables:
             yield Line(points, dim, variable, text, _limit(points, rest, dim, variable))
@@ -142,10 +145,10 @@ def _limit(
 def _panel(axes: Axes, lines: Sequence[Line], shown: Sequence[xr.Dataset]) -> None:
     """Draw all lines with the same abscissa, and label the axes."""
     alone = len(shown) == 1
-    both = alone and any(line.variable == "mu_torque" for line in lines)
+    both = alone and any(line.y == "mu_torque" for line in lines)
     notes = set()
     for k, line in enumerate(lines):
-        is_torque = line.variable == "mu_torque"
+        is_torque = line.y == "mu_torque"
         color, marker, ls = look.LINES[k % len(look.LINES)]
         if both:
             color, ls = look.LIMITS["mu_torque_theory" if is_torque else "mu_forward_theory"]
@@ -153,8 +156,6 @@ def _panel(axes: Axes, lines: Sequence[Line], shown: Sequence[xr.Dataset]) -> No
         label = line.title or "computed"
         if both or is_torque:
             label = f"{'torque' if is_torque else 'force'}, {label}"
-        if line.dim == "force" and (rest := int((line.points["velocity"] <= 0).sum())):
-            label += f" ({rest} at rest: not drawn)"
         label = look.wrapped(label, np.inf if alone else 1.6, 8.0)
         if label.startswith("_"):  # which would hide it
             label = f" {label}"
@@ -167,10 +168,11 @@ def _panel(axes: Axes, lines: Sequence[Line], shown: Sequence[xr.Dataset]) -> No
             if not alone:  # one legend entry for the points and their limit
                 axes.plot([], [], ls=ls, label=label, **ink)
                 label = ""
-            notes |= {float(line.points["velocity"])} if line.dim == "amplitude" else set()
-        panels.computed(axes, *_values(line), label=label, **ink | joining)
+            notes |= {float(line.points["velocity"])} if line.x == "amplitude" else set()
+        names = line.x, line.y, f"{line.y}_error", "converged"
+        panels.computed(axes, *columns(line.points, *names), label=label, **ink | joining)
     _references(axes, lines, shown)
-    quantities = [look.quantity(one.points, one.abscissa) for one in lines]
+    quantities = [look.quantity(one.points, one.x) for one in lines]
     several = len({one.unit for one in quantities}) > 1
     text = f"{quantities[0].text}, in the units of each motion"
     axes.set_xlabel(text if several else look.axis(quantities[0]))
@@ -182,17 +184,6 @@ def _panel(axes: Axes, lines: Sequence[Line], shown: Sequence[xr.Dataset]) -> No
         at = ", ".join(f"${look.number(one)}$" for one in sorted(notes))
         text = f"lines: limit for velocity to 0;\nmarkers: velocity {at}"
         axes.set_title(text, loc="left", fontsize=look.HEADING)
-
-
-def _values(line: Line) -> tuple[np.ndarray, ...]:
-    """Return abscissa, ordinate, its error estimate, and flags of converged points. A contact at
-    rest has no place on a logarithmic axis of velocities."""
-    if line.dim == "force":
-        points = line.points.isel(force=line.points["velocity"].values > 0)
-        x, y, converged = columns(points, "velocity", "force", "converged")
-        return x, y, np.zeros(y.size), converged
-    names = line.dim, line.variable, f"{line.variable}_error", "converged"
-    return columns(line.points, *names)
 
 
 def _references(axes: Axes, lines: Sequence[Line], shown: Sequence[xr.Dataset]) -> None:

@@ -1,25 +1,35 @@
-"""Write the page of the study `claims`: verdicts, their numbers, and commands to repeat the runs.
+"""Write pages that describe datasets: their contents and their provenance.
 
-The page is one self-contained HTML file, made from the dataset and the template claims.html.
+The page of the study `claims` has verdicts, their numbers, and commands to repeat the runs. It is
+made from the dataset and the template claims.html. Every page is one self-contained HTML file.
 """
 
 from __future__ import annotations
 
+import json
 import os
+from collections.abc import Iterator, Sequence
+from html import escape
 from pathlib import Path
 from types import SimpleNamespace
 
 import jinja2
 import numpy as np
 import xarray as xr
+import yaml
 
 from microslip.datasets.catalogue import FORMS
 from microslip.foundation.files import write_atomically
-from microslip.report.dataset_page import provenance
 from microslip.studies.static_limits import FORMULAS
 from microslip.studies.verdicts import OUTCOMES, WORDS
 
 MOTIONS = {"transverse": "Transverse oscillation", "bore": "Oscillating bore"}
+RANGES = (
+    *("mu_macro", "mu_macro_error", "mu_torque", "dissipated_energy", "dissipated_energy_error"),
+    *("reference_error", "seconds"),
+)
+"""Variables whose smallest and largest values are on the page."""
+MOST_LINES = 40
 
 
 def write(path: str | os.PathLike, dataset: xr.Dataset, lines: list[str]) -> None:
@@ -31,7 +41,48 @@ def write(path: str | os.PathLike, dataset: xr.Dataset, lines: list[str]) -> Non
 
 
 def page(dataset: xr.Dataset, lines: list[str]) -> str:
-    """Return the text of the page. It depends on the arguments only."""
+    """Return the HTML of the page. It depends on the arguments only."""
+    if "verdict" in dataset:
+        return claims_page(dataset, lines)
+    # Snakemake's report displays HTML inline.
+    text, title = escape(text_page(dataset, lines)), escape(dataset.attrs.get("title", ""))
+    head = f'<!DOCTYPE html>\n<html lang="en"><meta charset="utf-8"><title>{title}</title>'
+    return f"{head}\n<pre>{text}</pre></html>\n"
+
+
+def text_page(dataset: xr.Dataset, lines: list[str]) -> str:
+    """Return the contents and the provenance of a dataset as plain text."""
+    shown = lines[:MOST_LINES]
+    if len(lines) > MOST_LINES:
+        shown.append(f"... and {len(lines) - MOST_LINES} lines more, see the log of collecting")
+    sizes = [f"  {name}: {size}" for name, size in dataset.sizes.items()]
+    parts = [dataset.attrs.get("title", ""), "", *shown, "", "Sizes", *sizes, "", "Ranges"]
+    return "\n".join([*parts, *_ranges(dataset), "", "Made by", *provenance(dataset)])
+
+
+def provenance(
+    dataset: xr.Dataset, lines: Sequence[str] = (), without: Sequence[str] = ("title",)
+) -> Iterator[str]:
+    """Return lines with the attributes (except `without`), `lines` and the configuration."""
+    attributes = {name: value for name, value in dataset.attrs.items() if name not in without}
+    configuration = json.loads(attributes.pop("configuration", "{}"))
+    yield from (f"  {name}: {value}" for name, value in attributes.items())
+    yield from ("", *lines, *[""][: len(lines)], "Configuration, with all defaults")
+    yield yaml.safe_dump(configuration, default_flow_style=None, width=100)
+
+
+def _ranges(dataset: xr.Dataset) -> Iterator[str]:
+    for name in RANGES:
+        if name in dataset:
+            values = dataset[name]
+            yield f"  {name}: {float(values.min()):.6g} to {float(values.max()):.6g}"
+
+
+# The page of the study `claims`
+
+
+def claims_page(dataset: xr.Dataset, lines: list[str]) -> str:
+    """Return the HTML of the page of the study `claims`."""
     environment = jinja2.Environment(autoescape=True, trim_blocks=True, lstrip_blocks=True)
     filters = {"number": _number, "with_error": _with_error, "is_finite": np.isfinite}
     environment.filters.update(filters)
@@ -60,13 +111,10 @@ def _records(dataset: xr.Dataset, dim: str, prefix: str = "") -> list[SimpleName
 
     prefix: prefix to remove from the names of variables, by default the name of the dimension.
     """
-    columns = {
-        name.removeprefix(prefix or f"{dim}_") if name != dim else "name": dataset[name].values
-        for name in map(str, dataset.variables)
-        if dataset[name].dims == (dim,)
-    }
-    rows = zip(*(values.tolist() for values in columns.values()), strict=True)
-    return [SimpleNamespace(**dict(zip(columns, row, strict=True))) for row in rows]
+    names = [name for name in dataset.variables if dataset[name].dims == (dim,)]
+    short = {name: str(name).removeprefix(prefix or f"{dim}_") for name in names} | {dim: "name"}
+    rows = dataset[names].to_dataframe().reset_index().rename(columns=short).to_dict("records")
+    return [SimpleNamespace(**row) for row in rows]
 
 
 def _runs(dataset: xr.Dataset) -> dict[str, SimpleNamespace]:

@@ -7,13 +7,14 @@ import shlex
 
 import pytest
 from stubs.claims_stub import answered, configured
+from stubs.figures_stub import studies
 
 import microslip
 from microslip.app import cli
 from microslip.foundation.errors import InputError
-from microslip.report import claims_page, dataset_page
+from microslip.report import pages
 from microslip.scene.hertz import HERTZ
-from microslip.studies import registry
+from microslip.studies import registry, verdicts
 from microslip.studies.claims import command
 
 
@@ -24,7 +25,7 @@ def data():
 
 @pytest.fixture(scope="module")
 def page(data):
-    return claims_page.page(data, ["a line"])
+    return pages.page(data, ["a line"])
 
 
 def test_every_verdict_is_there_with_a_run_that_shows_it(page, data):
@@ -32,7 +33,7 @@ def test_every_verdict_is_there_with_a_run_that_shows_it(page, data):
     rows = re.findall(r"<tr><td.*?</tr>", top, flags=re.DOTALL)
     assert len(rows) == 10
     for row, verdict in zip(rows, data["verdict"].values, strict=True):
-        assert claims_page.WORDS[int(verdict)] in row
+        assert verdicts.WORDS[int(verdict)] in row
         assert re.search(r'href="#run\d+"', row)
     sections = page.split('<h2 id="claim')[1:]
     for section in sections:
@@ -84,14 +85,16 @@ def test_the_command_of_a_point_requests_that_point(monkeypatch):
 
 def test_text_of_a_dataset_is_escaped(data):
     sly = data.assign(statement=("claim", ["<b>&" for _ in data["claim"]]))
-    page = claims_page.page(sly, ["<i>"])
+    page = pages.page(sly, ["<i>"])
     assert "<b>" not in page
     assert "<i>" not in page
     assert "&lt;b&gt;&amp;" in page
 
 
-@pytest.mark.parametrize(("module", "tag"), [(claims_page, "<h2"), (dataset_page, "<pre>")])
-def test_a_page_is_written_as_html(module, tag, data, tmp_path):
-    module.write(tmp_path / "page.html", data, ["a line"])
+@pytest.mark.parametrize("study", ["claims", "stability"])
+def test_a_page_is_written_as_html(study, data, tmp_path):
+    dataset = data if study == "claims" else studies()[study]
+    pages.write(tmp_path / "page.html", dataset, ["a <line>"])
     text = (tmp_path / "page.html").read_text(encoding="utf-8")
-    assert text.startswith("<!DOCTYPE html>") and tag in text and "a line" in text
+    assert text.startswith("<!DOCTYPE html>") and text == pages.page(dataset, ["a <line>"])
+    assert "a &lt;line&gt;" in text and ('<h2 id="runs"' in text) == (study == "claims")
