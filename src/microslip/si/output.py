@@ -78,15 +78,9 @@ OUTPUTS = {
     "vibration_power": Output("W", "power of the oscillation or the spin"),
     "drag_power": Output("W", "power of the forward force"),
     "dissipated_power": Output("W", "power dissipated by friction"),
-    "energy_per_cycle": Output(
-        "J", "energy dissipated by friction in a period or a turn", "dissipated_power period"
-    ),
-    "wear_volume_per_cycle": Output(
-        "m^3", "wear volume of a body in a period or a turn", "dissipated_power period wear"
-    ),
-    "wear_depth_per_cycle": Output(
-        "m", "mean wear depth over the contact", "dissipated_power period wear per_area"
-    ),
+    "energy_per_cycle": Output("J", "energy dissipated by friction in a period or a turn", "heat"),
+    "wear_volume_per_cycle": Output("m^3", "wear volume of a body in a period or a turn", "worn"),
+    "wear_depth_per_cycle": Output("m", "mean wear depth over the contact", "worn per_area"),
 }
 """Every output of `predict`, in the order in which they are printed."""
 PREFIXED = ("m", "N", "Pa", "W", "J", "Hz", "N m", "m/s", "N/m")
@@ -234,12 +228,17 @@ class Prediction:
     def numbers(self) -> Iterator[tuple[str, str, str, Any]]:
         """Name of the column, SI unit, description and number of each input and each output.  The
         value and the error of every output are present, None if they do not apply."""
+        entries: list[tuple] = []
         for name, one in self.input_values.items():
-            unit = self.input_units[name]
-            key = "amplitude_factor" if name == "amplitude" and not unit else name
-            yield from _columns(name, key, unit, one)
+            entries.append((input_column, name, self.input_units[name], one, ()))
         for name, output in OUTPUTS.items():
-            yield from _columns(name, name, output.unit, self.values.get(name, NOTHING), KINDS[:2])
+            one = self.values.get(name, Value(None, None))
+            entries.append((column, name, output.unit, one, KINDS[:2]))
+        for key, name, unit, one, always in entries:
+            for kind in KINDS:
+                number = getattr(one, kind)
+                if number is not None or kind in always:
+                    yield key(name, unit, kind), unit, f"{name.replace('_', ' ')}, {kind}", number
 
     def to_dict(self) -> dict[str, Any]:
         """All columns as a plain dict.  The value and the error of every output are present, None
@@ -277,11 +276,10 @@ class Prediction:
     def __str__(self) -> str:
         """The lines that `microslip predict` prints."""
         lines = [line(name.replace("_", " "), text) for name, text in self.inputs.items()]
-        if self.search:
-            least = "smallest" if self.search == "amplitude" else "largest"
+        if name := self.search:
+            least = "smallest" if name == "amplitude" else "largest"
             sentence = f"the {least} with a reduction of {self.inputs['reduction']}"
-            unit = self.input_units[self.search]
-            lines += _lines(self.search, self.input_values[self.search], unit, sentence)
+            lines += _lines(name, self.input_values[name], self.input_units[name], sentence)
         lines.append("")
         for name, one in self.values.items():
             title = name if name in PLAIN else name.replace("_", " ")
@@ -309,21 +307,6 @@ PLAIN = {"u_lim", "mu_macro", "mu_apparent", "mu_static", "mu_static_apparent"}
 """Outputs that are symbols, whose underscore is printed."""
 
 
-NOTHING = Value(None, None)
-"""An output that does not apply."""
-
-
-def _columns(
-    name: str, key: str, unit: str, one: Value, always: tuple[str, ...] = ()
-) -> Iterator[tuple[str, str, str, Any]]:
-    """Name of the column, SI unit, description and number for each part of a Value, and for those
-    in `always` without a number."""
-    for kind in KINDS:
-        number = getattr(one, kind)
-        if number is not None or kind in always:
-            yield column(key, unit, kind), unit, f"{name.replace('_', ' ')}, {kind}", number
-
-
 def _names() -> set[str]:
     """Names of all columns that may contain numbers."""
     units = [(name, one.unit) for name, one in OUTPUTS.items()]
@@ -347,49 +330,51 @@ def _scale(size: float, unit: str) -> tuple[str, float]:
 def _lines(title: str, one: Value, unit: str, sentence: str) -> list[str]:
     """The line of a Value with its error, and the line of its uncertainty due to the inputs."""
     value, error = one.value, one.error
-    if math.isinf(value):
-        text = "infinite"
-    else:
-        if not unit and abs(value) <= error <= ROUNDING:
-            value, error = 0.0, 0.0
-        name, scale = _scale(
-            max(abs(value), error if abs(value) <= error < math.inf else 0.0), unit
-        )
-        text = number_text(value / scale, error / scale, name)
+    if not unit and abs(value) <= error <= ROUNDING:
+        value, error = 0.0, 0.0
+    size = max(abs(value), error if abs(value) <= error < math.inf else 0.0)
+    name, scale = _scale(size, unit)
+    text = "infinite" if math.isinf(value) else number_text(value / scale, error / scale, name)
     lines = [line(title, f"{text}: {sentence}" if sentence else text)]
-    if not one.spread or one.low is None or one.high is None:
-        return lines
-    size = max(abs(x) for x in (one.low, one.high, 0.0) if math.isfinite(x))
-    name, scale = prefixed(size, unit) if unit in PREFIXED else (unit, 1.0)
-    ends = interval_text(one.low / scale, one.high / scale, name)
-    deviation = number_text(one.spread / scale, 0.0, name, digits=2)
-    deviation = "infinite" if math.isinf(one.spread) else deviation
-    text = f"standard uncertainty {deviation}, 95 % interval {ends}, from the inputs"
-    return [*lines, line("", text)]
+    if one.spread and one.low is not None and one.high is not None:
+        size = max(abs(x) for x in (one.low, one.high, 0.0) if math.isfinite(x))
+        name, scale = prefixed(size, unit) if unit in PREFIXED else (unit, 1.0)
+        ends = interval_text(one.low / scale, one.high / scale, name)
+        deviation = number_text(one.spread / scale, 0.0, name, digits=2)
+        deviation = "infinite" if math.isinf(one.spread) else deviation
+        text = f"standard uncertainty {deviation}, 95 % interval {ends}, from the inputs"
+        lines.append(line("", text))
+    return lines
+
+
+PAGE = """# Inputs and outputs of a prediction
+
+The inputs are arguments of `microslip.predict`, options of `microslip predict` (with `-`
+in place of `_`), and columns of a table of contacts.
+
+| input | values | meaning |
+|---|---|---|
+{inputs}
+
+The outputs are fields of the answer.  `NAME_error` is the numerical error estimate.  If
+an input is uncertain, `NAME_spread` is the standard uncertainty, and `NAME_low` and
+`NAME_high` are the ends of the 95 % interval.  The unit is at the end of each name, as
+in `friction_force_error_N`.
+
+| output | meaning |
+|---|---|
+{outputs}
+"""
 
 
 def reference_page() -> str:
     """The reference page of the inputs and the outputs, in Markdown."""
-    text = ["# Inputs and outputs of a prediction", ""]
-    text += [
-        "The inputs are arguments of `microslip.predict`, options of `microslip predict` (with `-`",
-        "in place of `_`), and columns of a table of contacts.",
-        "",
-        "| input | values | meaning |",
-        "|---|---|---|",
+    inputs = [
+        f"| `{name}` | {'text' if one.unit is None else one.range} | {one.help} |"
+        for name, one in INPUTS.items()
     ]
-    for name, one in INPUTS.items():
-        text.append(f"| `{name}` | {'text' if one.unit is None else one.range} | {one.help} |")
-    text += [
-        "",
-        "The outputs are fields of the answer.  `NAME_error` is the numerical error estimate.  If",
-        "an input is uncertain, `NAME_spread` is the standard uncertainty, and `NAME_low` and",
-        "`NAME_high` are the ends of the 95 % interval.  The unit is at the end of each name, as",
-        "in `friction_force_error_N`.",
-        "",
+    outputs = [
+        f"| `{column(name, one.unit)}` | {one.sentence or name.replace('_', ' ')} |"
+        for name, one in OUTPUTS.items()
     ]
-    text += ["| output | meaning |", "|---|---|"]
-    for name, output in OUTPUTS.items():
-        meaning = output.sentence or name.replace("_", " ")
-        text.append(f"| `{column(name, output.unit)}` | {meaning} |")
-    return "\n".join(text) + "\n"
+    return PAGE.format(inputs="\n".join(inputs), outputs="\n".join(outputs))

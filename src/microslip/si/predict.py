@@ -34,6 +34,14 @@ UNKNOWN_THRESHOLD = (
     "the static friction is not the force threshold, because part of the vibration is along the "
     "drive; with a force, the prediction says whether the contact moves"
 )
+OPTIONAL = (
+    *("probability_stays", "probability_moves", "probability_runs_away"),  # see uncertain
+    *DRIVES.values(),
+    *("natural_frequency", "static", "threshold", "safety_factor", "displacement", "cycles"),
+    *("speed", "displacement_per_cycle", "pace", "torque"),
+    *("drag_power", "vibration_power", "dissipated_power", "heat", "worn"),
+)
+"""Factors of outputs that some contacts do not have."""
 
 
 def predict(motion: Any, **given: Any) -> Prediction:
@@ -156,14 +164,13 @@ def solved(
 
 
 def outputs(contact: Contact, answer: Answer) -> dict[str, Value]:
-    """Return the outputs of the contact in SI units."""
+    """Return the outputs of the contact in SI units.  An output without one of its factors is
+    missing."""
     factors, values = factors_of(contact, answer), {}
     for name, output in OUTPUTS.items():
         names = (output.factors or name).split()
-        numbers: list[Any] = [
-            factors[n] if n in factors else getattr(contact, n, None) for n in names
-        ]
-        if all(number is not None for number in numbers):
+        numbers = [factors[n] if n in factors else getattr(contact, n) for n in names]
+        if all(one is not None for one in numbers):
             product: Any = reduce(mul, numbers)
             if isinstance(product, Value):
                 values[name] = product.plain()
@@ -179,10 +186,10 @@ def factors_of(contact: Contact, answer: Answer) -> dict[str, Any]:
     friction, velocity, unit = known["friction"], known["velocity"], contact.speed_unit
     still, period = contact.mu * contact.load * mean_load, 2.0 * math.pi / contact.omega
     speed = Value(inputs.speed) if inputs.force is None else velocity * unit
-    factors: dict[str, Any] = dict.fromkeys(DRIVES.values())
+    factors: dict[str, Any] = dict.fromkeys(OPTIONAL)
     factors |= contact.drive(mean_load) | known
     factors |= {"sliding_friction": still, "force_reduction": Value(1.0) - friction}
-    factors["millimetre"] = 1e-3
+    factors |= {"millimetre": 1e-3, "per_area": 1.0 / contact.area}
     if contact.kind.unit == "rad" and np.all(inputs.amplitude == 0.0):
         factors["velocity"] = None
     if inputs.mass is not None and np.any(inputs.mass > 0.0) and not contact.steady:
@@ -216,9 +223,9 @@ def factors_of(contact: Contact, answer: Answer) -> dict[str, Any]:
         return factors
     if not np.any(0.0 if inputs.damping is None else inputs.damping):
         factors["vibration_power"] = power  # a dashpot dissipates an unknown part of it
-    factors |= {"dissipated_power": total, "period": period, "per_area": 1.0 / contact.area}
+    factors |= {"dissipated_power": total, "heat": total * period}
     if inputs.wear_coefficient is not None:
-        factors["wear"] = inputs.wear_coefficient / contact.mu  # m^3/J
+        factors["worn"] = factors["heat"] * (inputs.wear_coefficient / contact.mu)  # J * m^3/J
     return factors
 
 
