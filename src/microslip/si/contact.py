@@ -147,22 +147,16 @@ class Contact:
     @cached_property
     def amplitudes(self) -> dict[str, Any]:
         """Dimensionless amplitudes by direction, in the units of microslip.solve (Eqs 2, 4, 27)."""
-        inputs, sizes = self.inputs, {}
+        inputs = self.inputs
         if self.kind.stroke is not None:
             columns = self.kind.stroke.deviations(self)
             return {n: inputs.amplitude * float(abs(one).max()) for n, one in columns.items()}
-        for name, direction in OSCILLATIONS.items():
-            size = getattr(inputs, name)
-            if size is None:
-                continue
-            if direction == "load":
-                sizes[direction] = size / self.load
-            elif direction == "angle" or self.kind.unit == "rad":
-                unit = hertz.bore_amplitude(1.0, self.poisson)
-                sizes[direction] = size * self.contact_radius / self.u_lim * unit
-            else:
-                sizes[direction] = size / self.u_lim
-        return sizes
+        angle = self.u_lim / (self.contact_radius * hertz.bore_amplitude(1.0, self.poisson))
+        units = {"lateral": self.u_lim, "forward": self.u_lim, "angle": angle, "load": self.load}
+        if self.kind.unit == "rad":
+            units["lateral"] = angle
+        sizes = {direction: getattr(inputs, name) for name, direction in OSCILLATIONS.items()}
+        return {n: size / units[n] for n, size in sizes.items() if size is not None}
 
     @cached_property
     def amplitude(self) -> Any:
@@ -228,29 +222,27 @@ class Contact:
         mu F_z / (u_lim omega^2), and the damping by mu F_z / (u_lim omega).  F_z is the load
         without oscillation; mean_load: mean load divided by F_z.
         """
-        inputs, compliance = self.inputs, self.u_lim / (self.mu * self.load)
-        groups = {}
-        if inputs.force is not None:
-            groups["force"] = inputs.force / (self.mu * self.load * mean_load)
-        if inputs.drive_stiffness is not None:
-            groups["stiffness"] = inputs.drive_stiffness * compliance
-        if inputs.mass is not None:
-            groups["mass"] = inputs.mass * self.omega * self.omega * compliance
-        if inputs.damping is not None:
-            groups["damping"] = inputs.damping * self.omega * compliance
-        return groups
+        friction, omega = self.mu * self.load, self.omega
+        units = {
+            "force": friction * mean_load,
+            "drive_stiffness": friction / self.u_lim,
+            "mass": friction / (self.u_lim * omega * omega),
+            "damping": friction / (self.u_lim * omega),
+        }
+        inputs = {name: getattr(self.inputs, name) for name in units}
+        return {DRIVES[n]: one / units[n] for n, one in inputs.items() if one is not None}
 
     @property
     def coordinates(self) -> dict[str, Any]:
         """Dimensionless groups on which the answer of the solver depends, as arrays.  The first
         ones, up to the velocity, are those of the static limit."""
-        inputs = self.inputs
+        inputs, stroke = self.inputs, self.kind.stroke
         groups = {"poisson": self.poisson, "ratio": self.ratio, "phase": inputs.phase}
-        if self.kind.stroke is None:
+        if stroke is None:
             groups |= {} if self.steady else self.amplitudes
         else:
-            groups |= {"factor": inputs.amplitude / self.u_lim}
-            if not self.kind.stroke.columns.keys() <= {"forward", "lateral"}:
+            groups["factor"] = inputs.amplitude / self.u_lim
+            if not stroke.columns.keys() <= {"forward", "lateral"}:
                 groups |= {"load": self.load, "contact_radius": self.contact_radius}
         if inputs.speed is not None:
             unit = self.contact_radius if self.steady or self.kind.unit == "rad" else self.u_lim
@@ -264,11 +256,10 @@ class Contact:
         """Raise InputError for a contact outside Hertz's theory or the range of the solver."""
         inputs, a = self.inputs, self.contact_radius
         finite = all(0.0 < one < math.inf for one in (a, self.u_lim, self.load / a**2))
-        if not self.radii:
-            if not (finite and self.largest_pressure > 0.0):
-                raise inputs.error("contact_radius", OUT_OF_RANGE)
-        else:
+        if self.radii:
             self._check_radii(finite and 0.0 < self.indentation < math.inf)
+        elif not (finite and self.largest_pressure > 0.0):
+            raise inputs.error("contact_radius", OUT_OF_RANGE)
         if inputs.search is None and inputs.kind is not AT_REST:
             self._check_groups()
 
@@ -276,6 +267,8 @@ class Contact:
         inputs, a, smallest = self.inputs, self.contact_radius, self.smallest_radius
         second = "radius_across" if inputs.radius_across is not None else "counter_radius"
         own = "counter_radius" if inputs.counter_radius is not None else "radius"
+        name = "radius" if smallest == abs(self.radii[0]) else second
+        size = f"contact radius would be {a:.3g} m, {a / smallest:.2g} of this radius"
         if 1.0 / self.radius <= 0.0:
             raise inputs.error(own, "allowed is a hollow with a larger radius than the sphere")
         if not 0.0 < self.radius < math.inf:
@@ -284,23 +277,22 @@ class Contact:
             problem = f"the contact would be an ellipse of ratio {self.ratio:.2g}"
             raise inputs.error("radius_across", f"{problem}; allowed is {SMALLEST_RATIO:g} or more")
         if a >= LARGEST_RATIO * smallest:
-            raise inputs.error(
-                "radius" if smallest == abs(self.radii[0]) else second,
-                "by Hertz's theory, which is for contacts much smaller than either body, the "
-                f"contact radius would be {a:.3g} m, {a / smallest:.2g} of this radius; allowed is "
-                f"less than {LARGEST_RATIO:g}",
-            )
+            theory = "by Hertz's theory, which is for contacts much smaller than either body, the "
+            allowed = f"{theory}{size}; allowed is less than {LARGEST_RATIO:g}"
+            raise inputs.error(name, allowed)
         if not finite:
             raise _load_error(inputs)
 
     def _check_groups(self) -> None:
-        inputs, most, own = self.inputs, LARGEST["amplitude"], self.kind.stroke is None
+        inputs, most, amplitudes = self.inputs, LARGEST["amplitude"], {}
         groups = {n: self.drive().get(group, 0.0) for n, group in DRIVES.items()}
         groups |= {} if inputs.speed is None else {"speed": self.velocity}
-        if self.kind.several and own and not any(self.amplitudes.values()):
+        if self.kind.stroke is None and not self.steady:
+            amplitudes = self.amplitudes
+        if self.kind.several and amplitudes and not any(amplitudes.values()):
             allowed = "allowed is a value above 0 if no other amplitude is above 0"
             raise inputs.error(self.kind.needed[0], allowed)
-        if own and self.amplitudes.get("load", 0.0) > most:
+        if amplitudes.get("load", 0.0) > most:
             raise inputs.error("load_amplitude", f"allowed is at most {most:g} times the load")
         if not self.steady and not self.amplitude <= most:
             unit = f"the {self.u_lim:.3g} m at which the whole contact slides"
@@ -311,8 +303,7 @@ class Contact:
         for name, group in groups.items():
             if not math.isfinite(group):
                 raise inputs.error(name, f"divided by that of the contact it is {OUT_OF_RANGE}")
-        spring = inputs.drive_stiffness is not None and inputs.speed == 0.0
-        if spring and self.kind.name == "longitudinal":
+        if inputs.drive_stiffness and inputs.speed == 0.0 and self.kind.name == "longitudinal":
             allowed = "allowed is a speed above 0 for a longitudinal motion with a spring"
             raise inputs.error("speed", allowed)
 

@@ -243,40 +243,41 @@ def _phases(parts: np.ndarray) -> tuple[float, float, float, int]:
 
 def _checked(time: Any, columns: Mapping[str, Any]) -> tuple[float, list[str], np.ndarray]:
     """The time step, the names of the columns, and their values, (samples, columns)."""
-    if not hasattr(columns, "keys"):
-        raise InputError("columns", columns, f"allowed is a mapping with {', '.join(COLUMNS)}")
-    names = list(columns)
-    if not names or not set(names) <= set(COLUMNS):
-        unknown = next((name for name in names if name not in COLUMNS), None)
-        kind = "unknown" if names else "allowed is one column or more"
-        raise InputError("columns", unknown, f"{kind}; allowed are {', '.join(COLUMNS)}")
-    if set(NORMAL) <= set(names):
-        raise InputError("indentation", "with a load", "allowed is one of the two")
+
+    def refuse(wrong: object, argument: str, value: object, allowed: str) -> None:
+        if wrong:
+            raise InputError(argument, value, allowed)
+
+    known = ", ".join(COLUMNS)
+    mapping = hasattr(columns, "keys")
+    refuse(not mapping, "columns", columns, f"allowed is a mapping with {known}")
+    unknown = [name for name in columns if name not in COLUMNS]
+    refuse(unknown, "columns", unknown and unknown[0], f"unknown; allowed are {known}")
+    allowed = f"allowed is one column or more; allowed are {known}"
+    refuse(not len(columns), "columns", None, allowed)
+    both = set(NORMAL) <= set(columns)
+    refuse(both, "indentation", "with a load", "allowed is one of the two")
     arrays: dict[str, np.ndarray] = {}
     fewest = FEWEST_PER_PERIOD * FEWEST_PERIODS
+    short = f"the record is too short; allowed are at least {fewest} samples"
     for name, value in {"time": time, **columns}.items():
         try:
             array = arrays[name] = np.array(value, float)
         except (TypeError, ValueError):
             raise InputError(name, value, "allowed is an array of numbers") from None
-        length = len(arrays["time"]) if arrays["time"].ndim else 0
-        if array.ndim != 1:
-            raise InputError(name, value, "allowed is an array of one dimension")
-        if len(array) != length:
-            allowed = f"allowed are as many numbers as times: {length}"
-            raise InputError(name, array.shape, allowed)
-        if length < fewest:
-            allowed = f"the record is too short; allowed are at least {fewest} samples"
-            raise InputError("time", array.shape, allowed)
-        if not np.isfinite(array).all():
-            raise InputError(name, math.nan, "allowed are finite numbers")
-        if name in NORMAL and array.mean() <= 0.0:
-            mean = float(f"{array.mean():.6g}")
-            raise InputError(name, mean, "the mean; allowed is a mean above 0")
+        refuse(array.ndim != 1, name, value, "allowed is an array of one dimension")
+        length = len(arrays["time"])
+        allowed = f"allowed are as many numbers as times: {length}"
+        refuse(len(array) != length, name, array.shape, allowed)
+        refuse(length < fewest, "time", array.shape, short)
+        refuse(not np.isfinite(array).all(), name, math.nan, "allowed are finite numbers")
+        mean = float(f"{array.mean():.6g}")
+        negative = name in NORMAL and mean <= 0.0
+        refuse(negative, name, mean, "the mean; allowed is a mean above 0")
     time = arrays.pop("time")
     for name, array in arrays.items():
         _check_marks(name, array)
-    return _step(time), names, np.stack(list(arrays.values()), axis=1)
+    return _step(time), list(arrays), np.stack(list(arrays.values()), axis=1)
 
 
 def _check_marks(name: str, values: np.ndarray) -> None:
