@@ -271,7 +271,9 @@ def test_the_command_names_the_line_that_it_leaves_out(closed, tmp_path, capsys)
     out, complaint = capsys.readouterr()
     assert complaint.startswith("microslip fit: line 6: speed is 'fast'")
     assert complaint.endswith("; left out\n") and complaint.count("\n") == 1
-    assert re.search(r"^rows +4, of", out, re.M)
+    assert re.search(r"^rows +4, of", out, re.M) and re.search(
+        r"^u_lim +[\d.]+ nm, from", out, re.M
+    )
     labels = xr.load_dataset(tmp_path / "fit.nc").label.values
     assert labels.tolist() == ["r0.2", "r0.5", "r1.0", "r2.0"]
 
@@ -364,15 +366,3 @@ def test_a_large_fitted_mu_has_the_warning_of_predict():
     result = microslip.fit("transverse", rows, **common, tolerance=0.02)
     assert result.mu > 1.0
     assert any("Coulomb" in text for text in result.warnings)
-
-
-def test_a_fit_prints_what_the_command_prints(tmp_path, capsys):
-    rows = "".join(f"{v},{mu}\n" for v, mu in ((1, 0.1), (2, 0.15), (4, 0.2), (8, 0.25), (99, 0.3)))
-    path = tmp_path / "rows.csv"
-    path.write_text("speed [mm/s],mu\n" + rows)
-    common = {"amplitude": "1 um", "frequency": "1 kHz", "load": "10 N", "tolerance": "0.02"}
-    code = cli.main(["fit", "transverse", str(path), *(f"--{n}={x}" for n, x in common.items())])
-    printed = capsys.readouterr().out
-    assert code in (0, 1)
-    assert str(microslip.fit("transverse", path, **common)) + "\n" == printed
-    assert "u_lim" in printed and "u lim" not in printed

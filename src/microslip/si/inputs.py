@@ -455,21 +455,16 @@ def _texts(
     """The inputs as the user wrote them, in the order of the printed answer."""
     texts = {} if motion is None else {"motion": f"{motion}: the sphere {kind.description}"}
     texts["body"] = bodies[0]
-    for name in INPUTS:
-        if name == "counterbody":
-            texts[name] = bodies[1]
-        elif name in OF_BODIES:
-            continue
-        elif name in quantities:
-            texts[name] = quantities[name].text
-        elif name in given:
-            texts[name] = "friction from a map" if name == "map" else str(given[name])
-        elif name == "counter_radius" and "radius" in given and "radius_across" not in given:
-            texts[name] = "flat (default)"
-        elif name == "pressure" and "contact_radius" in given:
-            texts[name] = "hertz"
-    if "counter_radius" in quantities and quantities["counter_radius"].si < 0.0:
-        texts["counter_radius"] += ", hollow"
+    own = {name: str(value) for name, value in given.items()}
+    own |= {name: one.text for name, one in quantities.items()} | {"counterbody": bodies[1]}
+    if "map" in own:
+        own["map"] = "friction from a map"
+    if "contact_radius" in own:
+        own.setdefault("pressure", "hertz")
+    elif "radius_across" not in own:
+        own.setdefault("counter_radius", "flat (default)")
+    if (hollow := quantities.get("counter_radius")) and hollow.si < 0.0:
+        own["counter_radius"] += ", hollow"
     if kind.stroke is not None:
-        texts["amplitude"] += " times the samples"
-    return texts
+        own["amplitude"] += " times the samples"
+    return texts | {n: own[n] for n in INPUTS if n in own and n not in OF_BODIES}

@@ -23,6 +23,7 @@ from microslip.foundation.errors import InputError, shown
 from microslip.scene.files import UNITS
 from microslip.si.contact import Contact, contact_of
 from microslip.si.inputs import Input, read_inputs, read_quantity
+from microslip.si.output import column
 from microslip.si.strokes import factors, scales
 
 COLUMNS = {
@@ -31,8 +32,6 @@ COLUMNS = {
     **{"dissipated_energy": "J", "dissipated_energy_error": "J", "stick_fraction": "1"},
 }
 """SI units of the columns of `microslip.response`."""
-SUFFIXES = {"N": "_N", "N m": "_N_m", "J": "_J", "1": ""}
-"""End of the name of an attribute, by unit."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -64,9 +63,9 @@ class RealResponse:
     converged: bool
 
     def __getattr__(self, name: str) -> Any:
-        for column, unit in COLUMNS.items():
-            if name == f"{column}{SUFFIXES[unit]}":
-                return self.columns[column][1]
+        for one, unit in COLUMNS.items():
+            if name == column(one, unit.strip("1")):
+                return self.columns[one][1]
         if name in self.__dict__.get("attributes", {}):
             return self.attributes[name]
         raise AttributeError(name)
@@ -169,22 +168,21 @@ def read_path(path: Any, **form: str) -> dict[str, np.ndarray]:
         sizes = factors({name: table.units[name] for name in names})
         for name in names:
             unit = UNITS[name] if table.units[name] is None else ""
-            numbers = []
-            for k, cell in enumerate(table.cells[name]):
-                where = table.lines[k] if table.lines else k + 1
-                numbers.append(sizes[name] * _number(where, name, cell, unit))
-            columns[name] = np.array(numbers)
+            number = Input("", unit, "", -math.inf, exact=True)
+            lines = table.lines or range(1, 1 + len(table.cells[name]))
+            cells = zip(lines, table.cells[name], strict=True)
+            columns[name] = sizes[name] * np.array([_number(k, name, c, number) for k, c in cells])
     except ValueError as error:
         if isinstance(error, InputError):
             raise
         raise InputError("path", source_name(path), str(error)) from None
-    return {"forward": np.zeros(len(numbers))} | columns
+    return {"forward": np.zeros(len(table.cells[name]))} | columns
 
 
-def _number(where: int, name: str, cell: object, unit: str) -> float:
-    """The value of a cell in a unit.  Raises ValueError with the line number."""
+def _number(line: int, name: str, cell: object, form: Input) -> float:
+    """The value of a cell.  Raises ValueError with the line number."""
     try:
-        return read_quantity(name, cell, Input("", unit, "", -math.inf, exact=True)).si
+        return read_quantity(name, cell, form).si
     except InputError as error:
         problem = "empty" if cell is None else f"{cell!r}: {error.allowed}"
-        raise ValueError(f"line {where}: {name} is {problem}") from None
+        raise ValueError(f"line {line}: {name} is {problem}") from None
