@@ -11,11 +11,12 @@ Exit codes: 0 done, 1 not converged, 2 bad input, 74 the output cannot be writte
 from __future__ import annotations
 
 import argparse
+from collections.abc import Mapping
 from pathlib import Path
 
 from microslip import __version__
 from microslip.app.commands import COMMANDS
-from microslip.app.parser import Parser, option, with_options
+from microslip.app.parser import Option, Parser, option, with_options
 from microslip.app.terminal import complain
 from microslip.foundation.errors import CacheError, InputError, shown
 
@@ -48,7 +49,7 @@ def main(words: list[str]) -> int:
     if {"-h", "--help"} & set(words):
         parser.print_help_with("motions", COMMANDS[name].motions())
         return 0
-    return respond(name, parser.parse(words))
+    return respond(name, parser.parse(words), parser.readers)
 
 
 def _without_command(words: list[str]) -> int:
@@ -81,25 +82,20 @@ def parser_of(name: str) -> Parser:
     return parser
 
 
-def respond(name: str, options: argparse.Namespace) -> int:
+def respond(name: str, options: argparse.Namespace, readers: Mapping[str, Option]) -> int:
     """Print the answer to a parsed command line, or an error message.
 
     Returns the exit code: 0 if the answer is complete, 1 if not, 2 for bad input.
     """
-    command, spellings = COMMANDS[name], options.spellings
-    readers = {
-        **command.places,
-        **{n: one for group in command.groups().values() for n, one in group.items()},
-    }
+    spellings = options.spellings
     try:
         arguments = {n: readers[n].read(n, getattr(options, n)) for n in spellings}
         output, figure = arguments.get("output"), arguments.get("figure")
         sources = [Path(arguments[n]).resolve() for n in SOURCES if n in arguments]
         if output is not None and Path(output).resolve() in sources:
-            raise InputError(
-                "output", output, "allowed is another file than the table that is read"
-            )
-        answer = command.answer(**arguments).write(output, figure)
+            allowed = "allowed is another file than the table that is read"
+            raise InputError("output", output, allowed)
+        answer = COMMANDS[name].answer(**arguments).write(output, figure)
     except InputError as error:
         argument, value = option(error.argument), error.value
         if error.argument in spellings:

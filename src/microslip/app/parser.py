@@ -35,11 +35,18 @@ class Option(NamedTuple):
 
 
 class Parser(argparse.ArgumentParser):
-    """Argument parser that reports bad input in one line.  Options cannot be abbreviated."""
+    """Argument parser that reports bad input in one line.  Options cannot be abbreviated.
+
+    Attributes
+    ----------
+    readers : dict of Option
+        All options and positional arguments, by Python argument.
+    """
 
     def __init__(self, **settings: Any):
         super().__init__(**settings, allow_abbrev=False)
         self.set_defaults(spellings={})
+        self.readers: dict[str, Option] = {}
 
     def error(self, message: str) -> NoReturn:
         complain(f"{self.prog}: {message} (see {self.prog} --help)")
@@ -47,6 +54,7 @@ class Parser(argparse.ArgumentParser):
 
     def add(self, options: Mapping[str, Option], group: Any = None, place: bool = False) -> None:
         """Add options by the name of the Python argument.  place: True for positional arguments."""
+        self.readers |= options
         for name, one in options.items():
             words: dict[str, Any] = {} if place else {"dest": name}
             names = [name] if place else [option(name), *SECOND_NAMES.get(name, ())]
@@ -128,12 +136,8 @@ def _joined(words: list[str]) -> list[str]:
     """
     joined: list[str] = []
     for word in words:
-        if (
-            NEGATIVE.match(word)
-            and joined
-            and joined[-1].startswith("--")
-            and "=" not in joined[-1]
-        ):
+        is_value = bool(joined) and re.fullmatch("--[^=]*", joined[-1]) and NEGATIVE.match(word)
+        if is_value:
             joined[-1] += f"={word}"
         else:
             joined.append(word)

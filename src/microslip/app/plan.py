@@ -74,9 +74,8 @@ class Plan:
 
     def __init__(self, configuration: Configuration):
         self.configuration = configuration
-        script = script_of_products()
         self._maker = source_digest.LOADED.digest(["app/products.py"])
-        self._maker += source_digest.of_script(script) if script else ""
+        self._maker += source_digest.of_script("workflow/scripts/make.py")
         self.products: dict[str, Product] = {}
         for name in (*configuration.datasets, *configuration.figures):
             self.products[name] = self._product(name)
@@ -136,14 +135,6 @@ class Plan:
         else:
             blocks = []
         return {f"{block.folder}/{block.name}": block for block in blocks}
-
-
-def script_of_products() -> Path | None:
-    """Path of the script that makes products: in a source tree, or in the folder `bundle` of an
-    installed package."""
-    package = source_digest.PACKAGE
-    paths = [top / "workflow/scripts/make.py" for top in (package / "bundle", package.parents[1])]
-    return next(filter(Path.is_file, paths), None)
 
 
 class Results:

@@ -48,12 +48,8 @@ def make(plan: Plan, name: str, stem: Path, inputs: list[Path]) -> None:
     if stem.name.partition("-")[0] != product.stem:
         raise batch.SourcesEdited("the code that makes it")
     files = {end: stem.parent / f"{stem.name}{end}" for end in product.links.values()}
-    if name in plan.configuration.datasets:
-        _make_dataset(plan, name, files, inputs)
-    elif product.kind == "explorer":
-        _make_explorer(plan, name, files[".html"], inputs)
-    else:
-        _draw(plan, name, files, inputs)
+    is_dataset = name in plan.configuration.datasets
+    (_make_dataset if is_dataset else _make_figure)(plan, name, files, inputs)
     for plain, ending in product.links.items():
         content.remove_others(files[ending])
         content.link(files[ending], stem.parents[1] / plain)
@@ -87,32 +83,32 @@ def _make_dataset(plan: Plan, name: str, files: dict[str, Path], inputs: list[Pa
         log.info(line)
 
 
-def _draw(plan: Plan, name: str, files: dict[str, Path], inputs: list[Path]) -> None:
+def _make_figure(plan: Plan, name: str, files: dict[str, Path], inputs: list[Path]) -> None:
     from microslip.report.figures import drawing
 
     figure = plan.configuration.figures[name]
     datasets = {
-        dataset: drawing.loaded(path) for dataset, path in zip(figure.datasets, inputs, strict=True)
+        one: drawing.loaded(path) for one, path in zip(figure.datasets, inputs, strict=False)
     }
+    if figure.kind == "explorer":
+        _make_explorer(plan, name, files[".html"], datasets, inputs[len(datasets) :])
+        return
     drawn = drawing.draw(figure.kind, datasets)
     for path in files.values():
         drawing.save(drawn, path)
 
 
-def _make_explorer(plan: Plan, name: str, path: Path, inputs: list[Path]) -> None:
+def _make_explorer(
+    plan: Plan, name: str, path: Path, datasets: dict[str, Any], batches: list[Path]
+) -> None:
     from microslip.report.explorer import explorer, page
-    from microslip.report.figures import drawing
 
     configuration, figure = plan.configuration, plan.configuration.figures[name]
-    count = len(figure.datasets)
-    answer = batch.lookup(batch.records_in(inputs[count:]))
+    answer = batch.lookup(batch.records_in(batches))
     maps = explorer.maps_of(configuration, figure)
     periods = {
         one: [answer(r) for r in explorer.period_requests(configuration, *maps, name=one)]
         for one in maps
-    }
-    datasets = {
-        one: drawing.loaded(file) for one, file in zip(figure.datasets, inputs[:count], strict=True)
     }
     certified = [datasets.pop(one) for one in explorer.certified_of(configuration, figure)]
     page.write(path, datasets, periods, certified)

@@ -22,14 +22,13 @@ from typing import TYPE_CHECKING
 
 from microslip.app.parser import Option, Parser
 from microslip.app.terminal import complain
-from microslip.foundation import extras, files
+from microslip.foundation import extras, files, source_digest
 from microslip.foundation.errors import CacheError, InputError
 from microslip.foundation.spec import near_miss
 
 if TYPE_CHECKING:
     from microslip.config.settings import Configuration
 
-PACKAGE = Path(__file__).parents[1]
 SETS_CORES = re.compile(r"-[cje]|--(cores|jobs|executor|profile|workflow-profile)(=|$)")
 """Pattern of arguments that set the number of parallel jobs, directly or by a profile."""
 KEY_AND_VALUE = re.compile(r"[A-Za-z_][\w-]*\w=")
@@ -73,7 +72,7 @@ def _run(arguments: list[str]) -> int:
         if hint := extras.missing("snakemake"):
             raise ConfigError(hint)
         os.getcwd()
-        words = ["--snakefile", str(snakefile()), *_named(arguments)]
+        words = ["--snakefile", str(source_digest.workflow_file("Snakefile")), *_named(arguments)]
         if "SNAKEMAKE_PROFILE" not in os.environ and not any(map(SETS_CORES.match, arguments)):
             words = ["--cores", "all", *words]
         _check(words)
@@ -94,7 +93,7 @@ def _run(arguments: list[str]) -> int:
 
 def configurations() -> dict[str, Path]:
     """Configurations in the folder config of the package and of the current folder, by name."""
-    folders = (snakefile().parent / "config", Path("config"))
+    folders = source_digest.workflow_file("config/config.yaml").parent, Path("config")
     return {file.stem: file for folder in folders for file in sorted(folder.glob("*.yaml"))}
 
 
@@ -104,15 +103,6 @@ def _named(arguments: list[str]) -> list[str]:
     if file is None or "--configfile" in arguments:
         return arguments
     return [*arguments[1:], "--configfile", os.path.relpath(file)]
-
-
-def snakefile() -> Path:
-    """Path of this package's Snakefile.
-
-    The file is in the folder `bundle` of an installed package, or at the top of a source tree.
-    """
-    places = (PACKAGE / "bundle" / "Snakefile", PACKAGE.parents[1] / "Snakefile")
-    return next(filter(Path.is_file, places), places[1])
 
 
 def _spare_cache() -> None:
@@ -179,8 +169,9 @@ def _configuration(options: argparse.Namespace) -> Configuration:
     folder = options.directory or "."
     paths = [os.path.relpath(file) for file in options.configfile or ()]
     if not paths:
-        defaults = (Path(place, "config/config.yaml") for place in (folder, snakefile().parent))
-        paths = [os.path.relpath(next(filter(os.path.lexists, defaults)))]
+        default = Path(folder, "config/config.yaml")
+        shipped = source_digest.workflow_file("config/config.yaml")
+        paths = [os.path.relpath(default if os.path.lexists(default) else shipped)]
     mapping: dict = {}
     for file in paths:
         update_config(mapping, load.read_yaml(file))

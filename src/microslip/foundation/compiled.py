@@ -23,7 +23,6 @@ import json
 import os
 import shutil
 import sys
-import tempfile
 import time
 from collections.abc import Callable
 from pathlib import Path
@@ -36,7 +35,7 @@ from numba.core import caching, dispatcher, event
 from platformdirs import user_cache_path
 
 from microslip.foundation.errors import CacheError, InputError
-from microslip.foundation.files import write_atomically
+from microslip.foundation.files import check_room, write_atomically
 from microslip.foundation.source_digest import LOADED
 
 if numba.config.DISABLE_JIT:
@@ -72,8 +71,7 @@ def _usable_folder() -> Path | None:
         folder = place / f"compiled-{digest}"
         try:
             folder.mkdir(parents=True, exist_ok=True, mode=0o700)
-            with tempfile.TemporaryFile(dir=folder) as file:
-                file.write(bytes(65536))
+            check_room(folder)
             if shutil.disk_usage(folder).free < ROOM:
                 raise OSError(errno.ENOSPC, f"less than {ROOM / 1e6:g} MB are free")
         except OSError as error:

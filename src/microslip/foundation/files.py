@@ -73,7 +73,8 @@ def writing_beside(path: str | os.PathLike[str]) -> Iterator[Path]:
     unchanged.  Raises CacheError if the operating system reports an error.
     """
     path = Path(path)
-    beside = _unique_beside(path)
+    # no other thread, process or container uses this name
+    beside = path.with_name(f".{path.name}.{uuid.uuid4().hex[:16]}.part")
     _PARTIAL.add(beside)
     try:
         with _advice("write", path):
@@ -95,29 +96,21 @@ def remove_partial() -> None:
             path.unlink()
 
 
-def _unique_beside(path: Path) -> Path:
-    """A temporary path in the same folder.  No other thread, process or container uses it."""
-    return path.with_name(f".{path.name}.{uuid.uuid4().hex[:16]}.part")
-
-
 def refuse_unwritable(folder: Path) -> None:
     """Create a folder, and raise CacheError if it cannot be written to."""
     with _advice("write to", folder):
         folder.mkdir(parents=True, exist_ok=True)
-        _check_room(folder)
+        check_room(folder)
 
 
-def _check_room(folder: Path) -> None:
-    """Write a small file to a folder and remove it.  Raises OSError if this fails."""
-    trial = _unique_beside(folder / "room")
-    try:
-        with open(trial, "wb") as file:
-            file.write(bytes(LEAST_ROOM))
-            file.flush()
-            os.fsync(file.fileno())
-    finally:
-        with suppress(OSError):
-            trial.unlink()
+def check_room(folder: Path) -> None:
+    """Write a small temporary file to a folder.  Raises OSError if this fails."""
+    import tempfile  # late, since its import takes a while
+
+    with tempfile.TemporaryFile(dir=folder) as file:
+        file.write(bytes(LEAST_ROOM))
+        file.flush()
+        os.fsync(file.fileno())
 
 
 def clear_abandoned(folder: Path) -> list[Path]:
@@ -149,7 +142,7 @@ def _advice(verb: str, path: Path) -> Iterator[None]:
         cause: Exception = error
         if verb == "write" and getattr(error, "errno", None) not in NO_WRITING:
             try:
-                _check_room(path.parent)
+                check_room(path.parent)
             except OSError as other:
                 cause = other
         raise CacheError(advice(verb, path, cause)) from error

@@ -230,6 +230,14 @@ def of_builder(*files: str) -> str:
     return LOADED.digest(LOADED.builder(*files))
 
 
-def of_script(path: Path) -> str:
-    """Digest of a script outside of the package."""
-    return parse(path.read_bytes(), messages=True)[0]
+def workflow_file(name: str) -> Path:
+    """Path of a file of the workflow: in the folder `bundle` of an installed package, or else at
+    the top of a source tree, which can lack it."""
+    bundled = PACKAGE / "bundle" / name
+    return bundled if bundled.is_file() else PACKAGE.parents[1] / name
+
+
+def of_script(name: str) -> str:
+    """Digest of a script of the workflow; empty if there is none."""
+    path = workflow_file(name)
+    return parse(path.read_bytes(), messages=True)[0] if path.is_file() else ""
