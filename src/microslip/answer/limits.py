@@ -329,16 +329,14 @@ def refuse(problem: Problem, model: str, method: str = SHIPPED) -> None:
     if not (refusal or shipped) and method_named(method).run is not None:
         refusal = "it is one run, which cannot be refined"
     if refusal:
-        raise InputError(
-            "method", method, f"does not apply to {motion.name}, model {model}: {refusal}"
-        )
+        where = f"does not apply to {motion.name}, model {model}"
+        raise InputError("method", method, f"{where}: {refusal}")
     if drive is None:
         return
     force, pulls = drive.force, "stiffness" if drive.force is None else "force"
     if force is not None and force < 0.0 and not problem.propels:
-        raise InputError(
-            "force", force, f"allowed is a number of at least 0: {motion.name} propels nothing"
-        )
+        reason = f"{motion.name} propels nothing"
+        raise InputError("force", force, f"allowed is a number of at least 0: {reason}")
     if not MODELS[model].drivable:
         raise InputError("model", model, f"supports no {pulls}, only a prescribed velocity")
     if not shipped:

@@ -272,7 +272,7 @@ class Problem:
 
     # Normal load
 
-    @cached_property
+    @property
     def depth(self) -> Callable[[np.ndarray], np.ndarray] | None:
         """Function of the phase that returns the indentation depth divided by its reference value.
 
