@@ -1,5 +1,7 @@
 """`solve`: error estimate, limits, checks of the input, and fields of the result."""
 
+import pickle
+
 import pytest
 from stubs.agreement import assert_agree
 
@@ -216,3 +218,13 @@ def test_periods_are_full_ones_whatever_a_lap_is():
         assert run.periods == run.effort.solves / (2 * steps) * lap  # two stages a step
     half = microslip.solve("transverse", 0.3, 1.0)
     assert isinstance(half.periods, float) and (2 * half.periods).is_integer()
+
+
+# Copies
+
+
+def test_a_result_survives_pickling():
+    for place in (("bore", 0.5, 1.0), ("normal:lateral=1,phase=90", 0.5, 0.5)):
+        result = microslip.solve(*place, tolerance=3e-2)
+        same = pickle.loads(pickle.dumps(result))
+        assert (same.problem, same.to_dict()) == (result.problem, result.to_dict())

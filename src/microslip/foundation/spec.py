@@ -209,7 +209,7 @@ class NamedByText(Named):
         return self.text
 
     def __eq__(self, other: object) -> bool:
-        return type(other) is type(self) and vars(other)["text"] == self.text
+        return isinstance(other, type(self)) and other.text == self.text
 
     def __hash__(self) -> int:
         return hash(self.text)
