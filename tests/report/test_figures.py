@@ -158,6 +158,11 @@ def test_maps_of_drift_show_threshold_rest_and_the_rigid_contact():
             line.get_data(), (dataset["mu_static_curve"], dataset["amplitude_curve"])
         )
         assert artists(axes, "rest") and artists(axes, "rigid")
+        (bands,) = [one for one in axes.collections if len(getattr(one, "levels", ())) > 10]
+        point = dataset.isel(amplitude=4, force=6)
+        inside = [path.contains_point((point.force, point.amplitude)) for path in bands.get_paths()]
+        speed = np.log10(float(point["velocity"]))
+        assert inside == [low <= speed < low + 0.25 for low in bands.levels[:-1]]
         assert len(artists(axes, "unconverged")) == (dataset is datasets[1])
     assert "not converged (1 of 108)" in words(figure)
 
