@@ -11,7 +11,6 @@ import xarray as xr
 from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.axis import Axis
-from matplotlib.cm import ScalarMappable
 from matplotlib.colorbar import Colorbar
 from matplotlib.figure import Figure, SubFigure
 from matplotlib.patches import Circle, Rectangle
@@ -70,12 +69,9 @@ def legend_of_figure(
         figure.legend(handles=entries, loc=place, **more)
 
 
-def colour_bar(
-    shown: ScalarMappable, panels: Axes | Sequence[Axes], label: str, **settings: Any
-) -> Colorbar:
-    """Add a colour bar beside one or several panels."""
-    figure = np.ravel(np.array(panels, dtype=object))[0].figure
-    bar = figure.colorbar(shown, ax=panels, **{"pad": 0.02, "aspect": 28, **settings})
+def colour_bar(shown: Any, panels: Axes | Sequence[Axes], label: str, **settings: Any) -> Colorbar:
+    """Add a colour bar beside one or several panels. shown: artist with colours in one of them."""
+    bar = shown.axes.figure.colorbar(shown, ax=panels, **{"pad": 0.02, "aspect": 28, **settings})
     bar.set_label(label)
     bar.ax.tick_params(direction="out")
     return bar

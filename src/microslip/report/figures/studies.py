@@ -112,10 +112,9 @@ def _versus(dataset: xr.Dataset, cost: str) -> Figure:
     costs, errors = dataset[cost].values, dataset["error"].values
     models = look.in_order(set(dataset["trial_model"].values.astype(str)) - {"auto"})
     count = dataset["point"].size
-    heights = ROW * -(-count // ACROSS) + 0.35, LINE * (max(len(models), 7) + 2.0)
-    figure = look.new_figure(look.DOUBLE, sum(heights))
-    page, foot = figure.subfigures(2, 1, height_ratios=heights, squeeze=False).flat
-    grid = panels.grid(page, count, ACROSS, sharex=True, sharey=True)
+    height = ROW * -(-count // ACROSS) + LINE * -(-(len(models) + 7) // ACROSS) + 0.45
+    figure = look.new_figure(look.DOUBLE, height)
+    grid = panels.grid(figure, count, ACROSS, sharex=True, sharey=True)
     paid, most = costs[np.isfinite(costs) & (costs > 0)], np.nanmax(errors[np.isfinite(errors)])
     references = dataset["reference_error"].values
     least = np.nanmin([*references[np.isfinite(references)] / 3.0, most / 100.0])
@@ -137,12 +136,10 @@ def _versus(dataset: xr.Dataset, cost: str) -> Figure:
             axes.set_xlabel(COSTS[cost])
         if index % ACROSS == 0:
             axes.set_ylabel(f"error of {MU_MACRO.math}\n(dimensionless)")
-    marks: list = [Line2D([], [], label=label, **ink) for label, ink in MARKS.items()]
+    styles = {f"{one}, shipped method": _ink(one, "shipped") for one in models} | MARKS
+    marks: list = [Line2D([], [], label=label, **ink) for label, ink in styles.items()]
     marks.append(Patch(label="within the reference's error", **UNKNOWN))
-    shipped = [Line2D([], [], label=one, **_ink(one, "shipped")) for one in models]
-    for title, handles, side in (("shipped method", shipped, "left"), ("marks", marks, "center")):
-        text: look.Ink = {"fontsize": look.SMALLEST, "title_fontsize": look.HEADING}
-        foot.legend(handles=handles, title=title, alignment="left", loc=f"upper {side}", **text)
+    panels.legend_of_figure(figure, marks, "lower center", ncols=ACROSS, fontsize=look.SMALLEST)
     return figure
 
 
