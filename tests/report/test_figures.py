@@ -148,6 +148,12 @@ def test_the_points_of_all_drives_are_drawn_over_velocity_and_over_mass():
     assert len(artists(right, "computed")) == 2 and right.get_xscale() == "log"
 
 
+def test_a_contact_at_rest_under_every_force_is_counted():
+    dataset = drives_stub.pulled()["drive_force"]
+    figure = draw("curves", dataset.assign(velocity=0.0 * dataset["velocity"]))
+    assert "(9 at rest: not drawn)" in words(figure)
+
+
 def test_maps_of_drift_show_threshold_rest_and_the_rigid_contact():
     datasets = [drives_stub.drift("transverse"), drives_stub.drift("bore")]
     datasets[1]["converged"][2, 3] = 0

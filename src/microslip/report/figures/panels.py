@@ -86,7 +86,7 @@ def logarithmic_if_wide(axes: Axes) -> None:
     """Make the abscissa logarithmic if those of all computed points are positive and the ratio of
     the largest to the smallest exceeds WIDE."""
     x = _points(axes, 0)
-    if x.min() > 0.0 and x.max() > WIDE * x.min():
+    if x.size and x.min() > 0.0 and x.max() > WIDE * x.min():
         logarithmic(axes)
 
 

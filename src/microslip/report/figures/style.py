@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterable
 from contextlib import AbstractContextManager
+from html import unescape
 from string import ascii_lowercase
 from typing import Any
 
@@ -244,12 +245,6 @@ GREEK = {
 } | {"phi": r"\varphi", "theta": r"\vartheta"}
 """Names of Greek letters and their LaTeX commands."""
 
-LETTERS = {
-    **{"mu": "\N{GREEK SMALL LETTER MU}", "phi": "\N{GREEK SMALL LETTER PHI}"},
-    **{"omega": "\N{GREEK SMALL LETTER OMEGA}", "Omega": "\N{GREEK CAPITAL LETTER OMEGA}"},
-}
-"""Names of Greek letters and their Unicode characters."""
-
 _WORD = re.compile(r"([A-Za-z]+)(\d*)(?:_([A-Za-z0-9]+))?")
 
 
@@ -272,7 +267,7 @@ def html(formula: str) -> str:
     def symbol(match: re.Match[str]) -> str:
         letters, number, index = match.groups()
         below = number + (index or "")
-        letter = LETTERS.get(letters, letters)
+        letter = unescape(f"&{letters};") if letters in GREEK else letters
         return f"<i>{letter}</i>" + (f"<sub>{below}</sub>" if below else "")
 
     text = re.sub(r"\s*([/()])\s*", r"\1", _WORD.sub(symbol, formula))
