@@ -37,8 +37,9 @@ def one_line(error, *parts):
 
 
 def short(value):
+    """Name of a value that is the same in every process."""
     try:
-        return repr(value)[:60]
+        return re.sub(" at 0x[0-9a-f]+", "", getattr(value, "__name__", None) or repr(value))[:60]
     except ValueError:  # a whole number of thousands of digits
         return "huge"
 

@@ -144,6 +144,16 @@ def test_a_second_process_parses_only_edited_files(package, monkeypatch):
     assert Sources(package).digest(SOLVER) == after and len(parsed) == 1
 
 
+@pytest.mark.parametrize("damage", [lambda b: b[:-9], lambda b: b"", lambda b: b"[1, 2]"])
+def test_damaged_parse_results_are_replaced(damage, package):
+    first = Sources(package).digest(SOLVER)
+    (cache,) = (package / "__pycache__").glob("sources.*.json")
+    whole = cache.read_bytes()
+    cache.write_bytes(damage(whole))
+    assert Sources(package).digest(SOLVER) == first
+    assert cache.read_bytes() == whole
+
+
 def test_importing_the_package_computes_no_digest():
     program = "import sys, microslip; print('microslip.foundation.source_digest' in sys.modules)"
     assert output(program) == "False\n"

@@ -222,15 +222,16 @@ class Contact:
         mu F_z / (u_lim omega^2), and the damping by mu F_z / (u_lim omega).  F_z is the load
         without oscillation; mean_load: mean load divided by F_z.
         """
-        friction, omega = self.mu * self.load, self.omega
+        friction, u_lim, omega = self.mu * self.load, self.u_lim, self.omega
         units = {
-            "force": friction * mean_load,
-            "drive_stiffness": friction / self.u_lim,
-            "mass": friction / (self.u_lim * omega * omega),
-            "damping": friction / (self.u_lim * omega),
+            "force": (friction * mean_load, 1.0),
+            "drive_stiffness": (friction, u_lim),
+            "mass": (friction, u_lim * omega * omega),
+            "damping": (friction, u_lim * omega),
         }
         inputs = {name: getattr(self.inputs, name) for name in units}
-        return {DRIVES[n]: one / units[n] for n, one in inputs.items() if one is not None}
+        given = {name: one for name, one in inputs.items() if one is not None}
+        return {DRIVES[n]: one / (units[n][0] / units[n][1]) for n, one in given.items()}
 
     @property
     def coordinates(self) -> dict[str, Any]:
