@@ -38,6 +38,18 @@ def test_a_resonance_is_within_the_error_estimate(motion, place, body):
     assert_agree(result, microslip.solve(motion, **place, **body | {"tolerance": 1e-3}))
 
 
+@pytest.mark.slow
+@pytest.mark.parametrize("tolerance", [5e-3, 1e-3])
+def test_a_resonance_of_a_body_on_its_spring_is_resolved_by_the_steps(tolerance):
+    """The body resonates with the fourth harmonic: sqrt(k / m) is 3.8.  All runs with 48 steps or
+    fewer agree on another friction."""
+    place = "bore", 0.14042086687684716, 0.4742170683394263
+    body = {"stiffness": 8.591799780904927, "mass": 0.5877086218994304}
+    result = microslip.solve(*place, **body, tolerance=tolerance)
+    assert result.converged
+    assert_agree(result, microslip.solve(*place, **body, tolerance=None, cells=24, steps=384))
+
+
 ENERGIES = [(0.0112889, 0.586235), (0.0466, 0.514), (0.0519, 0.595)]
 
 

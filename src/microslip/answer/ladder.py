@@ -39,6 +39,11 @@ FEWEST = 4
 """Smallest number of angles and of steps."""
 MOST_MASS_STEPS = 8192
 """Largest number of steps in half a period for a mass.  Runs with 24 rings then take seconds."""
+FREQUENCY_ERROR = (3.0 * np.sqrt(2.0) - 4.0) / 6.0
+"""Relative change of the frequency of an undamped oscillation by the integrator path.SDIRK2,
+divided by the square of the step in radians.  The step multiplies the amplitude by R(i s) with R(z)
+= (1 + (1 - 2 g) z) / (1 - g z)^2 and g = 1 - sqrt(1/2), which differs from exp(z) by (3 g^2 - 2 g^3
+- 1/6) z^3."""
 COARSEST = Resolution(cells=8, angles=4, steps=4)
 """Resolution at which the stiffness of the contact is computed for a body with mass."""
 
@@ -220,15 +225,13 @@ def _imposing(ladder: Ladder, tolerance: float, cells: int | None, steps: int | 
 
 
 def with_mass(ladder: Ladder, problem: Problem, model: str, tolerance: float) -> tuple[Ladder, str]:
-    """Shorten the steps of a ladder until they resolve the oscillation of a mass against the
-    contact.
+    """Shorten the steps of a ladder until they resolve the oscillation of a mass on the contact and
+    on its spring.
 
-    The natural frequency divided by the vibration frequency is sqrt(stiffness / mass), with the
-    stiffness of the contact (1.5 for a sphere at nu = 0).  If the steps are longer than a radian of
-    the natural oscillation, runs can agree with each other and still be wrong.  Steps of a radian
-    are sufficient for the tolerance LOOSEST.  A spring that is s times stiffer than the contact
-    raises the natural frequency by a factor of sqrt(s).  It also reduces the force of this
-    oscillation on the contact by a factor of s.  For a second-order method, the two effects cancel.
+    The natural frequency divided by the vibration frequency is sqrt(stiffness / mass), with the sum
+    of the stiffnesses of the contact (1.5 for a sphere at nu = 0) and of the spring.  Time steps
+    change this frequency.  If they move a resonance, runs can agree with each other and still be
+    wrong.  Therefore the steps change it by at most the tolerance.
 
     Parameters
     ----------
@@ -250,9 +253,9 @@ def with_mass(ladder: Ladder, problem: Problem, model: str, tolerance: float) ->
     assert problem.drive is not None
     count = ladder.resolution(ladder.levels(tolerance)[0]).steps
     contact = contact_of(problem, model, COARSEST)
-    frequency = (contact.stiffness / problem.drive.mass) ** 0.5
+    frequency = ((contact.stiffness + problem.drive.stiffness) / problem.drive.mass) ** 0.5
     longest = float(np.diff(path_of(problem, contact, count).phase).max())
-    allowed = 1.0 if ladder.imposed else (tolerance / LOOSEST) ** (1 / ORDER)
+    allowed = 1.0 if ladder.imposed else (min(tolerance, LOOSEST) / FREQUENCY_ERROR) ** 0.5
     finer = max(longest * frequency / allowed, 1.0)
     if finer > 1.0 and (ladder.imposed or finer * count > MOST_MASS_STEPS):
         most = 2 * (count if ladder.imposed else MOST_MASS_STEPS)
