@@ -152,6 +152,15 @@ def test_the_command_line_prints_the_text_and_the_json_of_the_prediction(capsys)
         assert re.search(rf"^{title} +{number}( N)?[: ]", str(result), re.MULTILINE), title
 
 
+@pytest.mark.parametrize(("load", "unit", "size"), [(1.0, "MPa", 1e6), (50.0, "GPa", 1e9)])
+def test_a_pressure_is_printed_in_one_readable_unit(load, unit, size):
+    """Hertz: p0 = 1/pi (6 F E*^2/R^2)^(1/3), with E* = 210 GPa/0.91."""
+    p0 = (6.0 * load * (210e9 / 0.91) ** 2 / 5e-3**2) ** (1 / 3) / math.pi
+    text = str(microslip.predict("continuous-bore", **SPUN | {"load": load, "hardness": p0}))
+    printed = float(re.search(rf"^largest pressure +(\S+) {unit}$", text, re.M)[1])
+    assert printed == pytest.approx(p0 / size, rel=1e-3)
+
+
 def test_rounding_errors_of_a_threshold_are_printed_as_0():
     """At 5 degrees (dimensionless 31) the whole contact slides."""
     text = str(microslip.predict("bore", **SLOW | {"amplitude": "5 deg"}))
