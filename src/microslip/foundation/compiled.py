@@ -6,8 +6,7 @@ by Numba's settings and by a listener to Numba's events:
 - Numba notices an edit of the file of a function, but not an edit of another file that the function
   uses.  So the name of the folder contains a digest of all kernels and of what they import.
 - Numba raises an error for a folder that is read-only or full.  So the folder is checked once.  If
-  it is not usable, another folder is used, or compiled code is not stored.  If storing fails later,
-  the code is used anyway.
+  it is not usable, another folder is used, or compiled code is not stored.
 - Numba raises an error for a damaged file.  So the folder contains a list of checksums, which is
   written after each compilation.  At the start of a process, other files are removed.
 - Two processes that compile one function at the same time can mix up the codes of its signatures.
@@ -31,7 +30,7 @@ from typing import IO
 
 import numba
 import scipy
-from numba.core import caching, dispatcher, event
+from numba.core import caching, event
 from platformdirs import user_cache_path
 
 from microslip.foundation.errors import CacheError, InputError
@@ -90,18 +89,6 @@ def _report(problems: list[str], remedy: str = "each process compiles it again")
         os.environ[REPORTED] = "1"
         line = f"compiled code cannot be stored in {' or '.join(problems)}; {remedy}"
         print(f"microslip: {line}; NUMBA_CACHE_DIR names another folder", file=sys.stderr)
-
-
-class Store(caching.FunctionCache):
-    """Numba's cache of a function.  A folder that cannot be written to does not fail a call."""
-
-    def save_overload(self, sig: object, data: object) -> None:
-        """Store the compiled code of a signature, or report the folder and use the code anyway."""
-        try:
-            super().save_overload(sig, data)
-        except OSError as error:
-            self.disable()
-            _report([f"{FOLDER} ({error.strerror})"])
 
 
 class Locator(getattr(caching, "UserProvidedCacheLocator", object)):  # type: ignore[misc]
@@ -202,19 +189,13 @@ def kernel(function: Callable | None = None, **options: object) -> Callable:
     """
     if function is None:
         return lambda function: kernel(function, **options)
-    settings = [
-        (numba.config, "CACHE_DIR", str(FOLDER)),
-        (numba.config, "CACHE_LOCATOR_CLASSES", f"{__name__}.Locator"),
-        (dispatcher, "FunctionCache", Store),
-    ]
-    before = [(place, name, getattr(place, name, "")) for place, name, _ in settings]
-    for setting in settings:
-        setattr(*setting)
+    config = numba.config
+    before = config.CACHE_DIR, getattr(config, "CACHE_LOCATOR_CLASSES", "")
+    config.CACHE_DIR, config.CACHE_LOCATOR_CLASSES = str(FOLDER), f"{__name__}.Locator"
     try:
         return numba.njit(cache=FOLDER is not None, **(OPTIONS | options))(function)
     finally:
-        for setting in before:
-            setattr(*setting)
+        config.CACHE_DIR, config.CACHE_LOCATOR_CLASSES = before
 
 
 def _import_blas() -> None:
