@@ -5,9 +5,16 @@ Complex notation: q = lateral + i forward.
 
 import numpy as np
 import pytest
+from scipy.special import ellipe, ellipkm1
 
 from microslip.contact.contact import forces
-from microslip.contact.influence import coupling_kernels, ring_influence, toroidal_kernels
+from microslip.contact.influence import (
+    coupling_kernels,
+    elliptic_integrals,
+    modes_for,
+    ring_influence,
+    toroidal_kernels,
+)
 from microslip.contact.modes import PolarContact
 from microslip.contact.rings import make_rings
 from microslip.theory import hertz
@@ -54,17 +61,31 @@ def coupling_mean(m, r, s):
 
 def both_kernels(r, s, count=33):
     """Compiled kernels (G_0 .., C_1 ..), with enough terms for the downward recurrence."""
-    torus, pair = np.empty(count + 2 + int(36 / abs(np.log(s / r)))), np.empty(count)
-    toroidal_kernels(r, s, torus)
-    coupling_kernels(r, s, torus, pair)
+    torus, pair = np.empty(modes_for(r, s, count)), np.empty(count)
+    toroidal_kernels(r, s, integrals(r, s), len(torus), torus)
+    coupling_kernels(r, s, torus, count, pair)
     return torus, pair
+
+
+def integrals(r, s):
+    """K and E for the complementary modulus |r - s| / (r + s)."""
+    square = (abs(r - s) / (r + s)) ** 2
+    return ellipkm1(square), ellipe(1 - square)
+
+
+def test_elliptic_integrals():
+    moduli = np.geomspace(1e-12, 1, 50)
+    for kc in (moduli, moduli[40:]):  # the number of steps depends on the smallest modulus
+        computed = np.empty((2, len(kc)))
+        elliptic_integrals(kc, *computed)
+        assert computed == pytest.approx(np.array([ellipkm1(kc**2), ellipe(1 - kc**2)]), rel=1e-12)
 
 
 @pytest.mark.parametrize(("r", "s"), RADII)
 def test_toroidal_kernels_are_angular_means(r, s):
     for count in (1, 2, 5, 40):  # the recurrence depends on the count
         kernels = np.empty(count)
-        toroidal_kernels(r, s, kernels)
+        toroidal_kernels(r, s, integrals(r, s), count, kernels)
         expected = [toroidal_mean(m, r, s) for m in range(count)]
         assert kernels == pytest.approx(expected, rel=1e-9, abs=1e-13)
 

@@ -25,12 +25,17 @@ import numpy as np
 from microslip.foundation.compiled import kernel
 from microslip.theory.hertz import G_STAR
 
+EPSILON = float(np.finfo(float).eps)
 ACCURACY = 1e-10
 """Relative accuracy of the kernels, much better than the accuracy of their averages over rings."""
-MOST_GROWTH = np.log(ACCURACY / np.finfo(float).eps)
+MOST_GROWTH = np.log(ACCURACY / EPSILON)
 """Logarithm of the largest growth of rounding errors in an upward recurrence."""
+HALF_PRECISION = np.sqrt(EPSILON)
+"""Relative difference of two numbers whose arithmetic and geometric means are equal to rounding."""
 DECAY = -np.log(ACCURACY)
 """Logarithm of the decay after which a downward recurrence does not depend on its start value."""
+MOST_MODES = 1 + int(np.ceil(0.5 * DECAY))
+"""See modes_for."""
 OUTER_POINTS = 8
 INNER_POINTS = 12
 CLUSTER_POWER = 4
@@ -65,35 +70,44 @@ class Averaging(NamedTuple):
 
 
 @kernel
-def _elliptic_ke(kc: float) -> tuple[float, float]:
-    """Complete elliptic integrals (K, E) for the complementary modulus kc, by the
-    arithmetic-geometric mean."""
-    a, b = 1.0, kc
-    c2 = 1.0 - kc * kc
-    total, weight = 0.5 * c2, 0.5
-    for _ in range(40):
-        c = 0.5 * (a - b)
-        a, b = 0.5 * (a + b), np.sqrt(a * b)
+def elliptic_integrals(kc: np.ndarray, big_k: np.ndarray, big_e: np.ndarray) -> None:
+    """Fill K and E, the complete elliptic integrals for the complementary moduli kc, shape (n,).
+
+    The arithmetic-geometric mean converges quadratically, and most slowly for the smallest kc.  So
+    all of them take the same number of steps, in loops that the compiler turns into vector
+    instructions.
+    """
+    large, small, steps = 1.0, kc.min(), 0
+    while large - small > HALF_PRECISION * large:
+        large, small = 0.5 * (large + small), np.sqrt(large * small)
+        steps += 1
+    a, b = np.ones(len(kc)), kc.copy()
+    for q in range(len(kc)):
+        big_e[q] = 0.5 - 0.5 * kc[q] * kc[q]
+    weight = 0.25
+    for _ in range(steps):
         weight *= 2.0
-        total += weight * c * c
-        if c <= 1e-16 * a:
-            break
-    big_k = 0.5 * np.pi / a
-    return big_k, big_k * (1.0 - total)
+        for q in range(len(kc)):
+            big_e[q] += 0.5 * weight * (a[q] - b[q]) * (a[q] - b[q])
+            a[q], b[q] = 0.5 * (a[q] + b[q]), np.sqrt(a[q] * b[q])
+    for q in range(len(kc)):
+        big_k[q] = np.pi / (a[q] + b[q])
+        big_e[q] = big_k[q] * (1.0 - big_e[q])
 
 
 @kernel
-def toroidal_kernels(r: float, s: float, out: np.ndarray) -> None:
-    """Fill out[m] = G_m(r, s) = Integral J_m(k r) J_m(k s) dk for m = 0 .. len(out) - 1.
+def toroidal_kernels(
+    r: float, s: float, integrals: tuple[float, float], n: int, out: np.ndarray
+) -> None:
+    """Fill out[m] = G_m(r, s) = Integral J_m(k r) J_m(k s) dk for m = 0 .. n - 1.
 
-    The radii r and s must be positive and different.  G_m is Q_{m-1/2}(chi) / (pi sqrt(r s)) with
-    chi = (r^2 + s^2) / (2 r s).  Q is the decaying solution of a three-term recurrence in m.  An
-    upward recurrence loses accuracy if m times the decay rate is large.  In this case, ratios are
-    computed by a downward recurrence (Miller's method).
+    The radii r and s must be positive and different.  `integrals` are K and E for the complementary
+    modulus |r - s| / (r + s).  G_m is Q_{m-1/2}(chi) / (pi sqrt(r s)) with chi = (r^2 + s^2) /
+    (2 r s).  Q is the decaying solution of a three-term recurrence in m.  An upward recurrence
+    loses accuracy if m times the decay rate is large.  In this case, ratios are computed by a
+    downward recurrence (Miller's method).
     """
-    n = len(out)
-    kc = abs(r - s) / (r + s)
-    big_k, big_e = _elliptic_ke(kc)
+    big_k, big_e = integrals
     out[0] = 2.0 * big_k / (np.pi * (r + s))
     if n == 1:
         return
@@ -118,18 +132,26 @@ def toroidal_kernels(r: float, s: float, out: np.ndarray) -> None:
 
 
 @kernel
-def coupling_kernels(r: float, s: float, toroidal: np.ndarray, out: np.ndarray) -> None:
-    """Fill out[j] = C_{j+1}(r, s) = Integral J_{j+1}(k r) J_{j-1}(k s) dk, j = 0 .. len(out) - 1.
+def modes_for(r: float, s: float, n: int) -> int:
+    """Number of values G_m(r, s) for `n` values C_m: n + 2 if the upward recurrence is stable,
+    otherwise more, but at most MOST_MODES (n + 2)."""
+    growth = np.log(s / r)
+    return n + 2 if (n + 1) * growth < 2.0 else n + 3 + int(DECAY / growth)
 
-    `toroidal` contains G_m(r, s) for m = 0 .. len(toroidal) - 1 with len(toroidal) > len(out).
+
+@kernel
+def coupling_kernels(r: float, s: float, toroidal: np.ndarray, n: int, out: np.ndarray) -> None:
+    """Fill out[j] = C_{j+1}(r, s) = Integral J_{j+1}(k r) J_{j-1}(k s) dk for j = 0 .. n - 1.
+
+    `toroidal` contains at least `modes_for(r, s, n)` values G_m(r, s).
     Multiplication of e^{2 i alpha}/|z-z'| by conj(z - z') gives the recurrence r C_m - s C_{m-1} =
     r G_{m-2} - s G_{m-1}, with C_1 = -G_1.  The upward recurrence is stable if s < r or if (s/r)^m
     is of order one.  Otherwise the recurrence runs downward from an index at which C is negligible.
     Modes below 1 follow from C_{2-m}(r, s) = C_m(s, r).
     """
-    n = len(out)
     out[0] = -toroidal[1]
-    if s <= r or (n + 1) * np.log(s / r) < 2.0:
+    top = modes_for(r, s, n)
+    if top == n + 2:
         q = s / r
         for j in range(1, n):
             m = j + 1
@@ -137,7 +159,7 @@ def coupling_kernels(r: float, s: float, toroidal: np.ndarray, out: np.ndarray) 
         return
     q = r / s
     value = 0.0
-    for m in range(len(toroidal), 1, -1):
+    for m in range(top, 1, -1):
         # value is C_m at the start of the loop body and C_{m-1} at its end
         if m - 1 < n:
             out[m - 1] = value
@@ -145,52 +167,26 @@ def coupling_kernels(r: float, s: float, toroidal: np.ndarray, out: np.ndarray) 
 
 
 @kernel
-def mode_kernels(
-    r: float, s: float, n_modes: int, coupled: bool, torus: np.ndarray, pair: np.ndarray
-) -> np.ndarray:
-    """Set torus[m] = G_m and, if coupled, pair[j] = C_{j+1}.
+def _points_of_pair(averaging: Averaging, i: int, j: int, points: np.ndarray) -> int:
+    """Fill `points` with radii on ring i (outer rule), radii on ring j (inner rule), and weights,
+    and return the number of points.
 
-    Returns `torus`, or a larger array if `torus` was too short.
+    Weights contain the shape of the traction on each ring, normalised to Integral shape r dr = 1.
     """
-    top = n_modes
-    if coupled:
-        top = n_modes + 2
-        ratio = abs(np.log(s / r))
-        if s > r and (n_modes + 1) * ratio >= 2.0:
-            top = n_modes + 2 + int(DECAY / ratio)
-        if top > len(torus):
-            torus = np.empty(top)
-    view = torus[:top]
-    toroidal_kernels(r, s, view)
-    if coupled:
-        coupling_kernels(r, s, view, pair)
-    return torus
-
-
-@kernel
-def _add_pair(averaging: Averaging, i: int, j: int, near: np.ndarray, far: np.ndarray) -> None:
-    """Average the kernels over ring i (outer rule) and ring j (inner rule).
-
-    Ring i must be the narrower one, because only the points of the inner rule are clustered where
-    the rings are closest.  Adds the averages of G_m to near[:, i, j], and the averages of C_{m+1}
-    to far[:, i, j] and far[:, j, i].  Averages are weighted with the shape of the traction on each
-    ring, normalised to Integral shape r dr = 1.
-    """
-    psi, coupled = averaging.psi, averaging.coupled
+    psi = averaging.psi
     a0, a1 = psi[i], psi[i + 1]
     b0, b1 = psi[j], psi[j + 1]
     apart = max(a0 - b1, b0 - a1) >= 0.999 * max(a1 - a0, b1 - b0)
     x_out, w_out = averaging.apart if apart else averaging.outer
     x_in, w_in = averaging.apart if apart else averaging.inner
-    n_modes = len(near)
     norm_i = 0.0
-    for p in range(len(x_out)):
-        norm_i += (a1 - a0) * w_out[p] * _weight(a0 + (a1 - a0) * x_out[p])
     norm_j = (np.cos(b0) ** 3 - np.cos(b1) ** 3) / 3.0
-    torus, pair = np.empty(n_modes + 2), np.empty(n_modes)
+    count = 0
     for p in range(len(x_out)):
         at = a0 + (a1 - a0) * x_out[p]
-        weight_out = (a1 - a0) * w_out[p] * _weight(at) / norm_i
+        r = np.sin(at)
+        weight = w_out[p] * _weight(r)
+        norm_i += weight
         # the inner ring is divided at the point of closest approach
         cut = min(max(at, b0), b1)
         for end in (b0, b1):
@@ -198,34 +194,65 @@ def _add_pair(averaging: Averaging, i: int, j: int, near: np.ndarray, far: np.nd
             if length == 0.0:
                 continue
             for q in range(len(x_in)):
-                chi = cut + length * x_in[q]
-                w = weight_out * abs(length) * w_in[q] * _weight(chi) / norm_j
-                torus = mode_kernels(np.sin(at), np.sin(chi), n_modes, coupled, torus, pair)
-                for m in range(n_modes):
-                    near[m, i, j] += w * torus[m]
-                    if coupled:
-                        far[m, i, j] += w * pair[m]
-                if coupled and i != j:
-                    torus = mode_kernels(np.sin(chi), np.sin(at), n_modes, coupled, torus, pair)
-                    for m in range(n_modes):
-                        far[m, j, i] += w * pair[m]
+                s = np.sin(cut + length * x_in[q])
+                points[0, count], points[1, count] = r, s
+                points[2, count] = weight / norm_j * abs(length) * w_in[q] * _weight(s)
+                count += 1
+    for q in range(count):
+        points[2, q] /= norm_i
+    return count
 
 
 @kernel
-def _weight(psi: float) -> float:
+def _add_pair(
+    averaging: Averaging, i: int, j: int, points: np.ndarray, near: np.ndarray, far: np.ndarray
+) -> None:
+    """Average the kernels over ring i (outer rule) and ring j (inner rule).
+
+    Ring i must be the narrower one, because only the points of the inner rule are clustered where
+    the rings are closest.  Adds the averages of G_m to near[:, i, j], and the averages of C_{m+1}
+    to far[:, i, j] and far[:, j, i].  `points` is memory for the points of the quadrature.
+    """
+    count = _points_of_pair(averaging, i, j, points)
+    radii, others, weights = points[0, :count], points[1, :count], points[2, :count]
+    moduli, big_k, big_e = points[3, :count], points[4, :count], points[5, :count]
+    for q in range(count):
+        apart = abs(radii[q] - others[q]) / (radii[q] + others[q])
+        moduli[q] = max(apart, EPSILON)  # near the edge, radii may be equal to rounding
+    elliptic_integrals(moduli, big_k, big_e)
+    n, coupled = len(near), averaging.coupled
+    torus, pair = np.empty(MOST_MODES * (n + 2)), np.empty(n)
+    for q in range(count):
+        r, s, integrals = radii[q], others[q], (big_k[q], big_e[q])
+        toroidal_kernels(r, s, integrals, modes_for(r, s, n) if coupled else n, torus)
+        for m in range(n):
+            near[m, i, j] += weights[q] * torus[m]
+        if coupled:
+            coupling_kernels(r, s, torus, n, pair)
+            for m in range(n):
+                far[m, i, j] += weights[q] * pair[m]
+        if coupled and i != j:
+            toroidal_kernels(s, r, integrals, modes_for(s, r, n), torus)
+            coupling_kernels(s, r, torus, n, pair)
+            for m in range(n):
+                far[m, j, i] += weights[q] * pair[m]
+
+
+@kernel
+def _weight(r: float) -> float:
     """Shape of the Hertz friction bound times r dr/dpsi, at r = sin psi."""
-    c = np.cos(psi)
-    return np.sin(psi) * c * c
+    return r * (1.0 - r) * (1.0 + r)
 
 
 @kernel
 def _all_pairs(averaging: Averaging, near: np.ndarray, far: np.ndarray) -> None:
     """Fill the arrays `near` and `far`, (n_modes, rings, rings), which must be zero on entry."""
     width = averaging.psi[1:] - averaging.psi[:-1]
+    points = np.empty((6, 2 * len(averaging.outer[0]) * len(averaging.inner[0])))
     for one in range(len(width)):
         for other in range(one + 1):
             i, j = (one, other) if width[one] < width[other] else (other, one)
-            _add_pair(averaging, i, j, near, far)
+            _add_pair(averaging, i, j, points, near, far)
             for m in range(len(near)):  # an assignment of arrays would take a second to compile
                 near[m, j, i] = near[m, i, j]
 
