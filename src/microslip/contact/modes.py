@@ -24,7 +24,7 @@ import numpy as np
 
 from microslip.contact.contact import LATERAL, MIRROR, TORQUE
 from microslip.contact.influence import ring_influence
-from microslip.contact.ring_contact import Growth, RingContact, load_on_rings
+from microslip.contact.ring_contact import Growth, RingContact, interpolated, load_on_rings
 from microslip.contact.rings import Focus, Rings, make_rings
 from microslip.scene.hertz import HERTZ
 from microslip.scene.pressure import Pressure
@@ -205,7 +205,7 @@ class PolarContact(RingContact):
     ):
         if angles < 2 or angles % 2:
             raise ValueError(f"angles = {angles}: allowed is an even number of at least 2")
-        self.rings = rings = make_rings(cells, focus, pressure)
+        rings = make_rings(cells, focus, pressure)
         self.rotates, self.whole, rows = rotates, whole, 2 * angles if whole else angles
         self._theta = theta = (np.arange(rows) + 0.5) * np.pi / angles
         symmetry = WHOLE if whole else ROTATION if rotates else TRANSLATION
@@ -220,38 +220,29 @@ class PolarContact(RingContact):
             stiffness=pressure.stiffness,
             waves=waves,
             growth=growth,
+            rings=rings,
         )
         self.mirror_rows = np.roll(np.arange(rows)[::-1], angles if whole else 0)
         self.resultants = np.ones(3)
         if not whole:  # the other half of the disc cancels this force
             self.resultants[LATERAL if rotates else TORQUE] = 0.0
-        self._made_of = focus, pressure
 
     def prolonged(self, state: np.ndarray) -> np.ndarray | None:
         """Interpolate tractions (2, angles, cells) from a coarser mesh to the points of this
         contact.
 
-        Tractions are interpolated as fractions of the friction bound.  Returns None for
-        translations, whole discs, changing loads and fewer than FEWEST_PROLONGED rings.
+        Returns None for translations, whole discs, changing loads and fewer than FEWEST_PROLONGED
+        rings.
         """
-        few = len(self.rings.radius) < FEWEST_PROLONGED
-        if few or self._joins is not None or not self.rotates or self.whole:
+        few = len(self.bound) < FEWEST_PROLONGED
+        on_rings = None if few or not self.rotates or self.whole else super().prolonged(state)
+        if on_rings is None:
             return None
-        focus, pressure = self._made_of
-        rings, count = make_rings(state.shape[2], focus, pressure), state.shape[1]
-        share = state / rings.bound
         # extend the angles beyond the lateral axis, across which forward tractions are even
-        beyond = share[:, [0, -1]] * MIRROR
-        share = np.concatenate([beyond[:, :1], share, beyond[:, 1:]], axis=1)
+        beyond, count = on_rings[:, [0, -1]] * MIRROR, state.shape[1]
+        extended = np.concatenate([beyond[:, :1], on_rings, beyond[:, 1:]], axis=1)
         angles = (np.arange(-1, count + 1) + 0.5) / count
-        share = _interpolated(self._theta / np.pi, angles, share, axis=1)
-        return _interpolated(self.rings.radius, rings.radius, share, axis=2) * self.bound
-
-
-def _interpolated(x: np.ndarray, nodes: np.ndarray, values: np.ndarray, axis: int) -> np.ndarray:
-    """Interpolate linearly along an axis, from values at the nodes to the points x.  Values are
-    constant beyond the nodes."""
-    return np.apply_along_axis(lambda line: np.interp(x, nodes, line), axis, values)
+        return interpolated(self._theta / np.pi, angles, extended.swapaxes(1, 2)).swapaxes(1, 2)
 
 
 polar_contact = lru_cache(maxsize=32)(PolarContact)

@@ -15,7 +15,7 @@ from microslip.contact.influence import ring_influence
 from microslip.contact.march import march, strain_energy
 from microslip.contact.operators import multiply, padded
 from microslip.contact.path import Path
-from microslip.contact.rings import Focus, make_rings
+from microslip.contact.rings import Focus, Rings, make_rings
 from microslip.contact.splitting import PENALTIES, best_penalty
 from microslip.scene.hertz import HERTZ
 from microslip.scene.pressure import Pressure
@@ -28,6 +28,14 @@ def load_on_rings(pressure: Pressure, edges: np.ndarray, depth: np.ndarray) -> n
     radius is a and the load is F_z.
     """
     return pressure.load(edges, pressure.radius(depth)[:, None])
+
+
+def interpolated(x: np.ndarray, nodes: np.ndarray, values: np.ndarray) -> np.ndarray:
+    """Interpolate linearly along the last axis, from values at the nodes to the points x.  Values
+    are constant beyond the nodes."""
+    after = np.clip(np.searchsorted(nodes, x), 1, len(nodes) - 1)
+    share = np.clip((x - nodes[after - 1]) / np.diff(nodes)[after - 1], 0.0, 1.0)
+    return values[..., after - 1] * (1.0 - share) + values[..., after] * share
 
 
 class Growth(NamedTuple):
@@ -71,6 +79,8 @@ class RingContact(Contact):
         operators.multiply.  The matrices are not transposed, and their columns are not padded.
     growth : Growth or None
         Scaling of the contact with the depth; None if the normal load is constant.
+    rings : Rings or None
+        Mesh of the rings; None for springs.
     """
 
     sticks = True
@@ -91,8 +101,10 @@ class RingContact(Contact):
         stiffness: float,
         waves: tuple[np.ndarray, np.ndarray, np.ndarray],
         growth: Growth | None = None,
+        rings: Rings | None = None,
     ):
         self.influence, self.bound, self.growth = influence, bound, growth
+        self.rings = rings
         self.area, self._waves, self.stiffness = area, waves, float(stiffness)
         self.forward_position, self.lateral_position = positions
         self.angles = len(self.forward_position)
@@ -148,6 +160,15 @@ class RingContact(Contact):
         scratch = np.empty((2, sectors * waves, 2 * field.shape[1] // (sectors * rows)))
         multiply(self.operators, 0, field, image, scratch)
         return self.unpack(image)
+
+    def prolonged(self, state: np.ndarray) -> np.ndarray | None:
+        """Interpolate tractions from a coarser mesh to the rings of this contact, as fractions of
+        the friction bound.  Returns None for springs and for changing loads."""
+        if self.rings is None or self._joins is not None:
+            return None
+        coarse = self.rings.with_count(state.shape[2])
+        share = state / coarse.bound
+        return interpolated(self.rings.radius, coarse.radius, share) * self.bound
 
     def mirrored(self, state: np.ndarray) -> np.ndarray:
         """Return the mirror image of a state under lateral -> -lateral, which negates lateral
@@ -284,7 +305,7 @@ class RadialContact(RingContact):
 
     Parameters
     ----------
-    influence, bound, weight, growth
+    influence, bound, weight, growth, rings
         See RingContact; `weight` is the area of the rings.
     stiffness : float or None
         Stiffness of the whole contact; None to compute it from the matrix.
@@ -299,6 +320,7 @@ class RadialContact(RingContact):
         weight: np.ndarray,
         stiffness: float | None = None,
         growth: Growth | None = None,
+        rings: Rings | None = None,
     ):
         weighted = weight[:, None] * influence
         weighted = 0.5 * (weighted + weighted.T)
@@ -307,7 +329,14 @@ class RadialContact(RingContact):
         one, positions = np.ones((2, 1, 1)), np.zeros((2, 1, len(bound)))
         waves = one, one, (weighted / weight[:, None])[None]
         super().__init__(
-            influence, bound, weight, positions, stiffness=stiffness, waves=waves, growth=growth
+            influence,
+            bound,
+            weight,
+            positions,
+            stiffness=stiffness,
+            waves=waves,
+            growth=growth,
+            rings=rings,
         )
 
     @staticmethod
@@ -322,7 +351,7 @@ class RadialContact(RingContact):
         rings = make_rings(cells, focus, pressure)
         near, _ = ring_influence(rings.psi, 1, False, modulus=pressure.G_star)
         growth = Growth(pressure, np.sin(rings.psi), load_on_rings, 1, 2)
-        return RadialContact(near[0], rings.bound, rings.area, pressure.stiffness, growth)
+        return RadialContact(near[0], rings.bound, rings.area, pressure.stiffness, growth, rings)
 
 
 NO_DRIVE = np.zeros(6), np.zeros(0)

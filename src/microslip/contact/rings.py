@@ -7,8 +7,9 @@ Contacts with a hole are refined at the edge of the hole in the same way.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from functools import lru_cache, partial
 from typing import NamedTuple
 
 import numpy as np
@@ -49,14 +50,18 @@ class Rings:
     radius : np.ndarray, shape (n,)
         Mean lever arm of a traction with the shape of the friction bound.  It makes the torque at
         full slip exact.
+    with_count : callable
+        with_count(count) -> mesh with another number of rings and the same focus and pressure.
     """
 
     psi: np.ndarray
     area: np.ndarray
     bound: np.ndarray
     radius: np.ndarray
+    with_count: Callable[[int], Rings]
 
 
+@lru_cache(maxsize=32)
 def make_rings(count: int, focus: Focus | float | None = None, pressure: Pressure = HERTZ) -> Rings:
     """Create a mesh of rings that is graded towards a focus.
 
@@ -81,7 +86,7 @@ def make_rings(count: int, focus: Focus | float | None = None, pressure: Pressur
     if count < 2:
         raise InputError("cells", count, "allowed is a whole number of at least 2 rings")
     if focus is None:
-        return _of_edges(np.linspace(0.0, np.pi / 2, count + 1), pressure)
+        return _of_edges(np.linspace(0.0, np.pi / 2, count + 1), focus, pressure)
     radii, strength = _as_focus(focus)
     # rings begin at the edge of a hole, if there is one
     hole = pressure.inner**2
@@ -90,16 +95,18 @@ def make_rings(count: int, focus: Focus | float | None = None, pressure: Pressur
         allowed = f"allowed are several radii between {pressure.inner:g} and 1, ends not included"
         raise InputError("focus", radii, allowed)
     places = np.arcsin(np.unique(inside)[: max(count // 2, 1)])
-    return _of_edges(_focused(count, places, strength), pressure)
+    return _of_edges(_focused(count, places, strength), focus, pressure)
 
 
-def _of_edges(psi: np.ndarray, pressure: Pressure) -> Rings:
+def _of_edges(psi: np.ndarray, focus: Focus | float | None, pressure: Pressure) -> Rings:
     """Create the Rings from edges for a contact without a hole.  If the contact has a hole, the
     edges are mapped to the ring outside the hole."""
     if pressure.inner > 0.0:
         hole = pressure.inner**2
         psi = np.arcsin(np.sqrt(hole + (1.0 - hole) * np.sin(psi) ** 2))
-    return Rings(psi, np.pi * np.diff(np.sin(psi) ** 2), *pressure.ring_means(psi))
+    area, (bound, radius) = np.pi * np.diff(np.sin(psi) ** 2), pressure.ring_means(psi)
+    with_count = partial(make_rings, focus=focus, pressure=pressure)
+    return Rings(psi, area, bound, radius, with_count)
 
 
 def _as_focus(focus: Focus | float) -> Focus:

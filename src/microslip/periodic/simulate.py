@@ -237,6 +237,7 @@ class _Search:
         self.tolerance = relative * self.unit
         self.step_tolerance = min(share, MARCH_SHARE / resolution.steps) * self.tolerance
         self.static_force = self.least = np.nan
+        self.limit: np.ndarray | float = 0.0
         self.searches: list[PeriodicState] = []
         self.earlier: list[Run] = []
 
@@ -275,6 +276,7 @@ class _Search:
             state=periodic.start,
             place=march.body[0] if len(march.body) else AT_REST,
             static_force=self.static_force,
+            limit=self.limit,
         )
 
     def map(self, start: Start) -> PeriodMap:
@@ -296,32 +298,40 @@ class _Search:
         if self.problem.straight or not self.contact.sticks:
             self.static_force = 0.0
         problem, contact, method = self.problem, self.contact, self.settings.method
+        slipping, near = forward_slip(contact), None
         if guess is not None and guess.state is not None and guess.converged:
-            near = guess.state.shape != (2, *contact.forward_position.shape)
-            start = contact.prolonged(guess.state) if near else guess.state
-            if start is not None:
-                self.static_force = guess.static_force
-                yield Start(project(start, contact.bound) if near else start, near=near)
-        slipping = forward_slip(contact)
+            self.static_force, limit = guess.static_force, guess.limit
+            if guess.state.shape == slipping.shape:
+                self.limit = limit
+                yield Start(guess.state)
+            else:  # the static limit, which has kinks, is computed on each mesh
+                near = contact.prolonged(guess.state - limit)
+        start, rise = slipping, problem.drift ** (2.0 / 3.0)
+        if method.prepared and contact.sticks and problem.straight:
+            line = limit_on_a_line(contact, problem.oscillation, self.step_tolerance)
+            if not unsolved(line.march, self.step_tolerance):
+                self.static_force = line.force
+            self.limit = line.shift + line.oscillating
+            start = self.limit + min(SLOW_EXCESS * rise, LARGEST_EXCESS) * slipping
+        if near is not None:
+            yield Start(project(near + self.limit, contact.bound), near=True)
+        if (
+            method.prepared
+            and contact.sticks
+            and not problem.straight
+            and problem.drift < SLOW_LOOP
+        ):
+            # the limit is computed with reduced accuracy, according to the rise of friction
+            # above it, so its force only sets `least`
+            rest, tolerance = replace(problem, velocity=0.0), max(rise, self.tolerance)
+            path = path_of(rest, contact, self.resolution.steps, method.integrator)
+            loop = limit_on_a_loop(contact, rest, path, tolerance, STEP_SHARE * tolerance)
+            assert loop.periodic is not None  # true for a loop
+            self.searches.append(loop.periodic)
+            self.least = loop.force
+            # a factor of SLOW_EXCESS would prevent convergence at the smallest drifts
+            start = loop.oscillating + loop.shift + rise * slipping
         if method.prepared:
-            start, rise = slipping, problem.drift ** (2.0 / 3.0)
-            if contact.sticks and problem.straight:
-                limit = limit_on_a_line(contact, problem.oscillation, self.step_tolerance)
-                if not unsolved(limit.march, self.step_tolerance):
-                    self.static_force = limit.force
-                excess = min(SLOW_EXCESS * rise, LARGEST_EXCESS)
-                start = limit.shift + limit.oscillating + excess * slipping
-            elif contact.sticks and problem.drift < SLOW_LOOP:
-                # the limit is computed with reduced accuracy, according to the rise of friction
-                # above it, so its force only sets `least`
-                rest, tolerance = replace(problem, velocity=0.0), max(rise, self.tolerance)
-                path = path_of(rest, contact, self.resolution.steps, method.integrator)
-                limit = limit_on_a_loop(contact, rest, path, tolerance, STEP_SHARE * tolerance)
-                assert limit.periodic is not None  # true for a loop
-                self.searches.append(limit.periodic)
-                self.least = limit.force
-                # a factor of SLOW_EXCESS would prevent convergence at the smallest drifts
-                start = limit.oscillating + limit.shift + rise * slipping
             yield Start(project(start, contact.bound))
         yield Start(slipping)
 
