@@ -30,8 +30,8 @@ from microslip.scene.hertz import HERTZ
 from microslip.scene.pressure import Pressure
 
 FEWEST_PROLONGED = 16
-"""Smallest number of rings at which tractions from a coarser mesh are a better initial guess than
-the static limit."""
+"""Smallest number of rings at which, for rotations, tractions from a coarser mesh are a better
+initial guess than the static limit."""
 SHARED_MODES = (9, 17, 33)
 """Possible numbers of modes with averaged kernels.  Runs at 4, 6 and 8 angles share the same
 averages."""
@@ -231,15 +231,16 @@ class PolarContact(RingContact):
         """Interpolate tractions (2, angles, cells) from a coarser mesh to the points of this
         contact.
 
-        Returns None for translations, whole discs, changing loads and fewer than FEWEST_PROLONGED
+        Returns None for whole discs, changing loads and, for rotations, fewer than FEWEST_PROLONGED
         rings.
         """
-        few = len(self.bound) < FEWEST_PROLONGED
-        on_rings = None if few or not self.rotates or self.whole else super().prolonged(state)
+        few = self.rotates and len(self.bound) < FEWEST_PROLONGED
+        on_rings = None if few or self.whole else super().prolonged(state)
         if on_rings is None:
             return None
-        # extend the angles beyond the lateral axis, across which forward tractions are even
-        beyond, count = on_rings[:, [0, -1]] * MIRROR, state.shape[1]
+        # extend the angles beyond the lateral axis, across which forward tractions are even, and
+        # lateral tractions odd for a rotation and even for a translation
+        beyond, count = on_rings[:, [0, -1]] * (MIRROR if self.rotates else 1.0), state.shape[1]
         extended = np.concatenate([beyond[:, :1], on_rings, beyond[:, 1:]], axis=1)
         angles = (np.arange(-1, count + 1) + 0.5) / count
         return interpolated(self._theta / np.pi, angles, extended.swapaxes(1, 2)).swapaxes(1, 2)

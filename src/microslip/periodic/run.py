@@ -221,8 +221,8 @@ class Run:
         Position x and rate x' of a driven body at the start of a period, see models.driven_body.
     static_force : float
         Mean forward force of the static limit, also used by other runs; NaN if unknown.
-    limit : np.ndarray or float
-        Tractions of the static limit of a motion on a line, otherwise 0.
+    limit : np.ndarray or None
+        Tractions of the static limit of a motion on a line; None if they are unknown.
     """
 
     values: Mapping[str, float]
@@ -234,7 +234,7 @@ class Run:
     state: np.ndarray | None = None
     place: np.ndarray = field(default_factory=lambda: np.zeros(2))
     static_force: float = np.nan
-    limit: np.ndarray | float = 0.0
+    limit: np.ndarray | None = None
 
     @property
     def converged(self) -> bool:

@@ -237,7 +237,7 @@ class _Search:
         self.tolerance = relative * self.unit
         self.step_tolerance = min(share, MARCH_SHARE / resolution.steps) * self.tolerance
         self.static_force = self.least = np.nan
-        self.limit: np.ndarray | float = 0.0
+        self.limit: np.ndarray | None = None
         self.searches: list[PeriodicState] = []
         self.earlier: list[Run] = []
 
@@ -293,58 +293,64 @@ class _Search:
 
     def prescribed(self, guess: Run | None) -> Iterator[Start]:
         """Initial states at a prescribed velocity, best first."""
-        # for motions on a line a prepared search computes the limit;
-        # for slow loops the limit only sets `least`
-        if self.problem.straight or not self.contact.sticks:
-            self.static_force = 0.0
         problem, contact, method = self.problem, self.contact, self.settings.method
-        slipping, near = forward_slip(contact), None
-        if guess is not None and guess.state is not None and guess.converged:
-            self.static_force, limit = guess.static_force, guess.limit
-            if guess.state.shape == slipping.shape:
-                self.limit = limit
-                yield Start(guess.state)
-            else:  # the static limit, which has kinks, is computed on each mesh
-                near = contact.prolonged(guess.state - limit)
-        start, rise = slipping, problem.drift ** (2.0 / 3.0)
-        if method.prepared and contact.sticks and problem.straight:
-            line = limit_on_a_line(contact, problem.oscillation, self.step_tolerance)
-            if not unsolved(line.march, self.step_tolerance):
-                self.static_force = line.force
-            self.limit = line.shift + line.oscillating
-            start = self.limit + min(SLOW_EXCESS * rise, LARGEST_EXCESS) * slipping
-        if near is not None:
-            yield Start(project(near + self.limit, contact.bound), near=True)
-        if (
-            method.prepared
-            and contact.sticks
-            and not problem.straight
-            and problem.drift < SLOW_LOOP
-        ):
+        if problem.straight or not contact.sticks:
+            self.static_force = 0.0
+        if guess is not None:
+            yield from self._from_run(guess)
+        start = slipping = forward_slip(contact)
+        rise = problem.drift ** (2.0 / 3.0)
+        prepared = method.prepared and contact.sticks
+        if prepared and problem.straight:
+            start = self._find_limit() + min(SLOW_EXCESS * rise, LARGEST_EXCESS) * slipping
+        elif prepared and problem.drift < SLOW_LOOP:
             # the limit is computed with reduced accuracy, according to the rise of friction
             # above it, so its force only sets `least`
             rest, tolerance = replace(problem, velocity=0.0), max(rise, self.tolerance)
             path = path_of(rest, contact, self.resolution.steps, method.integrator)
-            loop = limit_on_a_loop(contact, rest, path, tolerance, STEP_SHARE * tolerance)
-            assert loop.periodic is not None  # true for a loop
-            self.searches.append(loop.periodic)
-            self.least = loop.force
+            limit = limit_on_a_loop(contact, rest, path, tolerance, STEP_SHARE * tolerance)
+            assert limit.periodic is not None  # true for a loop
+            self.searches.append(limit.periodic)
+            self.least = limit.force
             # a factor of SLOW_EXCESS would prevent convergence at the smallest drifts
-            start = loop.oscillating + loop.shift + rise * slipping
+            start = limit.oscillating + limit.shift + rise * slipping
         if method.prepared:
             yield Start(project(start, contact.bound))
         yield Start(slipping)
+
+    def _find_limit(self) -> np.ndarray:
+        """Tractions of the static limit of a motion on a line; also sets `static_force`."""
+        limit = limit_on_a_line(self.contact, self.problem.oscillation, self.step_tolerance)
+        if not unsolved(limit.march, self.step_tolerance):
+            self.static_force = limit.force
+        self.limit = limit.shift + limit.oscillating
+        return self.limit
+
+    def _from_run(self, guess: Run) -> Iterator[Start]:
+        """Initial state from a run, if it converged and its tractions are known or can be
+        interpolated."""
+        contact = self.contact
+        if guess.state is None or not guess.converged:
+            return
+        if guess.state.shape == (2, *contact.forward_position.shape):
+            self.static_force, self.limit = guess.static_force, guess.limit
+            yield Start(guess.state, guess.place, friction=guess.mu)
+            return
+        # the static limit, which has kinks, is computed on each mesh
+        above = guess.state if guess.limit is None else guess.state - guess.limit
+        near = contact.prolonged(above)
+        if near is not None:
+            near = near if guess.limit is None else near + self._find_limit()
+            yield Start(project(near, contact.bound), guess.place, near=True, friction=guess.mu)
 
     def driven(self, guess: Run | None) -> Iterator[Start]:
         """Initial states under a prescribed force or on a spring, best first."""
         contact, problem, slipping = self.contact, self.problem, forward_slip(self.contact)
         for one in self._similar_runs(guess):
-            if one.converged and one.state is not None and one.state.shape == slipping.shape:
-                self.static_force = one.static_force
-                yield Start(one.state, one.place, friction=one.mu)
+            yield from self._from_run(one)
         share = max(self.tolerance, LOOSEST_START) / problem.mean_load
         run = self._earlier_run(replace(problem, drive=None), self.resolution, share)
-        self.static_force = run.static_force
+        self.static_force, self.limit = run.static_force, run.limit
         # tractions at a prescribed velocity, and their mean force over a period
         starts = [(slipping, float(np.sum(contact.weight * slipping[0])))]
         if run.state is not None:
