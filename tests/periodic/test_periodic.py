@@ -11,7 +11,7 @@ from microslip.periodic.discretise import Resolution, contact_of
 from microslip.periodic.search import Goal, PeriodMap, find_periodic_state
 from microslip.periodic.simulate import simulate
 from microslip.scene.named import Bore, Transverse
-from microslip.scene.problem import Problem
+from microslip.scene.problem import Force, Problem, Spring
 from microslip.theory import paper
 
 TOLERANCE = 1e-5
@@ -186,6 +186,28 @@ def test_rings_converge_at_the_ends_of_the_parameters(velocity, amplitude, rings
     ]
     assert all(run.converged and run.periods < 40 for run in runs)
     assert runs[0].mu == pytest.approx(runs[1].mu, abs=1.5e-4)
+
+
+@pytest.mark.parametrize(
+    ("model", "angles", "problem"),
+    [
+        ("radial", 1, Problem(Transverse(), 0.3, 1.5, 0.0)),
+        ("radial", 1, Problem(Transverse(), 1e-6, 0.5, 0.0)),
+        ("radial", 1, Problem(Transverse(), 1e-3, 1.1, 0.0, drive=Spring(0.5))),
+        ("polar", 4, Problem(Transverse(), 0.1, 1.0, 0.3)),
+        ("polar", 4, Problem(Bore(), 0.1, 1.0, 0.0)),
+        ("polar", 4, Problem(Bore(), 0.3, 1.0, 0.0, drive=Force(0.5, mass=0.5))),
+    ],
+    ids=str,
+)
+def test_a_run_of_fewer_rings_as_first_guess_changes_nothing(model, angles, problem):
+    tolerance = 1e-6
+    coarse = simulate(problem, model, Resolution(8, angles, 16), tolerance)
+    fine = model, Resolution(16, angles, 16), tolerance
+    alone, after = simulate(problem, *fine), simulate(problem, *fine, coarse)
+    assert alone.converged and after.converged and after.effort != alone.effort
+    for name, value in alone.values.items():
+        assert after.values[name] == pytest.approx(value, abs=5 * tolerance)
 
 
 def radial_run(velocity, amplitude, rings, steps, tolerance=1e-6, guess=None):
