@@ -296,7 +296,7 @@ def second_attempt(
         else:
             factor = factor**0.5
     result = above if above.converged and at == velocity else first
-    effort = sum((one.effort for one in attempts[1:]), replace(first.effort, retried=1))
+    effort = sum((one.effort for one in attempts[1:]), first.effort._replace(retried=1))
     return replace(result, effort=effort)
 
 

@@ -14,7 +14,7 @@ import time
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from operator import add, sub
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
@@ -29,8 +29,7 @@ if TYPE_CHECKING:
     from microslip.scene.problem import Problem
 
 
-@dataclass(frozen=True)
-class Effort:
+class Effort(NamedTuple):
     """Computational effort of one or several runs; efforts can be added and subtracted.
 
     Attributes
@@ -58,11 +57,11 @@ class Effort:
         """Effort of marches; `unknowns` is the number of unknowns in a step."""
         return Effort(solves, iterations, solves * unknowns, iterations * unknowns)
 
-    def __add__(self, other: Effort) -> Effort:
-        return Effort(*map(add, vars(self).values(), vars(other).values()))
+    def __add__(self, other: Effort) -> Effort:  # type: ignore[override]
+        return Effort(*map(add, self, other))
 
     def __sub__(self, other: Effort) -> Effort:
-        return Effort(*map(sub, vars(self).values(), vars(other).values()))
+        return Effort(*map(sub, self, other))
 
 
 class Spent(SolverError):
@@ -128,7 +127,8 @@ class Metered:
             budget.began = _seconds()
 
     def __getattr__(self, name: str) -> Any:
-        return getattr(self._contact, name)
+        value = vars(self)[name] = getattr(self._contact, name)
+        return value
 
     def march(self, *path: Any, **settings: Any) -> March:
         march = self._contact.march(*path, **settings)

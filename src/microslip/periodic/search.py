@@ -16,7 +16,7 @@ stiffness is the rise of the mean force with the displacement.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import NamedTuple, cast
 
 import numpy as np
@@ -288,7 +288,8 @@ def find_periodic_state(
     pairs, count = np.empty((2, DEPTH + 1, state.size)), 0
     last, forgets, returns, iterations = np.inf, True, 0, 0
     sticking = rate.static_force if np.isnan(rate.least) else rate.least
-    march, best = None, None
+    march = None
+    best: tuple[float, March, np.ndarray, float] | None = None
     for marches in range(1, goal.most_marches + 1):
         march = period_map.march(state, inner, march)
         iterations += march.iterations
@@ -319,11 +320,12 @@ def find_periodic_state(
         converged = solved and near_enough
         if near_enough:  # solve the steps of the next march to the final tolerance
             inner = tightest
-        if converged or best is None or distance < best.distance:
-            start = state[:-2].reshape(period_map.shape)
-            best = PeriodicState(march, start, residual, distance, marches, iterations, converged)
+        if converged or best is None or distance < best[0]:
+            best = distance, march, state, residual
         if converged:
             break
         state = following
     assert best is not None  # there is at least one march
-    return replace(best, marches=marches, iterations=iterations)
+    distance, march, state, residual = best
+    start = state[:-2].reshape(period_map.shape)
+    return PeriodicState(march, start, residual, distance, marches, iterations, converged)

@@ -221,6 +221,8 @@ class _Search:
         self.path = path_of(problem, self.contact, resolution.steps, settings.method.integrator)
         self.interval = self.path.phase[-1] - self.path.phase[0]
         self.rate = self.contact.stiffness * problem.drift
+        # a static limit is computed with an accuracy according to the rise of friction above it
+        self.rise = problem.drift ** (2.0 / 3.0)
         self.unit, self.most_marches = problem.mean_load, MOST_MARCHES
         self.force, self.body = problem.force, None
         if self.force is not None:
@@ -299,29 +301,28 @@ class _Search:
         if guess is not None:
             yield from self._from_run(guess)
         start = slipping = forward_slip(contact)
-        rise = problem.drift ** (2.0 / 3.0)
         prepared = method.prepared and contact.sticks
         if prepared and problem.straight:
-            start = self._find_limit() + min(SLOW_EXCESS * rise, LARGEST_EXCESS) * slipping
+            start = self._find_limit() + min(SLOW_EXCESS * self.rise, LARGEST_EXCESS) * slipping
         elif prepared and problem.drift < SLOW_LOOP:
-            # the limit is computed with reduced accuracy, according to the rise of friction
-            # above it, so its force only sets `least`
-            rest, tolerance = replace(problem, velocity=0.0), max(rise, self.tolerance)
+            # its force only sets `least`
+            rest, tolerance = replace(problem, velocity=0.0), max(self.rise, self.tolerance)
             path = path_of(rest, contact, self.resolution.steps, method.integrator)
             limit = limit_on_a_loop(contact, rest, path, tolerance, STEP_SHARE * tolerance)
             assert limit.periodic is not None  # true for a loop
             self.searches.append(limit.periodic)
             self.least = limit.force
             # a factor of SLOW_EXCESS would prevent convergence at the smallest drifts
-            start = limit.oscillating + limit.shift + rise * slipping
+            start = limit.oscillating + limit.shift + self.rise * slipping
         if method.prepared:
             yield Start(project(start, contact.bound))
         yield Start(slipping)
 
     def _find_limit(self) -> np.ndarray:
         """Tractions of the static limit of a motion on a line; also sets `static_force`."""
-        limit = limit_on_a_line(self.contact, self.problem.oscillation, self.step_tolerance)
-        if not unsolved(limit.march, self.step_tolerance):
+        tolerance = STEP_SHARE * max(self.rise, self.tolerance)
+        limit = limit_on_a_line(self.contact, self.problem.oscillation, tolerance)
+        if not unsolved(limit.march, tolerance):
             self.static_force = limit.force
         self.limit = limit.shift + limit.oscillating
         return self.limit
