@@ -100,25 +100,6 @@ def test_levels_are_added_until_the_error_is_within_the_tolerance():
     assert fake.guesses == [halves[k] if n > 6 else None for k, n in enumerate(cells)]
 
 
-@pytest.mark.parametrize("power", [1.0, 1.25, 1.6, 3.0])
-def test_a_second_opinion_saves_finer_levels(power):
-    """The extrapolated values at n and at the level m before it bound an error of first order."""
-    accepted = 0
-    for size in np.geomspace(1e-2, 10.0, 40):
-        fake = FakeRun(size, power)
-        result = refine(fake, LADDER, 1e-3)
-        mu = {at.cells: one.mu for at, one in zip(fake.asked, fake.runs, strict=True)}
-        n, m = result.cells, fake.asked[-1].cells
-        if result.converged and m < n:
-            limits = [(4.0 * mu[k] - mu[k // 2]) / 3.0 for k in (n, m)]
-            bound = abs(limits[0] - limits[1]) * m / (n - m)
-            assert value_of(result).value == pytest.approx(limits[0], abs=1e-14)
-            assert bound - 1e-12 <= value_of(result).error <= 1e-3
-            assert abs(limits[0] - EXACT) <= value_of(result).error
-            accepted += 1
-    assert accepted
-
-
 def test_distances_and_residuals_are_weighted_as_the_runs_enter_the_value():
     """The weight of a run is the change of the value by a change of the run."""
     fake = FakeRun(0.3)

@@ -20,11 +20,6 @@ two levels, which second order leads to expect.  This is the grid convergence in
 Fluids Eng. 116, 1994) with both pairs of levels.  Two cases show that the last two levels agree by
 chance: the differences change sign, or the observed order is far above 2.  Then the last level is
 not better than the one before, and D is the difference of the first two levels.
-
-An estimate above the tolerance has a second opinion if the differences of the levels decrease.  The
-extrapolated values at n and at the level before it, m = 2 n / 3 or 3 n / 4, share no run.  If their
-errors decrease with the first order or a higher one, the error at n is at most their difference
-times m / (n - m).  This bound replaces the estimate if it is within the tolerance.
 """
 
 from __future__ import annotations
@@ -36,7 +31,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from microslip.answer.answer import UNKNOWN, Answer, Estimate
-from microslip.answer.ladder import LEVELS, LOOSEST, ORDER, RATIO, Ladder
+from microslip.answer.ladder import LOOSEST, ORDER, Ladder
 from microslip.periodic.discretise import Resolution
 from microslip.periodic.run import NAMES, Effort, Run, Spent
 from microslip.scene.problem import Problem
@@ -143,57 +138,42 @@ def refine(
     """
     runs: dict[tuple[int, int], Run] = {}
     goal, answer = tolerance, None
-
-    def run_at(level: int, number: int = 0) -> Run:
-        if (number, level) not in runs:
-            guess = runs.get((0, level if number else level // RATIO))
-            runs[number, level] = run(problems[number], ladder.resolution(level), guess)
-        return runs[number, level]
-
-    def answer_at(level: int, estimates: dict[str, Estimate], order: float) -> Answer:
-        values = _values(ladder, ladder.resolution(level)) | {
-            "finest": runs[0, level],
-            "observed_order": order if math.isfinite(order) else None,
-            "periods": max(one.periods for one in runs.values()),
-            "effort": sum((one.effort for one in runs.values()), Effort()),
-        }
-        reason = next((one.reason for one in runs.values() if one.reason), "")
-        return Answer(problems[0], values | {"periodic": not reason}, estimates, reason)
-
     try:
         for level in ladder.levels(tolerance):
             if level < ladder.levels(goal)[0]:
                 continue
-            three = [run_at(at) for at in (level // RATIO**2, level // RATIO, level)]
-            readings = [run_at(level, number) for number in range(1, len(problems))]
-            settings = ladder, goal, name, energy_unit, drive_work
-            estimates, order = _estimates([*three, *readings], *settings)
-            answer = answer_at(level, estimates, order)
-            one = estimates[name]
-            rest = one.error - one.by_source["resolution"]
-            enough = one.error <= tolerance or rest > LARGEST_REST * tolerance or ladder.imposed
-            if enough or answer.reason:
+            places = [(0, level // 4), (0, level // 2), *((k, level) for k in range(len(problems)))]
+            for number, at in places:
+                if (number, at) not in runs:
+                    guess = runs.get((0, at if number else at // 2))
+                    runs[number, at] = run(problems[number], ladder.resolution(at), guess)
+            estimates, order = _estimates(
+                [runs[place] for place in places], ladder, goal, name, energy_unit, drive_work
+            )
+            reason = next((one.reason for one in runs.values() if one.reason), "")
+            finest = ladder.resolution(level)
+            values = _values(ladder, finest) | {
+                "finest": runs[0, level],
+                "observed_order": order if math.isfinite(order) else None,
+                "periods": max(one.periods for one in runs.values()),
+                "effort": sum((one.effort for one in runs.values()), Effort()),
+                "periodic": not reason,
+            }
+            answer = Answer(problems[0], values, estimates, reason)
+            error = estimates[name].error
+            rest = error - estimates[name].by_source["resolution"]
+            if error <= tolerance or rest > LARGEST_REST * tolerance or ladder.imposed or reason:
                 return answer
-            least, goal = SMALLEST_SHARE * min(goal, LOOSEST), tolerance - rest
-            if not order > 0.0:
-                continue
-            before = LEVELS[LEVELS.index(level) - 1]  # the next level needs these runs as well
-            pair = [run_at(before // RATIO), run_at(before)]
-            apart = abs(one.value - np.dot(WEIGHTS[1:], [other.values[name] for other in pair]))
-            second = max(float(apart) * before / (level - before), least)
-            if second <= goal and not any(other.reason for other in pair):
-                sources = {**one.by_source, "resolution": second}
-                return answer_at(level, estimates | {name: Estimate(one.value, sources)}, order)
+            goal = tolerance - rest
     except Spent as spent:
         if answer is None:
             unknown = dict.fromkeys(NAMES, UNKNOWN)
             values = _values(ladder, Resolution(0, 0, 0)) | {"periodic": False}
             reason = f"{spent}: there is no error estimate yet"
             return Answer(problems[0], values, unknown, reason)
-        return answer.changed(reason=f"{spent}: the error is still {one.error:.1e}")
+        return answer.changed(reason=f"{spent}: the error is still {error:.1e}")
     assert answer is not None  # every ladder has a level
-    cells = ladder.resolution(level).cells
-    return answer.changed(reason=f"the error is still {one.error:.1e} with {cells} cells")
+    return answer.changed(reason=f"the error is still {error:.1e} with {finest.cells} cells")
 
 
 def _values(ladder: Ladder, finest: Resolution) -> dict[str, Any]:
