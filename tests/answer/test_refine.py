@@ -89,7 +89,7 @@ def test_three_levels_are_run_each_from_the_one_before():
 
 
 def test_levels_are_added_until_the_error_is_within_the_tolerance():
-    fake = FakeRun(0.2, power=1.0)
+    fake = FakeRun(3.0)
     result = refine(fake, LADDER, 1e-3)
     assert result.converged and value_of(result).error <= 1e-3
     cells = [resolution.cells for resolution in fake.asked]
@@ -171,7 +171,7 @@ def test_a_run_that_does_not_converge_ends_it(cells):
 
 
 def test_the_finest_level_is_named():
-    fake = FakeRun(1e3, power=1.0)
+    fake = FakeRun(1e3)
     result = refine(fake, LADDER, 1e-4)
     assert not result.converged and result.periodic and fake.asked[-1].cells == 12 * 16
     assert result.reason == f"the error is still {value_of(result).error:.1e} with 192 cells"
