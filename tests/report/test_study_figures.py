@@ -148,7 +148,9 @@ def test_the_atlas_shows_every_outcome(made):
         at = sorted((one.get_y() + 0.5, one.get_x()) for one in squares)
         assert at == sorted((rows[i], j) for i, j in np.argwhere(expected == code))
     notes = {" ".join(text.get_text().split()) for text in axes.texts}
-    assert {*data["axis_label"].values, *data["axis_note"].values} <= notes
+    labels = data["axis_label"].values
+    headings = {f"({chr(97 + k)}) {label}" for k, label in enumerate(labels)}
+    assert {*headings, *data["axis_note"].values} <= notes
     (legend,) = figure.legends
     names = [text.get_text().partition(":")[0] for text in legend.get_texts()]
     assert names == ["converged", "slow", "wrong", "diverged", "blank"]

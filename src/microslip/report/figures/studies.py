@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 from functools import partial
+from string import ascii_lowercase
 
 import matplotlib
 import numpy as np
@@ -297,6 +298,7 @@ def atlas(dataset: xr.Dataset) -> Figure:
     x, y, first = np.arange(len(order) + 1), np.arange(rows + 1), 1
     small: look.Ink = {"fontsize": look.SMALLEST}
     ticks: dict[float, str] = {}
+    letters = iter(ascii_lowercase)
     for own, title, note in zip(blocks, *columns(dataset, "axis_label", "axis_note"), strict=True):
         if not own.size:
             continue
@@ -310,7 +312,8 @@ def atlas(dataset: xr.Dataset) -> Figure:
                 axes.text(column + 0.5, first + row + 0.5, sign, **text)
         axes.add_patch(Rectangle((0, first), 1, own.size, fill=False, clip_on=False))
         head: look.Ink = {"va": "center", "fontsize": look.HEADING, "gid": "head"}
-        axes.text(0.0, first - 0.5, look.literal(title), fontweight="bold", **head)
+        title = f"({next(letters)})  {look.literal(title)}"
+        axes.text(0.0, first - 0.5, title, fontweight="bold", **head)
         wide = look.wrapped(look.literal(note), NOTE - 0.2, look.SMALLEST)
         beside = small | {"va": "top", "color": look.GREY, "linespacing": 1.1}
         axes.text(len(order) + 0.4, first, wide, **beside)
