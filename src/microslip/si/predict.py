@@ -15,6 +15,7 @@ from microslip.si.contact import DRIVES, Contact, contact_of
 from microslip.si.inputs import INPUTS, Inputs, read_inputs
 from microslip.si.output import OUTPUTS, Prediction, Value
 from microslip.si.search import REFERENCE_LOAD, find_reduction
+from microslip.si.simpler import simplifications
 from microslip.si.solve import Answer, answer_of
 from microslip.si.uncertain import Draws, probabilities, with_interval
 from microslip.si.warnings import unchecked, warnings_of
@@ -240,4 +241,4 @@ def _remarks(contact: Contact, answer: Answer) -> list[str]:
             remarks.append(UNKNOWN_THRESHOLD)
         elif math.isfinite(threshold.value) and threshold.value != known["static"].value:
             remarks.append(ALONG_THE_DRIVE)
-    return remarks
+    return [*remarks, *simplifications(contact, answer)]
