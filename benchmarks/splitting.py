@@ -8,7 +8,7 @@ search for the periodic state. The cases are few and many rings, bores, and squa
 
 import numpy as np
 
-from microslip.contact import ring_contact, splitting, squares
+from microslip.contact import convolution, ring_contact, splitting
 from microslip.contact.modes import polar_contact
 from microslip.contact.ring_contact import RadialContact
 from microslip.periodic.discretise import Resolution
@@ -66,7 +66,7 @@ def main():
     ratio(2.0)
 
     def patience(value):
-        squares.PATIENCE = value
+        convolution.PATIENCE = value
 
     table("PATIENCE", (15, 30, 60, 120), patience, ["16 squares"])
 

@@ -153,12 +153,13 @@ class DescentSolver:
         The contact.
     tolerance : float
         Largest allowed residual of a step, as a force divided by mu F_z.
+    patience : int or None
+        See convolution.PATIENCE, the default.
     """
 
-    def __init__(
-        self, contact: CartesianContact, tolerance: float, patience: int = convolution.PATIENCE
-    ):
-        self.contact, self.tolerance, self.patience = contact, float(tolerance), patience
+    def __init__(self, contact: CartesianContact, tolerance: float, patience: int | None = None):
+        self.contact, self.tolerance = contact, float(tolerance)
+        self.patience = convolution.PATIENCE if patience is None else patience
         self._length = 1.0 / contact.scale
         rows, columns = contact.bound.shape
         self._scratch = convolution.workspace(contact.convolution), np.empty((4, rows, columns))
