@@ -176,7 +176,7 @@ def examine(seed: int, k: int, reference: dict | None, constants: dict) -> dict:
     if k % TWICE == 0 and result.dissipation is not None and ENERGY not in (reference or {}):
         line |= energy_of(point)
     if reference is not None and ALL_REFERENCES not in reference:
-        return line | reference
+        return reference | line  # the reference may be a whole line of an earlier run
     return line | judged(k, point, line, result, reference)
 
 
