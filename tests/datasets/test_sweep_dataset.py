@@ -71,13 +71,16 @@ def test_points_lie_where_their_coordinates_say(tmp_path, solver):
         assert float(data.poisson) == 0
 
 
-def test_a_list_of_poissons_ratios_is_a_dimension(tmp_path, solver):
-    with on_disk("transverse", tmp_path, NU) as data:
-        assert data.mu_macro.dims == ("poisson", "amplitude", "velocity")
-        assert data.sel(poisson=0.3, velocity=1, amplitude=2).mu_macro.size == 1
+@pytest.mark.parametrize("more", [{}, {"stiffness": [0.5, 2]}], ids=str)
+def test_a_list_of_poissons_ratios_is_a_dimension(more, tmp_path, solver):
+    grids = {"transverse": NU["transverse"] | more}
+    with on_disk("transverse", tmp_path, grids) as data:
+        assert {*data.mu_macro.dims} == {"poisson", "amplitude", "velocity", *more}
+        assert data.sel(poisson=0.3, velocity=1, amplitude=2).mu_macro.size == 2 ** len(more)
         assert data.mu_static.dims == ("amplitude",)
         change = data.mu_macro - data.mu_macro.sel(poisson=0)
         assert data.mu_macro_change.values == pytest.approx(change.values)
+        assert np.all(data.mu_macro_change.sel(poisson=0.3) < 0)
         both = data.mu_macro_error + data.mu_macro_error.sel(poisson=0)
         assert data.mu_macro_change_error.values == pytest.approx(both.values)
 

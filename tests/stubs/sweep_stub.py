@@ -46,8 +46,8 @@ def records_of(configuration, name):
 class Solver:
     """Substitute for microslip.solve, history and traction_field that counts its calls.
 
-    mu_macro is velocity/(1 + velocity + amplitude). fails: amplitude at which no point
-    converges.
+    mu_macro is velocity/(1 + velocity + amplitude), and less with Poisson's ratio and on a spring.
+    fails: amplitude at which no point converges.
     """
 
     def __init__(self, monkeypatch, fails=None):
@@ -63,6 +63,7 @@ class Solver:
         result |= {f"error_{part}": 1e-5 for part in ("resolution", "periodicity", "solver")}
         good = self.fails is None or amplitude != self.fails
         result["mu_macro"] = velocity / (1 + velocity + (amplitude or 0)) if good else float("nan")
+        result["mu_macro"] -= 0.1 * settings["poisson"] * (1 + settings.get("stiffness", 0))
         result |= {"mu_macro_error": 4e-5, "model": "polar", "converged": good}
         result["reason"] = "" if good else "no periodic state"
         if amplitude is None:

@@ -26,6 +26,7 @@ from microslip.foundation.compiled import kernel
 from microslip.theory.hertz import G_STAR
 
 EPSILON = float(np.finfo(float).eps)
+"""Distance from 1 to the next number."""
 ACCURACY = 1e-10
 """Relative accuracy of the kernels, much better than the accuracy of their averages over rings."""
 MOST_GROWTH = np.log(ACCURACY / EPSILON)
@@ -35,7 +36,7 @@ HALF_PRECISION = np.sqrt(EPSILON)
 DECAY = -np.log(ACCURACY)
 """Logarithm of the decay after which a downward recurrence does not depend on its start value."""
 MOST_MODES = 1 + int(np.ceil(0.5 * DECAY))
-"""See modes_for."""
+"""Largest ratio of modes_for(r, s, n) to n + 2."""
 OUTER_POINTS = 8
 INNER_POINTS = 12
 CLUSTER_POWER = 4
@@ -73,9 +74,9 @@ class Averaging(NamedTuple):
 def elliptic_integrals(kc: np.ndarray, big_k: np.ndarray, big_e: np.ndarray) -> None:
     """Fill K and E, the complete elliptic integrals for the complementary moduli kc, shape (n,).
 
-    The arithmetic-geometric mean converges quadratically, and most slowly for the smallest kc.  So
-    all of them take the same number of steps, in loops that the compiler turns into vector
-    instructions.
+    They are computed by the arithmetic-geometric mean, which converges quadratically, and most
+    slowly for the smallest modulus.  The number of steps for this modulus is used for all, so that
+    the compiler can use vector instructions.
     """
     large, small, steps = 1.0, kc.min(), 0
     while large - small > HALF_PRECISION * large:
@@ -84,11 +85,11 @@ def elliptic_integrals(kc: np.ndarray, big_k: np.ndarray, big_e: np.ndarray) -> 
     a, b = np.ones(len(kc)), kc.copy()
     for q in range(len(kc)):
         big_e[q] = 0.5 - 0.5 * kc[q] * kc[q]
-    weight = 0.25
+    weight = 0.125
     for _ in range(steps):
         weight *= 2.0
         for q in range(len(kc)):
-            big_e[q] += 0.5 * weight * (a[q] - b[q]) * (a[q] - b[q])
+            big_e[q] += weight * (a[q] - b[q]) * (a[q] - b[q])
             a[q], b[q] = 0.5 * (a[q] + b[q]), np.sqrt(a[q] * b[q])
     for q in range(len(kc)):
         big_k[q] = np.pi / (a[q] + b[q])

@@ -7,9 +7,9 @@ Contacts with a hole are refined at the edge of the hole in the same way.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
-from functools import lru_cache, partial
+from functools import lru_cache
 from typing import NamedTuple
 
 import numpy as np
@@ -50,15 +50,20 @@ class Rings:
     radius : np.ndarray, shape (n,)
         Mean lever arm of a traction with the shape of the friction bound.  It makes the torque at
         full slip exact.
-    with_count : callable
-        with_count(count) -> mesh with another number of rings and the same focus and pressure.
+    focus, pressure
+        See make_rings.
     """
 
     psi: np.ndarray
     area: np.ndarray
     bound: np.ndarray
     radius: np.ndarray
-    with_count: Callable[[int], Rings]
+    focus: Focus | float | None
+    pressure: Pressure
+
+    def with_count(self, count: int) -> Rings:
+        """Mesh of another number of rings for the same focus and pressure."""
+        return make_rings(count, self.focus, self.pressure)
 
 
 @lru_cache(maxsize=32)
@@ -66,7 +71,8 @@ def make_rings(count: int, focus: Focus | float | None = None, pressure: Pressur
     """Create a mesh of rings that is graded towards a focus.
 
     Each radius of the focus is an edge between rings.  The traction has a kink at the stick radius,
-    and a ring across the kink would reduce the order of accuracy by one.
+    and a ring across the kink would reduce the order of accuracy by one.  Calls with equal
+    arguments return the same object, which must not be modified.
 
     Parameters
     ----------
@@ -105,8 +111,7 @@ def _of_edges(psi: np.ndarray, focus: Focus | float | None, pressure: Pressure) 
         hole = pressure.inner**2
         psi = np.arcsin(np.sqrt(hole + (1.0 - hole) * np.sin(psi) ** 2))
     area, (bound, radius) = np.pi * np.diff(np.sin(psi) ** 2), pressure.ring_means(psi)
-    with_count = partial(make_rings, focus=focus, pressure=pressure)
-    return Rings(psi, area, bound, radius, with_count)
+    return Rings(psi, area, bound, radius, focus, pressure)
 
 
 def _as_focus(focus: Focus | float) -> Focus:

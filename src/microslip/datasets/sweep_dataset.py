@@ -133,7 +133,8 @@ def _variables(
     if len(axes.get("poisson", ())) > 1:  # changes from the smallest ratio, with summed errors
         for name, row in rows_of("change").items():
             sign = 1.0 if name.endswith("_error") else -1.0
-            columns[name] = columns[row["source"]] + sign * columns[row["source"]][0]
+            column = columns[row["source"]]
+            columns[name] = column + sign * column.take([0], list(axes).index("poisson"))
     return {name: described(name, tuple(axes), columns[name]) for name in columns}, versions
 
 

@@ -218,7 +218,7 @@ class Run:
     state : np.ndarray or None
         Periodic or steady tractions, used by other runs as an initial guess; None if unknown.
     place : np.ndarray, shape (2,)
-        Position x and rate x' of a driven body at the start of a period, see models.driven_body.
+        Position x and rate x' of a driven body at the start of a period, see contact/march.py.
     static_force : float
         Mean forward force of the static limit, also used by other runs; NaN if unknown.
     limit : np.ndarray or None

@@ -305,7 +305,7 @@ class _Search:
         if prepared and problem.straight:
             start = self._find_limit() + min(SLOW_EXCESS * self.rise, LARGEST_EXCESS) * slipping
         elif prepared and problem.drift < SLOW_LOOP:
-            # its force only sets `least`
+            # the force of this limit only sets `least`
             rest, tolerance = replace(problem, velocity=0.0), max(self.rise, self.tolerance)
             path = path_of(rest, contact, self.resolution.steps, method.integrator)
             limit = limit_on_a_loop(contact, rest, path, tolerance, STEP_SHARE * tolerance)

@@ -1,62 +1,42 @@
-"""Simpler contacts that have the same friction within its error."""
+"""Simpler models that have the same friction within its error."""
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from typing import Any, NamedTuple
+from dataclasses import replace
+from typing import Any
 
+from microslip.answer import limits
+from microslip.contact.registry import MODELS
+from microslip.scene.hertz import HERTZ
 from microslip.si.contact import Contact
-from microslip.si.solve import TOLERANCE, Answer, solve_at, within_range
+from microslip.si.solve import TOLERANCE, Answer, problem_of, solve_at, within_range
 
-
-class Simplification(NamedTuple):
-    """A contact that a simpler model resolves.
-
-    Attributes
-    ----------
-    sentence : str
-        What the simpler contact is, and that it suffices.
-    applies : callable
-        applies(contact) -> whether it is simpler than the contact and much faster to solve.
-    changes : dict
-        Arguments of microslip.solve.
-    """
-
-    sentence: str
-    applies: Callable[[Contact], bool]
-    changes: dict[str, Any]
-
-
-SIMPLIFICATIONS = (
-    Simplification(
-        "a sphere suffices: a circular contact with the same u_lim changes mu_macro by less than "
-        "its error",
-        lambda contact: contact.shape.hertzian and not contact.shape.is_round,
-        {"pressure": "hertz"},
-    ),
-    Simplification(
-        "Poisson's ratio matters for u_lim only: with the same u_lim, a ratio of 0 changes "
-        "mu_macro by less than its error",
-        lambda contact: contact.poisson > 0.0 and contact.kind.unit != "rad",
-        {"poisson": 0.0},
-    ),
-)
+SIMPLER: dict[str, dict[str, Any]] = {
+    "a sphere suffices: on a circular contact with the same u_lim, mu_macro differs by less than "
+    "its error": {"pressure": HERTZ},
+    "Poisson's ratio matters for u_lim only: with the ratio 0 and the same u_lim, mu_macro differs "
+    "by less than its error": {"poisson": 0.0},
+}
+"""Changes of a Problem, keyed by the sentence for changes that do not matter."""
 
 
 def simplifications(contact: Contact, answer: Answer) -> list[str]:
-    """Sentences on simpler contacts whose friction at the same speed differs by less than the error
-    of the answer.
+    """Sentences on simpler contacts with the same friction at the same speed, within the error of
+    the answer.
 
-    A contact under a force, a friction map and an answer that is not converged have none.
+    A contact counts as simpler if its model is another one.  There are no sentences for a contact
+    under a force, and for an answer that is a closed form, comes from a map or is not converged.
     """
-    inputs, known, sentences = contact.inputs, answer.values["friction"], []
-    if inputs.force is not None or inputs.map is not None or not answer.converged or contact.steady:
+    inputs, known = contact.inputs, answer.values["friction"]
+    if inputs.force is not None or not answer.converged or answer.model not in MODELS:
         return []
-    drive = within_range(contact.drive(contact.mean_load))
-    tolerance = inputs.tolerance or TOLERANCE
-    for one in SIMPLIFICATIONS:
-        if one.applies(contact):
-            result = solve_at(contact, contact.velocity, tolerance, **drive, **one.changes)
+    # the choice of a model distinguishes a velocity of 0 from others
+    problem = replace(problem_of(contact), velocity=min(contact.velocity, 1.0))
+    drive, tolerance = within_range(contact.drive(contact.mean_load)), inputs.tolerance or TOLERANCE
+    sentences = []
+    for sentence, change in SIMPLER.items():
+        if limits.choose_model(replace(problem, **change)) != answer.model:
+            result = solve_at(contact, contact.velocity, tolerance, **drive, **change)
             if result.converged and abs(result.friction.value - known.value) <= known.error:
-                sentences.append(one.sentence)
+                sentences.append(sentence)
     return sentences
