@@ -183,7 +183,7 @@ class Contact(Protocol):
         """Twice the elastic energy of tractions, <q, A q>."""
         return float(np.vdot(self.weight * change, self.displacement(change)))
 
-    def prolonged(self, state: np.ndarray) -> np.ndarray | None:
+    def prolong(self, state: np.ndarray) -> np.ndarray | None:
         """Interpolate tractions from a coarser mesh to the points of this contact.  Returns None if
         this is not possible."""
         return None

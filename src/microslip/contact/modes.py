@@ -24,7 +24,7 @@ import numpy as np
 
 from microslip.contact.contact import LATERAL, MIRROR, TORQUE
 from microslip.contact.influence import ring_influence
-from microslip.contact.ring_contact import Growth, RingContact, interpolated, load_on_rings
+from microslip.contact.ring_contact import Growth, RingContact, interpolate, load_on_rings
 from microslip.contact.rings import Focus, Rings, make_rings
 from microslip.scene.hertz import HERTZ
 from microslip.scene.pressure import Pressure
@@ -227,7 +227,7 @@ class PolarContact(RingContact):
         if not whole:  # the other half of the disc cancels this force
             self.resultants[LATERAL if rotates else TORQUE] = 0.0
 
-    def prolonged(self, state: np.ndarray) -> np.ndarray | None:
+    def prolong(self, state: np.ndarray) -> np.ndarray | None:
         """Interpolate tractions (2, angles, cells) from a coarser mesh to the points of this
         contact.
 
@@ -235,15 +235,15 @@ class PolarContact(RingContact):
         rings.
         """
         few = self.rotates and len(self.bound) < FEWEST_PROLONGED
-        on_rings = None if few or self.whole else super().prolonged(state)
+        on_rings = None if few or self.whole else super().prolong(state)
         if on_rings is None:
             return None
         # extend the angles beyond the lateral axis, across which forward tractions are even, and
         # lateral tractions odd for a rotation and even for a translation
         beyond, count = on_rings[:, [0, -1]] * (MIRROR if self.rotates else 1.0), state.shape[1]
-        extended = np.concatenate([beyond[:, :1], on_rings, beyond[:, 1:]], axis=1)
+        fields = np.concatenate([beyond[:, :1], on_rings, beyond[:, 1:]], axis=1)
         angles = (np.arange(-1, count + 1) + 0.5) / count
-        return interpolated(self._theta / np.pi, angles, extended.swapaxes(1, 2)).swapaxes(1, 2)
+        return interpolate(self._theta / np.pi, angles, fields.swapaxes(1, 2)).swapaxes(1, 2)
 
 
 polar_contact = lru_cache(maxsize=32)(PolarContact)

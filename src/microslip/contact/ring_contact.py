@@ -30,7 +30,7 @@ def load_on_rings(pressure: Pressure, edges: np.ndarray, depth: np.ndarray) -> n
     return pressure.load(edges, pressure.radius(depth)[:, None])
 
 
-def interpolated(x: np.ndarray, nodes: np.ndarray, values: np.ndarray) -> np.ndarray:
+def interpolate(x: np.ndarray, nodes: np.ndarray, values: np.ndarray) -> np.ndarray:
     """Interpolate linearly along the last axis, from values at the nodes to the points x.  Values
     are constant beyond the nodes."""
     after = np.clip(np.searchsorted(nodes, x), 1, len(nodes) - 1)
@@ -161,14 +161,14 @@ class RingContact(Contact):
         multiply(self.operators, 0, field, image, scratch)
         return self.unpack(image)
 
-    def prolonged(self, state: np.ndarray) -> np.ndarray | None:
+    def prolong(self, state: np.ndarray) -> np.ndarray | None:
         """Interpolate tractions from a coarser mesh to the rings of this contact, as fractions of
         the friction bound.  Returns None for springs and for changing loads."""
         if self.rings is None or self._joins is not None:
             return None
         coarse = self.rings.with_count(state.shape[2])
         share = state / coarse.bound
-        return interpolated(self.rings.radius, coarse.radius, share) * self.bound
+        return interpolate(self.rings.radius, coarse.radius, share) * self.bound
 
     def mirrored(self, state: np.ndarray) -> np.ndarray:
         """Return the mirror image of a state under lateral -> -lateral, which negates lateral

@@ -301,10 +301,10 @@ class _Search:
         if guess is not None:
             yield from self._from_run(guess)
         start = slipping = forward_slip(contact)
-        prepared = method.prepared and contact.sticks
-        if prepared and problem.straight:
+        near_limit = method.prepared and contact.sticks
+        if near_limit and problem.straight:
             start = self._find_limit() + min(SLOW_EXCESS * self.rise, LARGEST_EXCESS) * slipping
-        elif prepared and problem.drift < SLOW_LOOP:
+        elif near_limit and problem.drift < SLOW_LOOP:
             # the force of this limit only sets `least`
             rest, tolerance = replace(problem, velocity=0.0), max(self.rise, self.tolerance)
             path = path_of(rest, contact, self.resolution.steps, method.integrator)
@@ -338,8 +338,8 @@ class _Search:
             yield Start(guess.state, guess.place, friction=guess.mu)
             return
         # the static limit, which has kinks, is computed on each mesh
-        above = guess.state if guess.limit is None else guess.state - guess.limit
-        near = contact.prolonged(above)
+        excess = guess.state if guess.limit is None else guess.state - guess.limit
+        near = contact.prolong(excess)
         if near is not None:
             near = near if guess.limit is None else near + self._find_limit()
             yield Start(project(near, contact.bound), guess.place, near=True, friction=guess.mu)

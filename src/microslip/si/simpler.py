@@ -27,7 +27,7 @@ def simplifications(contact: Contact, answer: Answer) -> list[str]:
     A contact counts as simpler if its model is another one.  There are no sentences for a contact
     under a force, and for an answer that is a closed form, comes from a map or is not converged.
     """
-    inputs, known = contact.inputs, answer.values["friction"]
+    inputs, friction = contact.inputs, answer.values["friction"]
     if inputs.force is not None or not answer.converged or answer.model not in MODELS:
         return []
     # the choice of a model distinguishes a velocity of 0 from others
@@ -37,6 +37,6 @@ def simplifications(contact: Contact, answer: Answer) -> list[str]:
     for sentence, change in SIMPLER.items():
         if limits.choose_model(replace(problem, **change)) != answer.model:
             result = solve_at(contact, contact.velocity, tolerance, **drive, **change)
-            if result.converged and abs(result.friction.value - known.value) <= known.error:
+            if result.converged and abs(result.friction.value - friction.value) <= friction.error:
                 sentences.append(sentence)
     return sentences
