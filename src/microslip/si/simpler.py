@@ -21,10 +21,10 @@ SIMPLER: dict[str, dict[str, Any]] = {
 
 
 def simplifications(contact: Contact, answer: Answer) -> list[str]:
-    """Sentences on simpler contacts with the same friction at the same speed, within the error of
-    the answer.
+    """Return the sentences of SIMPLER that hold for a contact: the simpler contact has the same
+    friction at the same speed, within the error of the answer.
 
-    A contact counts as simpler if its model is another one.  There are no sentences for a contact
+    A contact counts as simpler if another model is chosen for it.  The list is empty for a contact
     under a force, and for an answer that is a closed form, comes from a map or is not converged.
     """
     inputs, friction = contact.inputs, answer.values["friction"]
