@@ -52,7 +52,7 @@ def _allowed(field: FieldInfo) -> str:
 def _default(field: FieldInfo) -> str:
     if field.is_required():
         return "required"
-    value = field.default
+    value = field.get_default(call_default_factory=True, validated_data={})
     if value is None or value in ((), {}):
         return "none"
     value = value[0] if isinstance(value, tuple) and len(value) == 1 else value

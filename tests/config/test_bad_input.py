@@ -25,7 +25,7 @@ def test_a_bad_setting_is_one_line_that_begins_with_its_key(settings, named, tmp
     path.write_text(changed(settings))
     message = refusal(path)
     assert message.startswith(f"{path}: {named}: ")
-    assert re.search("allowed|required|no amplitude|does not apply", message)
+    assert re.search("allowed|required|needs|no amplitude|does not apply", message)
 
 
 @pytest.mark.parametrize("case", FILES)

@@ -2,21 +2,18 @@
 
 import os
 import re
-from collections.abc import Iterable, Iterator
-from contextlib import contextmanager
+from collections.abc import Collection, Iterable
 from itertools import product
 from pathlib import Path
-from typing import Any, get_args
+from typing import Any
 
 import yaml
-from pydantic import BaseModel, ValidationError
-from pydantic_core import ErrorDetails
+from pydantic import ValidationError
 
-from microslip.config.settings import DRIVES, Configuration, Refusal, Sweep, short_json
-from microslip.foundation import named_files
-from microslip.foundation.errors import InputError
+from microslip.config.settings import Configuration, Refusal, Sweep
+from microslip.foundation import named_files, spec
+from microslip.foundation.errors import InputError, shown
 from microslip.foundation.files import content_of
-from microslip.foundation.spec import near_miss
 
 MOST_BYTES = 1_000_000
 """Largest size of a configuration in bytes.  PyYAML reads about 100 kB per second."""
@@ -50,31 +47,17 @@ class Loader(yaml.SafeLoader):
     }
 
     def get_single_node(self) -> yaml.Node | None:
-        """Parse the document.  Its size is checked before any value is constructed."""
+        """Parse the document.  It is checked before any value is constructed."""
         node = super().get_single_node()
         if node is not None and _size(node, {}) > MOST_VALUES:
             raise yaml.MarkedYAMLError(None, None, f"more than {MOST_VALUES} values with aliases")
         return node
 
-    def flatten_mapping(self, node: yaml.MappingNode) -> None:
-        """Refuse a key that occurs twice, before merged mappings add their keys."""
-        keys = [key.value for key, _ in node.value if key.tag != "tag:yaml.org,2002:merge"]
-        twice = next((key for i, key in enumerate(keys) if key in keys[:i]), None)
-        if twice is not None and not getattr(node, "merged", False):
-            mark = [key.start_mark for key, _ in node.value if key.value == twice][1]
-            raise yaml.MarkedYAMLError(None, None, f"the key {twice} occurs twice", mark)
-        node.merged = True
-        super().flatten_mapping(node)
-
     def construct_number(self, node: yaml.ScalarNode) -> int | float:
         """Construct a number in base 10."""
-        text = node.value.lower()
-        if re.fullmatch("[-+]?[0-9]+", text):
-            return int(text)
-        value = float(re.sub(r"\.(inf|nan)$", r"\1", text))
-        if value == 0.0 and re.search("[1-9]", text.partition("e")[0]):
-            raise ValueError(f"{node.value} is nearer 0 than a float; write 0")
-        return value
+        if re.fullmatch("[-+]?[0-9]+", node.value):
+            return int(node.value)
+        return spec.read("value", re.sub(r"\.(inf|nan)$", r"\1", node.value.lower()))
 
     def construct_object(self, node: yaml.Node, deep: bool = False) -> object:
         """Construct a value.  An error of a constructor gets a line number."""
@@ -91,16 +74,26 @@ for _tag in ("tag:number", "tag:yaml.org,2002:int", "tag:yaml.org,2002:float"):
     Loader.add_constructor(_tag, Loader.construct_number)
 
 
-def _size(node: yaml.Node, sizes: dict[int, int]) -> int:
-    """Number of nodes in a tree after expansion of aliases.  sizes: sizes of nodes by id."""
-    if sizes.get(id(node)) == 0:
+def _size(node: yaml.Node, sizes: dict[yaml.Node, int]) -> int:
+    """Number of nodes in a tree after expansion of aliases.  Raises MarkedYAMLError for a key that
+    occurs twice in a mapping, except <<.
+
+    sizes: sizes of nodes.
+    """
+    if sizes.get(node) == 0:
         raise yaml.MarkedYAMLError(None, None, "a value contains itself", node.start_mark)
-    if id(node) not in sizes:
-        sizes[id(node)] = 0  # until the children are counted
+    if node not in sizes:
+        sizes[node] = 0  # until the children are counted
         children = node.value if isinstance(node.value, list) else []
-        flat = [child for one in children for child in (one if isinstance(one, tuple) else [one])]
-        sizes[id(node)] = 1 + sum(_size(child, sizes) for child in flat)
-    return sizes[id(node)]
+        if isinstance(node, yaml.MappingNode):
+            first: dict[str, yaml.Node] = {}
+            for key, _ in node.value:
+                if first.setdefault(str(key.value), key) is not key and key.value != "<<":
+                    problem = f"the key {key.value} occurs twice"
+                    raise yaml.MarkedYAMLError(None, None, problem, key.start_mark)
+            children = [child for pair in node.value for child in pair]
+        sizes[node] = 1 + sum(_size(child, sizes) for child in children)
+    return sizes[node]
 
 
 def read_yaml(path: str | os.PathLike) -> dict:
@@ -113,27 +106,25 @@ def read_yaml(path: str | os.PathLike) -> dict:
         content = content_of(path, MOST_BYTES)
         text = content.decode("utf-8-sig")
         mapping = yaml.load(text, Loader)
+        if isinstance(mapping, dict):
+            return mapping
+        found = "is empty" if mapping is None else f"{shown(mapping)} is not a mapping"
+        problem = f"{found}; allowed: keys and values, sweeps at least"
     except OSError as error:
-        raise ConfigError(f"{path}: cannot be read: {error.strerror}") from None
+        problem = f"cannot be read: {error.strerror}"
     except UnicodeDecodeError as error:
-        line = content.count(b"\n", 0, error.start) + 1
-        byte = content[error.start]
-        raise ConfigError(
-            f"{path}: line {line}: not text: byte 0x{byte:02x}; allowed: UTF-8"
-        ) from None
+        line, byte = content.count(b"\n", 0, error.start) + 1, content[error.start]
+        problem = f"line {line}: not text: byte 0x{byte:02x}; allowed: UTF-8"
     except yaml.YAMLError as error:
         position = getattr(error, "position", None)  # of a character that is not allowed
-        line_ = "" if position is None else f"line {text[:position].count(chr(10)) + 1}: "
+        where = "" if position is None else f"line {text.count(chr(10), 0, position) + 1}: "
         hint = "; allowed: spaces, no tabs" if "'\\t'" in str(error) else ""
-        raise ConfigError(f"{path}: not valid YAML: {line_}{error}{hint}") from None
+        problem = f"not valid YAML: {where}{error}{hint}"
     except RecursionError:
-        raise ConfigError(f"{path}: not valid YAML: too many levels") from None
+        problem = "not valid YAML: too many levels"
     except ValueError as error:  # the file is too large, or its name is no name
-        raise ConfigError(f"{path!s}: {error}") from None
-    if not isinstance(mapping, dict):
-        found = "is empty" if mapping is None else f"{short_json(mapping)} is not a mapping"
-        raise ConfigError(f"{path}: {found}; allowed: keys and values, sweeps at least")
-    return mapping
+        problem = str(error)
+    raise ConfigError(f"{path!s}: {problem}")
 
 
 def reread(config: dict, paths: Iterable[str | os.PathLike]) -> dict:
@@ -179,9 +170,8 @@ def load(path: str | os.PathLike) -> Configuration:
     Motion and pressure files are searched for in the folder of the YAML file, then in the working
     directory.
     """
-    source = str(path)
-    configuration = from_mapping(read_yaml(path), source=source, folders=[Path(path).parent])
-    refuse_unsolvable(configuration, source=source)
+    configuration = from_mapping(read_yaml(path), source=str(path), folders=[Path(path).parent])
+    refuse_unsolvable(configuration, source=str(path))
     return configuration
 
 
@@ -213,14 +203,15 @@ def from_mapping(
     try:
         configuration = Configuration.model_validate(mapping)
     except ValidationError as error:
-        raise ConfigError(f"{source}: {_line(error.errors(include_url=False))}") from None
+        raise ConfigError(f"{source}: {_line(error)}") from None
     sweeps = dict(configuration.sweeps)
     for name, sweep in sweeps.items():
-        with _errors_at(f"{source}: sweeps.{name}"):
+        try:
             files = {role: _file_in(getattr(sweep, role), role, folders) for role in ROLES}
+        except InputError as error:
+            raise _refused(error, source, name) from None
         names = {role: file.name for role, file in files.items() if file is not None}
-        if names:
-            sweeps[name] = sweep.model_copy(update=names)
+        sweeps[name] = sweep.model_copy(update=names)
     return configuration.model_copy(update={"sweeps": sweeps})
 
 
@@ -230,16 +221,15 @@ def with_paths(mapping: dict, folders: Iterable = ()) -> dict:
     A job can use the result in any working directory.
     """
     sweeps = {name: dict(sweep) for name, sweep in mapping.get("sweeps", {}).items()}
-    for sweep in sweeps.values():
-        for role in ROLES:
-            if (file := _file_in(sweep.get(role, ""), role, folders)) is not None:
-                sweep[role] = file.placed
-    return mapping | ({"sweeps": sweeps} if sweeps else {})
+    for sweep, role in product(sweeps.values(), ROLES):
+        if (file := _file_in(sweep.get(role, ""), role, folders)) is not None:
+            sweep[role] = file.placed
+    return mapping | {"sweeps": sweeps}
 
 
 def refuse_unsolvable(
     configuration: Configuration,
-    names: Iterable[str] | None = None,
+    names: Collection[str] | None = None,
     source: str = "configuration",
 ) -> None:
     """Raise ConfigError for a sweep that the solver refuses.
@@ -249,34 +239,24 @@ def refuse_unsolvable(
 
     names: names of the sweeps to check; the default is all sweeps.
     """
-    for name in configuration.sweeps if names is None else names:
-        if name in configuration.sweeps:
-            with _errors_at(f"{source}: sweeps.{name}"):
-                _refuse_corners(configuration.sweeps[name])
+    for name, sweep in configuration.sweeps.items():
+        if names is None or name in names:
+            try:
+                _refuse_corners(sweep)
+            except InputError as error:  # arguments of the solver and keys have the same names
+                raise _refused(error, source, name) from None
 
 
 def _refuse_corners(sweep: Sweep) -> None:
-    from microslip.answer.limits import choose_model, problem_of, refuse
-    from microslip.scene.by_name import motion_named, pressure_named
+    from microslip.answer.limits import problem_of
+    from microslip.answer.request import request_of
 
-    motion = motion_named(sweep.motion)
-    pressure_named(sweep.pressure)
-    if motion.periodic and not sweep.amplitude:
-        raise Refusal(f"missing; required for {motion.name}", "amplitude")
-    if sweep.amplitude and not motion.periodic:
-        message = f"{list(sweep.amplitude)} is not allowed; {motion.name} has no amplitude"
-        raise Refusal(message, "amplitude")
-    names = ("velocity", "amplitude", "poisson", *DRIVES)
-    ends = [dict.fromkeys((v[0], v[-1]) if (v := getattr(sweep, n)) else (None,)) for n in names]
+    ends = [dict.fromkeys((values[0], values[-1])) for values in sweep.axes.values()]
     for place in product(*ends):
-        at: dict[str, Any] = dict(zip(names, place, strict=True))
-        drive = {name: at.pop(name) for name in DRIVES}
+        at: dict[str, Any] = dict(zip(sweep.axes, place, strict=True))
+        drive = {name: at.pop(name) for name in sweep.drives}
         problem = problem_of(sweep.motion, pressure=sweep.pressure, drive=drive, **at)
-        moves = at["velocity"] != 0.0 or sweep.drives
-        model = choose_model(problem, sweep.model) if moves or sweep.model != "auto" else None
-        if sweep.drives:
-            assert model is not None
-            refuse(problem, model)
+        request_of(problem, model=sweep.model, tolerance=sweep.tolerance)
 
 
 def _file_in(name: Any, role: str, folders: Iterable) -> named_files.NamedFile | None:
@@ -293,57 +273,18 @@ def _file_in(name: Any, role: str, folders: Iterable) -> named_files.NamedFile |
     return named_files.read(name, role, folders)[0]
 
 
-# Messages
+def _refused(error: InputError, source: str, name: str) -> ConfigError:
+    """Error for an argument that the solver refuses."""
+    value = "missing;" if error.value is None else f"{shown(error.value)}:"
+    return ConfigError(f"{source}: sweeps.{name}.{error.argument}: {value} {error.allowed}")
 
 
-@contextmanager
-def _errors_at(where: str) -> Iterator[None]:
-    """Context manager that converts errors to ConfigError.  The message begins with `where`."""
-    try:
-        yield
-    except Refusal as error:
-        key = f".{error.key}" if error.key else ""
-        raise ConfigError(f"{where}{key}: {error}") from None
-    except InputError as error:  # solver arguments and keys have the same names
-        line = f"{where}.{error.argument}: {error.value!r}: {error.allowed}"
-        raise ConfigError(line) from None
-    except ValueError as error:  # from readers of files
-        raise ConfigError(f"{where}: {error}") from None
-
-
-def _line(errors: list[ErrorDetails]) -> str:
-    """Message for one of the errors of pydantic, with the key, the value and the allowed values.
-
-    Unknown keys come first, since a mistyped key is also missing.
-    """
-    error = min(errors, key=lambda e: e["type"] != "extra_forbidden")
-    *outer, last = keys = [key for key in error["loc"] if key != "[key]"] or [""]
-    where = ".".join(map(str, keys))
-    refusal = error.get("ctx", {}).get("error")
+def _line(error: ValidationError) -> str:
+    """Message for the first one of these errors, with the key, the value and what is allowed."""
+    first = error.errors(include_url=False)[0]
+    where = "".join(f".{key}" for key in first["loc"] if key != "[key]")
+    refusal = first.get("ctx", {}).get("error")
     if isinstance(refusal, Refusal):
-        dot = "." if where and refusal.key and not refusal.key.startswith((".", "[")) else ""
-        return f"{where}{dot}{refusal.key}: {refusal}"
-    if error["type"] == "extra_forbidden":
-        names = list(_model_at(outer).model_fields)
-        hint = near_miss(last, names)
-        return f"{where}: unknown key; {hint}allowed: {', '.join(names)}"
-    if error["type"] == "missing":
-        fields = _model_at(outer).model_fields.items()
-        return f"{where}: missing; required: {', '.join(n for n, f in fields if f.is_required())}"
-    is_model = error["type"].startswith("model")
-    names = list(_model_at(keys).model_fields) if is_model else []
-    allowed = f"a mapping with the keys {', '.join(names)}" if names else "a mapping of names"
-    return f"{where}: {short_json(error['input'])} is not allowed; allowed: {allowed}"
-
-
-def _model_at(keys: list) -> type[BaseModel]:
-    """Return the model of the settings at these keys, such as ["sweeps", "bore"]."""
-    model: type[BaseModel] = Configuration
-    rest = [key for key in keys if key != ""]
-    while rest:
-        annotation = model.model_fields[rest.pop(0)].annotation
-        if getattr(annotation, "__origin__", None) is dict:
-            rest = rest[1:]  # the name of an entry
-        models = [annotation, *get_args(annotation)]
-        model = next(m for m in models if isinstance(m, type) and issubclass(m, BaseModel))
-    return model
+        return f"{where}{refusal.key}: {refusal}".removeprefix(".")
+    allowed = "allowed: a mapping of names"
+    return f"{where}: {shown(first['input'])} is not allowed; {allowed}".removeprefix(".")

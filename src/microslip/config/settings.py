@@ -3,21 +3,20 @@
 The tables in config/README.md are written from these models.  All quantities are dimensionless.
 """
 
-import json
 import math
 import re
-from collections.abc import Callable
+from collections.abc import Callable, Collection, Iterable
 from dataclasses import dataclass
-from itertools import pairwise
+from itertools import pairwise, repeat
 from typing import Annotated, Any, Self
 
-from pydantic import BaseModel, ConfigDict, GetCoreSchemaHandler, model_validator
+from pydantic import BaseModel, ConfigDict, Field, model_validator
 from pydantic_core import CoreSchema, core_schema
 
 from microslip.config.kinds import KINDS
 from microslip.foundation.arguments import LARGEST
 from microslip.foundation.canonical import number
-from microslip.foundation.errors import InputError
+from microslip.foundation.errors import InputError, shown
 from microslip.foundation.spec import near_miss
 from microslip.periodic.methods import names as method_names
 from microslip.periodic.methods import split as split_method
@@ -39,20 +38,20 @@ DRIVES = ("mass", "damping", "stiffness", "force")
 """Parameters of a drive, in the order of dataset dimensions."""
 AXES = ("mass", "damping", "stiffness", "poisson", "amplitude", "velocity", "force")
 """Axes of a sweep, in the order of dataset dimensions."""
-RULES = (
+STUDIES = ("accuracy", "stability", "claims")
+"""Keys of the studies, which are the names of their datasets."""
+RULES: tuple[str, ...] = (
     "all",
     "make_products",
     "solve_batch",
     "solve_map",
     "make_dataset",
     "draw_figure",
-    "make_page",
-    "link_file",
 )
+RULES += ("make_page", "link_file")
 """Names of the rules of the workflow, which datasets and figures must not have."""
-
-
 EXPONENT = re.compile(r"[-+]?[0-9]+(\.[0-9]*)?[eE][-+]?[0-9]+")
+"""Numbers that YAML 1.1 reads as texts, such as 1e-3."""
 
 
 class Refusal(ValueError):
@@ -61,7 +60,7 @@ class Refusal(ValueError):
     Attributes
     ----------
     key : str
-        Key of the value, relative to the settings that are checked.
+        Key of the value, relative to the settings that are checked, such as ".velocity[0]".
     """
 
     def __init__(self, message: str, key: str = ""):
@@ -73,6 +72,17 @@ def refuse(is_bad: bool, message: str, key: str = "") -> None:
     """Raise Refusal with a message if a condition is true."""
     if is_bad:
         raise Refusal(message, key)
+
+
+def refuse_unknown(name: Any, names: Collection[str], problem: str, key: str = "") -> None:
+    """Raise Refusal with a problem if a name is not one of the names, which are then listed."""
+    if name not in names:
+        allowed = ", ".join(names) or "none"
+        raise Refusal(f"{problem}; {near_miss(name, names)}allowed: {allowed}", key)
+
+
+def _refuse_crowd(points: int, most: int, key: str = "") -> None:
+    refuse(points > most, f"{points} points are not allowed; allowed: at most {most}", key)
 
 
 # Types of values
@@ -88,7 +98,7 @@ class Allowed:
         The allowed values, for messages and for config/README.md.
     convert : callable
         Function that converts a value from YAML.  It raises ValueError or TypeError for a value
-        that is not allowed, or Refusal with a message of its own.
+        that is not allowed, and InputError or Refusal with a message of its own.
     """
 
     text: str
@@ -99,23 +109,13 @@ class Allowed:
             return self.convert(value)
         except Refusal:
             raise
+        except InputError as error:
+            raise Refusal(f"{shown(error.value)}: {error.allowed}") from None
         except (ValueError, TypeError, OverflowError):
-            raise Refusal(f"{short_json(value)} is not allowed; allowed: {self.text}") from None
+            raise Refusal(f"{shown(value)} is not allowed; allowed: {self.text}") from None
 
-    def __get_pydantic_core_schema__(
-        self, source: Any, handler: GetCoreSchemaHandler
-    ) -> CoreSchema:
+    def __get_pydantic_core_schema__(self, source: Any, handler: Any) -> CoreSchema:
         return core_schema.no_info_plain_validator_function(self)
-
-
-def short_json(value: object) -> str:
-    """Format a value as JSON, truncated to 60 characters."""
-    try:
-        text = json.dumps(value, default=str, ensure_ascii=False)
-    except (ValueError, RecursionError):  # an integer of thousands of digits
-        text = f"a value of type {type(value).__name__}"
-    text = text.encode("utf-8", "backslashreplace").decode()  # escapes lone surrogates
-    return text if len(text) <= 60 else f"{text[:57]}..."
 
 
 def _number(low: float, high: float, step: int = 0, above: bool = False) -> Allowed:
@@ -126,15 +126,12 @@ def _number(low: float, high: float, step: int = 0, above: bool = False) -> Allo
     word = ("a number", "a whole number", "an even number")[step]
 
     def convert(value: Any) -> float:
-        if isinstance(value, str) and EXPONENT.fullmatch(value):
-            value = float(value)  # YAML 1.1 reads 1e-3 as text
         if isinstance(value, str):
-            raise Refusal(f"{short_json(value)} is text; allowed: a number without quotes")
-        if isinstance(value, bool) or not isinstance(value, int | float):
-            raise TypeError
-        if not math.isfinite(value):
-            raise Refusal(f"{value} is not allowed; allowed: a finite number")
-        if not low <= value <= high or (above and value == low) or (step and value % step):
+            problem = f"{shown(value)} is text; allowed: a number without quotes"
+            refuse(not EXPONENT.fullmatch(value), problem)
+            value = float(value)
+        is_inside = low <= value <= high and not (above and value == low)
+        if isinstance(value, bool) or not is_inside or (step and value % step):
             raise ValueError
         return int(value) if step else float(number(value))
 
@@ -145,9 +142,9 @@ def _or_null(kind: Allowed) -> Allowed:
     return Allowed(f"{kind.text}, or null", lambda v: None if v is None else kind(v))
 
 
-def _text(text: str, fits: Callable[[str], bool]) -> Allowed:
+def _text(text: str, pattern: str, printable: bool = True) -> Allowed:
     def convert(value: Any) -> str:
-        if not (isinstance(value, str) and fits(value)):
+        if not re.fullmatch(pattern, value) or (printable and not value.isprintable()):
             raise ValueError
         return value
 
@@ -155,38 +152,40 @@ def _text(text: str, fits: Callable[[str], bool]) -> Allowed:
 
 
 def _one_of(*names: str) -> Allowed:
-    allowed = ", ".join(names)
-
     def convert(value: Any) -> str:
-        if value not in names:
-            hint = near_miss(value, names) if isinstance(value, str) else ""
-            raise Refusal(f"{short_json(value)} is not allowed; {hint}allowed: {allowed}")
+        refuse_unknown(value, names, f"{shown(value)} is not allowed")
         return value
 
-    return Allowed(allowed, convert)
+    return Allowed(", ".join(names), convert)
 
 
-def _list(kind: Allowed, text: str) -> Allowed:
-    """List of at least one value of a kind, without repetition; it is converted to a tuple."""
+def _each(kinds: Iterable[Allowed], values: Any, key: str = "") -> list:
+    """Convert values.  A Refusal gets the index of its value."""
+    result = []
+    for i, (kind, value) in enumerate(zip(kinds, values, strict=False)):
+        try:
+            result.append(kind(value))
+        except Refusal as error:
+            raise Refusal(str(error), f"{key}[{i}]{error.key}") from None
+    return result
+
+
+def _list(kind: Allowed, text: str, alone: bool = False) -> Allowed:
+    """List of at least one value of a kind, without repetition; it is converted to a tuple.
+
+    alone: True if a text is allowed in place of a list of one text.
+    """
 
     def convert(values: Any) -> tuple:
+        values = [values] if alone and isinstance(values, str) else values
         if not isinstance(values, list | tuple) or not values:
             raise TypeError
-        result = tuple(_at(f"[{i}]", kind, value) for i, value in enumerate(values))
-        twice = next((value for i, value in enumerate(result) if value in result[:i]), None)
-        if twice is not None:
-            raise Refusal(f"{twice} occurs twice; allowed: different values")
-        return result
+        result = _each(repeat(kind), values)
+        for i, value in enumerate(result):
+            refuse(value in result[:i], f"{value} occurs twice; allowed: different values")
+        return tuple(result)
 
     return Allowed(text, convert)
-
-
-def _at(key: str, kind: Allowed, value: Any) -> Any:
-    """Convert a value.  A Refusal gets a key."""
-    try:
-        return kind(value)
-    except Refusal as error:
-        raise Refusal(str(error), f"{key}{error.key}") from None
 
 
 def _axis(
@@ -194,120 +193,109 @@ def _axis(
 ) -> Allowed:
     """Axis: a number, or a list of numbers and ranges; it is converted to an ascending tuple."""
     one = _number(low, high, step, above)
+    item = Allowed(one.text, lambda item: _spaced(item) if isinstance(item, dict) else [one(item)])
 
     def convert(raw: Any) -> tuple[float, ...]:
-        items = list(raw) if isinstance(raw, list | tuple) else [raw]
-        if not items:
+        parts = _each(repeat(item), raw) if isinstance(raw, list | tuple) else [item(raw)]
+        values = sorted({one(value) for part in parts for value in part})
+        if not values:
             raise ValueError
-        values: set[float] = set()
-        for i, item in enumerate(items):
-            key = f"[{i}]" if isinstance(raw, list | tuple) else ""
-            if isinstance(item, dict):
-                values.update(_at(key, _RANGE, item))
-            elif item is None or isinstance(item, list):
-                raise TypeError
-            else:
-                values.add(_at(key, one, item))
-        ordered = tuple(sorted(map(one, values)))
-        for left, right in pairwise(ordered):
-            if right - left <= 1e-9 * right:
-                raise Refusal(f"{right:.12g} occurs twice; allowed: different values")
-        return ordered
+        for left, right in pairwise(values):
+            close = right - left <= 1e-9 * right
+            refuse(close, f"{right:.12g} occurs twice; allowed: different values")
+        return tuple(values)
 
     return Allowed(f"{one.text}, or a list of numbers and ranges", convert)
 
 
-def _spaced(value: Any) -> list[float]:
+def _spaced(item: dict) -> list[float]:
     """Values of a range such as {"log": [0.001, 10, 25]}, rounded to six significant digits."""
-    keys = list(value)
-    if len(keys) != 1 or keys[0] not in ("log", "linear"):
-        hint = near_miss(keys[0], ("log", "linear")) if len(keys) == 1 else ""
+    spacing, ends = next(iter(item.items())) if len(item) == 1 else ("", None)
+    key, is_log = f".{spacing}", spacing == "log"
+    if spacing not in ("log", "linear"):
         example = "{log: [first, last, count]} or {linear: [first, last, count]}"
-        raise Refusal(f"{short_json(value)} is not allowed; {hint}allowed: {example}")
-    ((spacing, ends),) = value.items()
-    if not isinstance(ends, list | tuple) or len(ends) != 3:
-        raise Refusal(
-            f"{short_json(ends)} is not allowed; allowed: [first, last, count]", f".{spacing}"
-        )
-    kinds = (_number(0.0, LARGEST["velocity"], above=spacing == "log"),) * 2 + (_number(2, 1e5, 1),)
-    first, last, count = (
-        _at(f".{spacing}[{i}]", kind, end)
-        for i, (kind, end) in enumerate(zip(kinds, ends, strict=True))
-    )
-    if last <= first or math.isinf(last / first if spacing == "log" else 1.0):
-        raise Refusal(
-            f"{short_json(ends)} is not allowed; allowed: last above first", f".{spacing}"
-        )
+        hint = near_miss(spacing, ("log", "linear"))
+        raise Refusal(f"{shown(item)} is not allowed; {hint}allowed: {example}")
+    problem = f"{shown(ends)} is not allowed; allowed:"
+    is_triple = isinstance(ends, list | tuple) and len(ends) == 3
+    refuse(not is_triple, f"{problem} [first, last, count]", key)
+    end = _number(0.0, LARGEST["velocity"], above=is_log)
+    first, last, count = _each((end, end, _number(2, 1e5, 1)), ends, key)
+    refuse(last <= first, f"{problem} last above first", key)
     shares = (i / (count - 1) for i in range(count))
-    if spacing == "linear":
-        values = (first + (last - first) * share for share in shares)
-    else:
+    if is_log:
         values = (first * math.exp(math.log(last / first) * share) for share in shares)
+    else:
+        values = (first + (last - first) * share for share in shares)
     # Coordinates with six digits are readable and do not depend on the machine.
     return [float(f"{value:.6g}") for value in values]
 
 
-_RANGE = Allowed("a range", _spaced)
-
-
-def _is_title(text: str) -> bool:
-    return text.isprintable() and text.strip() != "" and len(text) <= 100
-
-
-def _is_name(text: str) -> bool:
-    plain = text.isascii() and text == text.lower() and text.isidentifier()
-    return plain and not text.startswith("_") and len(text) <= 100
-
-
-def _is_folder(text: str) -> bool:
-    parts = ("://", "{", "}", "*", "?", "$")
-    is_plain = text.isprintable() and not any(part in text for part in parts)
-    return is_plain and text.strip() != "" and not text.startswith("~")
-
-
-def _checked_method(text: Any) -> str:
-    try:
-        split_method(text)
-    except InputError as error:
-        raise Refusal(f"{error.value!r}: {error.allowed}") from None
-    return text
-
-
-_METHOD = Allowed("the name of a method, such as projected-gradient:step=0.5", _checked_method)
+_METHOD = Allowed(
+    "the name of a method, such as projected-gradient:step=0.5",
+    lambda text: text if split_method(text) else None,
+)
+_METHODS = _list(_METHOD, "a list of methods, or null for all")
 _MODEL = _one_of("auto", "rigid", "slider", "dahl", "mdr", "radial", "polar", "cartesian")
-Positive = Annotated[float, _number(0, LARGEST["velocity"], above=True)]
-NonNegative = Annotated[float, _number(0, LARGEST["velocity"])]
+_POSITIVE = _number(0, LARGEST["velocity"], above=True)
+_SWEEP = _text("the name of a sweep", ".*")
+_FOLDER = _text(
+    "text for a folder, without braces, *, ?, ~ in front, $ and ://",
+    r"(?!~)(?=.*\S)(?!.*(://|[{}*?$])).*",
+)
+_TITLE = _text("text on one line, up to 100 characters", r"(?=.*\S).{1,100}")
+Positive = Annotated[float, _POSITIVE]
 Ratio = Annotated[float, _number(0, 0.5)]
 Tolerance = Annotated[float, _number(1e-6, 0.1)]
 Cells = Annotated[int | None, _or_null(_number(4, LARGEST["cells"], 2))]
 Steps = Annotated[int | None, _or_null(_number(8, LARGEST["steps"], 2))]
-Text = Annotated[str, _text("text", bool)]
-Title = Annotated[str | None, _or_null(_text("text on one line, up to 100 characters", _is_title))]
+Text = Annotated[str, _text("text", "(?s:.+)", printable=False)]
+Title = Annotated[str | None, _or_null(_TITLE)]
 Name = Annotated[
-    str, _text("a name of small letters, digits and _ that begins with a letter", _is_name)
+    str,
+    _text("a name of small letters, digits and _ that begins with a letter", "[a-z][a-z0-9_]{,99}"),
 ]
 Axis = Annotated[tuple[float, ...], _axis()]
 PositiveAxis = Annotated[tuple[float, ...], _axis(above=True)]
 Methods = Annotated[
-    tuple[str, ...],
-    Allowed(
-        "a list of methods, or null for all",
-        lambda v: method_names() if v is None else _list(_METHOD, "a list of methods")(v),
-    ),
+    tuple[str, ...], Allowed(_METHODS.text, lambda v: method_names() if v is None else _METHODS(v))
 ]
-
-
-def _refuse_crowd(points: int, most: int, key: str = "") -> None:
-    refuse(points > most, f"{points} points are not allowed; allowed: at most {most}", key)
 
 
 class Settings(BaseModel):
     """Settings by key.  Unknown keys are refused."""
 
-    model_config = ConfigDict(extra="forbid", frozen=True, use_attribute_docstrings=True)
+    model_config = ConfigDict(frozen=True, use_attribute_docstrings=True)
+
+    def refuse_mismatch(self) -> None:
+        """Raise Refusal if settings contradict each other."""
+
+    @model_validator(mode="before")
+    @classmethod
+    def _refuse_keys(cls, values: Any) -> Any:
+        names = cls.model_fields
+        if not isinstance(values, dict):
+            allowed = f"a mapping with the keys {', '.join(names)}"
+            raise Refusal(f"{shown(values)} is not allowed; allowed: {allowed}")
+        for name in values:
+            refuse_unknown(name, names, "unknown key", f".{name}")
+        required = [name for name, field in names.items() if field.is_required()]
+        for name in required:
+            refuse(name not in values, f"missing; required: {', '.join(required)}", f".{name}")
+        return values
+
+    @model_validator(mode="after")
+    def _refuse_mismatch(self) -> Self:
+        self.refuse_mismatch()
+        return self
 
 
 # Sweeps
+
+
+def _tolerance_of(error: float | None) -> float:
+    """Default tolerance of the points, which depends on the error of a certified map."""
+    return 1e-3 if error is None else min(float(number(SHARE_OF_POINTS * error)), LOOSEST_POINTS)
 
 
 class Sweep(Settings):
@@ -342,7 +330,12 @@ class Sweep(Settings):
     """Contact model. The value auto selects the cheapest model that is exact for the motion."""
     method: Annotated[str | None, _or_null(_METHOD)] = None
     """Method to compare with that of microslip.solve, which is the default."""
-    tolerance: Annotated[float | None, _or_null(_number(1e-6, 0.1))] = 1e-3
+    error: Annotated[float | None, _or_null(_number(1e-5, 0.1))] = None
+    """Largest absolute error of mu_macro anywhere between the ends of the axes of a certified
+    map."""
+    tolerance: Annotated[float | None, _or_null(_number(1e-6, 0.1))] = Field(
+        default_factory=lambda given: _tolerance_of(given.get("error"))
+    )
     """Largest accepted absolute error of mu_macro. With null, cells and steps are prescribed, and a
     point has converged if its runs have reached the periodic state. The default for a certified map
     is three tenths of `error`, at most 0.01."""
@@ -351,9 +344,6 @@ class Sweep(Settings):
     tolerance."""
     steps: Steps = None
     """Number of time steps in a period. By default, it follows from the tolerance."""
-    error: Annotated[float | None, _or_null(_number(1e-5, 0.1))] = None
-    """Largest absolute error of mu_macro anywhere between the ends of the axes of a certified
-    map."""
 
     @property
     def axes(self) -> dict[str, tuple[float, ...]]:
@@ -368,7 +358,7 @@ class Sweep(Settings):
     @property
     def drives(self) -> dict[str, tuple[float, ...]]:
         """Values by parameter of the drive, for the parameters that are given."""
-        return {name: getattr(self, name) for name in DRIVES if getattr(self, name)}
+        return {name: values for name, values in self.axes.items() if name in DRIVES}
 
     @property
     def is_certified(self) -> bool:
@@ -380,52 +370,29 @@ class Sweep(Settings):
         """True if there are at least two amplitudes and two velocities above 0."""
         return len(self.amplitude) > 1 and sum(v > 0 for v in self.velocity) > 1
 
-    @model_validator(mode="before")
-    @classmethod
-    def _tolerance_of_a_map(cls, values: Any) -> Any:
-        if not isinstance(values, dict) or "tolerance" in values:
-            return values
-        error = values.get("error")
-        if isinstance(error, int | float) and not isinstance(error, bool):
-            loosest = min(SHARE_OF_POINTS * error, LOOSEST_POINTS)
-            return values | {"tolerance": max(loosest, 1e-6)}
-        return values
-
-    @model_validator(mode="after")
-    def _refuse_mismatch(self) -> Self:
-        if not (self.velocity or self.force):
-            raise Refusal("missing; required: velocity, or force in its place", "velocity")
-        if self.velocity and self.force:
-            raise Refusal("is not allowed beside velocity; allowed: one of them", "force")
+    def refuse_mismatch(self) -> None:
+        """Raise Refusal if settings contradict each other, as far as no solver is needed."""
         free = [name for name in ("cells", "steps") if getattr(self, name) is None]
         free = [name for name in free if self.amplitude or name != "steps"]
         if self.tolerance is None and (free or self.is_certified):
             imposed = "a number" + (f", or {' and '.join(free)} imposed" if free else "")
-            raise Refusal(f"null is not allowed; allowed: {imposed}", "tolerance")
+            raise Refusal(f"null is not allowed; allowed: {imposed}", ".tolerance")
         _refuse_crowd(math.prod(map(len, self.axes.values())), MOST_POINTS)
-        if self.error is not None and self.tolerance is not None:
-            self._refuse_uncertifiable(self.error, self.tolerance)
-        return self
-
-    def _refuse_uncertifiable(self, error: float, tolerance: float) -> None:
-        bound = f"less than the error, {error:g}, and at most {LOOSEST_POINTS:g}"
-        message = f"{tolerance:g} is not allowed; allowed: {bound}"
-        refuse(tolerance >= error or tolerance > LOOSEST_POINTS, message, "tolerance")
+        if self.error is None or self.tolerance is None:
+            return
+        bound = f"less than the error, {self.error:g}, and at most {LOOSEST_POINTS:g}"
+        is_loose = self.tolerance >= self.error or self.tolerance > LOOSEST_POINTS
+        refuse(is_loose, f"{self.tolerance:g} is not allowed; allowed: {bound}", ".tolerance")
         names = ("cells", "steps", "method", *self.drives)
         imposed = ", ".join(name for name in names if getattr(self, name))
-        refuse(imposed != "", f"is not allowed with {imposed}; allowed: a tolerance", "error")
+        refuse(imposed != "", f"is not allowed with {imposed}; allowed: a tolerance", ".error")
         static = len(self.amplitude) > 1 and 0.0 in self.velocity
         ranges = "two amplitudes and two velocities above 0, or two amplitudes and velocity 0"
-        message = f"is not allowed for these axes; allowed: {ranges}"
-        refuse(not (self.spans_a_map or static), message, "error")
+        problem = f"is not allowed for these axes; allowed: {ranges}"
+        refuse(not (self.spans_a_map or static), problem, ".error")
 
 
 # Figures
-
-
-def _names(value: Any) -> tuple[str, ...]:
-    names = _list(Allowed("the name of a sweep", str), "the name of a sweep, or a list of names")
-    return names([value] if isinstance(value, str) else value)
 
 
 class Figure(Settings):
@@ -435,16 +402,16 @@ class Figure(Settings):
     """Kind of figure. map draws friction over two axes, and curves over one axis, with a panel for
     each sweep. history, field and transients draw a single run. explorer is an interactive page."""
     sweep: Annotated[
-        tuple[str, ...], Allowed("the name of a sweep, or a list of names", _names)
+        tuple[str, ...], _list(_SWEEP, f"{_SWEEP.text}, or a list of names", True)
     ] = ()
     """Sweeps to draw. A figure of a study has no sweep."""
-    velocity: Annotated[float | None, _number(0, LARGEST["velocity"], above=True)] = None
+    velocity: Annotated[float | None, _POSITIVE] = None
     """Velocity of the single run."""
     amplitude: Annotated[float | None, _number(0, LARGEST["amplitude"])] = None
     """Amplitude of the single run (history)."""
     periods: Annotated[int | None, _number(1, 1000, 1)] = None
     """Number of periods, which begin without tractions (history)."""
-    travel: Annotated[float | None, _number(0, LARGEST["velocity"], above=True)] = None
+    travel: Annotated[float | None, _POSITIVE] = None
     """Forward displacement of each run, in units of u_lim (transients)."""
     cells: Cells = None
     """Number of rings of the single run."""
@@ -454,9 +421,8 @@ class Figure(Settings):
     @property
     def run(self) -> dict[str, Any]:
         """Settings of the single run; empty if there is none."""
-        values = {name: getattr(self, name) for name in KINDS[self.kind].run}
         defaults = KINDS[self.kind].run
-        return {k: defaults[k] if v is None else v for k, v in values.items()}
+        return defaults | self.model_dump(include={*defaults}, exclude_none=True)
 
     @property
     def datasets(self) -> tuple[str, ...]:
@@ -464,18 +430,16 @@ class Figure(Settings):
         study = KINDS[self.kind].study
         return (study,) if study else self.sweep
 
-    @model_validator(mode="after")
-    def _refuse_mismatch(self) -> Self:
+    def refuse_mismatch(self) -> None:
+        """Raise Refusal if settings contradict each other."""
         kind = KINDS[self.kind]
-        options = {"kind", "sweep", *kind.run} - ({"sweep"} if kind.study else set())
-        for name in self.model_fields_set - options:
-            allowed = ", ".join(key for key in Figure.model_fields if key in options)
-            raise Refusal(f"is not allowed for the kind {self.kind}; allowed: {allowed}", name)
-        if not (self.sweep or kind.study):
-            raise Refusal("missing; required: the name of a sweep", "sweep")
-        if kind.run and len(self.sweep) > 1:
-            raise Refusal(f"{', '.join(self.sweep)} is not allowed; allowed: one sweep", "sweep")
-        return self
+        usable = ["kind", *([] if kind.study else ["sweep"]), *kind.run]
+        for name in self.model_fields_set:
+            refuse_unknown(name, usable, f"is not allowed for the kind {self.kind}", f".{name}")
+        missing = not (self.sweep or kind.study)
+        refuse(missing, "missing; required: the name of a sweep", ".sweep")
+        several = f"{', '.join(self.sweep)} is not allowed; allowed: one sweep"
+        refuse(bool(kind.run) and len(self.sweep) > 1, several, ".sweep")
 
 
 # Studies
@@ -497,15 +461,11 @@ class StudyPoint(Settings):
     title: Title = None
     """Title of the panel. The default is the name of the point."""
 
-    @model_validator(mode="after")
-    def _refuse_mismatch(self) -> Self:
-        steady = self.motion == "continuous-bore"
-        if steady and self.amplitude is not None:
-            message = f"{self.amplitude:g} is not allowed; {self.motion} has no amplitude"
-            raise Refusal(message, "amplitude")
-        if not steady and self.amplitude is None:
-            raise Refusal(f"missing; required for {self.motion}", "amplitude")
-        return self
+    def refuse_mismatch(self) -> None:
+        """Raise Refusal if settings contradict each other."""
+        steady, given = self.motion == "continuous-bore", self.amplitude is not None
+        refuse(steady and given, f"is not allowed; {self.motion} has no amplitude", ".amplitude")
+        refuse(not (steady or given), f"missing; required for {self.motion}", ".amplitude")
 
 
 class _Grid(Settings):
@@ -521,12 +481,11 @@ class _Grid(Settings):
         """Amplitudes by motion."""
         return {"transverse": self.amplitude_transverse, "bore": self.amplitude_bore}
 
-    @model_validator(mode="after")
-    def _refuse_crowd(self) -> Self:
+    def refuse_mismatch(self) -> None:
+        """Raise Refusal if settings contradict each other."""
         for motion, amplitudes in self.amplitude.items():
-            points, key = len(self.velocity) * len(amplitudes), f"velocity x amplitude_{motion}"
-            _refuse_crowd(points, MOST_MAP_POINTS, key)
-        return self
+            key = f".velocity x amplitude_{motion}"
+            _refuse_crowd(len(self.velocity) * len(amplitudes), MOST_MAP_POINTS, key)
 
 
 class ModelMap(_Grid):
@@ -535,13 +494,12 @@ class ModelMap(_Grid):
     tolerance: Annotated[tuple[float, ...], _axis(1e-6, 0.1)] = (1e-3, 1e-2)
     """Absolute tolerances of mu_macro. Each one has a map."""
 
-    @model_validator(mode="after")
-    def _refuse_a_line(self) -> Self:
-        for name in ("velocity", "amplitude_transverse", "amplitude_bore"):
-            values = list(getattr(self, name))
-            message = f"{values} is not allowed; allowed: two numbers or more"
-            refuse(len(values) < 2, message, name)
-        return self
+    def refuse_mismatch(self) -> None:
+        """Raise Refusal if settings contradict each other."""
+        super().refuse_mismatch()
+        for name in _Grid.model_fields:
+            problem = f"{[*getattr(self, name)]} is not allowed; allowed: two numbers or more"
+            refuse(len(getattr(self, name)) < 2, problem, f".{name}")
 
 
 class Accuracy(Settings):
@@ -602,12 +560,11 @@ class Block(Settings):
         words = [f"{symbols[n]} {v:g}" for n, v in values.items() if v or n != "poisson"]
         return ", ".join([self.motion, *words])
 
-    @model_validator(mode="after")
-    def _refuse_mismatch(self) -> Self:
-        if self.quantity not in Block.model_fields:
-            message = f"{self.quantity or 'no key'} has several numbers"
-            raise Refusal(f"{message}; allowed: one key with several numbers")
-        return self
+    def refuse_mismatch(self) -> None:
+        """Raise Refusal if settings contradict each other."""
+        several = f"{self.quantity or 'no key'} has several numbers"
+        known = self.quantity in Block.model_fields
+        refuse(not known, f"{several}; allowed: one key with several numbers")
 
 
 class Stability(Settings):
@@ -630,22 +587,20 @@ class Claims(_Grid):
     """Number of rings, and number of angular points on half the disc, in the runs whose tractions
     are evaluated. A run with half this number gives the error estimate."""
 
-    @model_validator(mode="after")
-    def _refuse_mismatch(self) -> Self:
-        for motion, values in self.amplitude.items():
-            largest = STATIC_AMPLITUDES[motion]
+    def refuse_mismatch(self) -> None:
+        """Raise Refusal if settings contradict each other."""
+        super().refuse_mismatch()
+        for motion, largest in STATIC_AMPLITUDES.items():
+            values = self.amplitude[motion]
             allowed = f"at least one number up to {largest:g}, where there is static friction"
-            message = f"{list(values)} is not allowed; allowed: {allowed}"
-            refuse(values[0] > largest, message, f"amplitude_{motion}")
-        return self
+            problem = f"{[*values]} is not allowed; allowed: {allowed}"
+            refuse(values[0] > largest, problem, f".amplitude_{motion}")
 
 
 class Configuration(Settings):
     """A configuration: points to compute, figures to draw, and the folder of results."""
 
-    results: Annotated[
-        str, _text("text for a folder, without braces, *, ?, ~ in front, $ and ://", _is_folder)
-    ] = "results"
+    results: Annotated[str, _FOLDER] = "results"
     """Folder for all results, relative to the working directory of the workflow."""
     points_per_job: Annotated[int, _number(1, 100_000, 1)] = 320
     """Mean number of points that one job computes in sequence. A job takes about a second to start.
@@ -664,51 +619,46 @@ class Configuration(Settings):
     @property
     def studies(self) -> dict[str, Accuracy | Stability | Claims]:
         """Studies of the configuration by name."""
-        every = {name: getattr(self, name) for name in ("accuracy", "stability", "claims")}
-        return {name: study for name, study in every.items() if study is not None}
+        return {name: study for name in STUDIES if (study := getattr(self, name)) is not None}
 
     @property
     def datasets(self) -> dict[str, Sweep | Accuracy | Stability | Claims]:
         """Sweeps and studies by the name of their dataset."""
         return self.sweeps | self.studies
 
-    @model_validator(mode="after")
-    def _refuse_mismatch(self) -> Self:
-        taken = {*RULES, "accuracy", "stability", "claims"}
+    def refuse_mismatch(self) -> None:
+        """Raise Refusal if settings contradict each other."""
+        taken = {*RULES, *STUDIES}
         for key, names in (("sweeps", self.sweeps), ("figures", self.figures)):
             for name in names:
-                message = "another result or rule has this name; allowed: a new one"
-                refuse(name in taken, message, f"{key}.{name}")
+                problem = "another result or rule has this name; allowed: a new one"
+                refuse(name in taken, problem, f".{key}.{name}")
             taken |= names.keys()
-        message = "nothing is not allowed; required: sweeps, accuracy, stability or claims"
-        refuse(not self.datasets, message, "sweeps")
+        problem = f"nothing is not allowed; required: sweeps, {', '.join(STUDIES)}"
+        refuse(not self.datasets, problem, ".sweeps")
         runs: set[tuple[str, ...]] = set()
         for name, figure in self.figures.items():
-            self._refuse_figure(f"figures.{name}", figure)
+            self._refuse_figure(f".figures.{name}", figure)
             one = figure.kind, *figure.sweep[:1]
-            message = f"{one[-1]} has another figure of this kind; allowed: one"
-            refuse(bool(figure.run) and one in runs, message, f"figures.{name}.kind")
+            problem = f"{one[-1]} has another figure of this kind; allowed: one"
+            refuse(bool(figure.run) and one in runs, problem, f".figures.{name}.kind")
             runs.add(one)
-        return self
 
     def _refuse_figure(self, key: str, figure: Figure) -> None:
         kind = KINDS[figure.kind]
-        message = f"{figure.kind} needs the key {kind.study}, which is missing"
+        problem = f"{figure.kind} needs the key {kind.study}, which is missing"
         missing = kind.study not in ("", *self.studies)
-        refuse(missing, f"{message}; allowed: a kind of another key", f"{key}.kind")
+        refuse(missing, f"{problem}; allowed: a kind of another key", f"{key}.kind")
         key = f"{key}.sweep"
         for name in figure.sweep:
-            hint, allowed = near_miss(name, self.sweeps), ", ".join(self.sweeps) or "none"
-            message = f"{short_json(name)} is no sweep; {hint}allowed: {allowed}"
-            refuse(name not in self.sweeps, message, key)
+            refuse_unknown(name, self.sweeps, f"{shown(name)} is no sweep", key)
             motion = self.sweeps[name].motion
-            message = f"{name} has the motion {motion}; allowed: {kind.motion}"
-            refuse(kind.motion not in ("", motion), message, key)
+            problem = f"{name} has the motion {motion}; allowed: {kind.motion}"
+            refuse(kind.motion not in ("", motion), problem, key)
         if figure.kind == "explorer":
-            grids = [self.sweeps[name] for name in figure.sweep]
-            grids = [sweep for sweep in grids if not sweep.is_certified]
-            points = sum(math.prod(map(len, sweep.axes.values())) for sweep in grids)
+            sweeps = [one for name in figure.sweep if not (one := self.sweeps[name]).is_certified]
+            points = sum(math.prod(map(len, sweep.axes.values())) for sweep in sweeps)
             _refuse_crowd(points, MOST_ON_PAGE, key)
-            maps = [s for s in grids if s.spans_a_map and s.motion in STATIC_AMPLITUDES]
+            maps = [s for s in sweeps if s.spans_a_map and s.motion in STATIC_AMPLITUDES]
             allowed = "transverse or bore with two amplitudes and two velocities above 0"
             refuse(not maps, f"has no map; required: {allowed}", key)
