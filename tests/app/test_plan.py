@@ -34,14 +34,6 @@ def changed(before, after):
     return {n for n in before.products if before.products[n].stem != after.products[n].stem}
 
 
-def test_datasets_and_figures_are_products_with_plain_names():
-    products = plan().products
-    assert list(products["bore"].links) == ["bore.nc", "summaries/bore.html"]
-    assert list(products["profile"].links) == ["figures/profile.png", "figures/profile.pdf"]
-    assert list(products["explorer"].links) == ["explorer.html"]
-    assert products["profile"].inputs == ("accuracy",)
-
-
 def test_the_name_of_a_product_changes_with_its_own_settings_alone():
     transverse = TINY["sweeps"]["transverse"] | {"amplitude": [0, 0.5, 1]}
     names = {"transverse", "fig1_force_history", "fig2_transverse_map", "explorer"}
@@ -80,13 +72,8 @@ def test_the_look_of_figures_counts_for_all_of_them_and_a_kind_for_its_own():
         kind: source_digest.LOADED.builder(*drawing.modules_of(kind)) for kind in drawing.DRAWN
     }
     assert all("report/figures/style.py" in some for some in files.values())
-    assert [k for k, some in files.items() if "report/figures/predictions.py" in some] == [
-        "fit",
-        "curve",
-    ]
-    assert not any(
-        name.startswith(("app/", "foundation/")) for some in files.values() for name in some
-    )
+    own = [kind for kind, some in files.items() if "report/figures/predictions.py" in some]
+    assert own == ["fit", "curve"]
 
 
 # The results folder

@@ -1,12 +1,9 @@
 """`microslip predict --table`: one contact for each line."""
 
 import json
-import math
 
-import numpy as np
 import pandas as pd
 import pytest
-import scipy.stats
 import xarray as xr
 from stubs import certified_stub
 
@@ -47,31 +44,6 @@ def test_each_line_is_the_prediction_of_its_contact(folder, capsys):
     assert float(lines[2].split()[1]) == pytest.approx(alone.mu_apparent, rel=1e-3)
 
 
-@pytest.mark.long
-def test_a_line_that_nothing_answers_does_not_take_the_others_with_it(folder, capsys):
-    """At 4 m/s this vibration reduces friction by two fifths under no load."""
-    text = "mu,speed\n# two days\n0.3 +- 0.03,10 mm/s\n0.3 +- 0.03,4 m/s\n"
-    (folder / "contacts.csv").write_text(text)
-    words = ["--amplitude", "0.3 um", "--reduction", "40 %", "--output", "found.nc"]
-    words = [word for word in COMMAND if word not in ("--mu", "0.3")] + words
-    assert cli.main(words) == 1
-    heading, first, second, *message = capsys.readouterr().out.splitlines()
-    assert heading.split()[0] == "line" and heading.rstrip().endswith("uncertainty")
-    assert [first.split()[0], second.split()[0]] == ["3", "4"]
-    (failed,) = (line for line in message if line.startswith("line 4"))
-    assert failed.startswith("line 4: NOT CONVERGED: load: no load of the search, down to")
-    dataset = xr.load_dataset(folder / "found.nc")
-    assert dataset.converged.values.tolist() == [True, False]
-    (load, none), (spread, _) = dataset.load_N.values, dataset.load_spread_N.values
-    assert math.isnan(none) and dataset.load_spread_N.attrs["units"] == "N"
-    assert float(first.split()[-3]) == pytest.approx(load, rel=1e-3)
-    # The amplitude over u_lim depends on mu times the load to the power 2/3.  Deviations beyond
-    # three standard deviations count as three.
-    normal = scipy.stats.norm.ppf((np.arange(10**5) + 0.5) / 10**5)
-    loads = (1.0 + 0.1 * np.clip(normal, -3.0, 3.0)) ** -1.5
-    assert spread / load == pytest.approx(loads.std(), rel=0.005)
-
-
 def test_a_line_that_cannot_be_leaves_the_others_their_answers_and_labels(folder, capsys):
     text = "label;load [N];amplitude [um];speed\nfirst;10;0,3;10 mm/s\nsecond;20;-0,1;1 cm/s\n"
     text += "third;20;0,1;\nfourth;20;0,1\n;;;\n"
@@ -110,14 +82,14 @@ def test_under_a_force_each_line_has_its_outcome_threshold_and_probabilities(fol
     (folder / "contacts.csv").write_text(text + "800,0,90,0.15\n")
     words = ["--young", "210 GPa", "--nu", "0", "--radius", "200 mm", "--frequency", "50 Hz"]
     cli.main(["predict", "transverse", *words, "--table", "contacts.csv"])
-    heading, *rows = capsys.readouterr().out.splitlines()
-    ends = [13 * column for column in range(1, len(heading) // 13 + 1)]
-    titles, *cells = [[row[end - 13 : end].strip() for end in ends] for row in (heading, *rows[:3])]
-    stays, away, exact = ({n: one[titles.index(n)] for n in titles} for one in cells)
+    lines = capsys.readouterr().out.splitlines()[:4]
+    titles, *cells = [
+        [line[k : k + 13].strip() for k in range(0, len(lines[0]), 13)] for line in lines
+    ]
+    stays, away, exact = (dict(zip(titles, one, strict=False)) for one in cells)
     assert [one["outcome"] for one in (stays, away, exact)] == ["stays", "runs away", "stays"]
     assert [one["threshold N"] for one in (stays, away, exact)] == ["120.0"] * 3
     assert float(stays["stays"]) == pytest.approx(0.7734, abs=1e-3)
-    assert float(stays["runs_away"]) == pytest.approx(0.2266, abs=1e-3)
     assert float(away["runs_away"]) == pytest.approx(0.7734, abs=1e-3)
     assert stays["moves"] == away["moves"] == "0" and exact["stays"] == ""
     assert stays["speed m/s"] == "0" and away["speed m/s"] == ""

@@ -60,29 +60,14 @@ def loaded(part):
     return ready
 
 
-HARD = {
-    "point": "bore --velocity 1e-3 --amplitude 0.5 --tolerance 1e-5",
-    "point on squares": "transverse --velocity 0.01 --amplitude 0.9 --poisson 0.3 "
-    "--model cartesian --tolerance 1e-6",
-    "predict": "bore --material steel --radius 5mm --load 10N --mu 0.3 --speed 0.01mm/s "
-    "--amplitude 0.2deg --frequency 100Hz --tolerance 1e-5",
-}
+HARD = "point bore --velocity 1e-3 --amplitude 0.5 --tolerance 1e-5"
 
 
 @pytest.mark.slow
 @pytest.mark.skipif(not Path("/proc/self/maps").exists(), reason="needs Linux")
-@pytest.mark.parametrize(
-    ("case", "moment"),
-    [
-        ("point", "_multiarray_umath"),
-        ("point", "llvmlite"),
-        ("point on squares", "llvmlite"),
-        ("predict", "special_ufuncs"),
-    ],
-)
-def test_an_interrupt_is_one_line_also_while_the_solver_is_loaded(case, moment):
-    command = [*COMMAND, case.partition(" ")[0], *HARD[case].split()]
-    assert stopped(command, loaded(moment)) == INTERRUPTED
+@pytest.mark.parametrize("moment", ["_multiarray_umath", "llvmlite"])
+def test_an_interrupt_is_one_line_also_while_the_solver_is_loaded(moment):
+    assert stopped([*COMMAND, *HARD.split()], loaded(moment)) == INTERRUPTED
 
 
 # Compiled code that releases the GIL and runs no Python handler, like a long kernel.
@@ -146,18 +131,15 @@ ANSWER = "$M point continuous-bore --velocity 1"
 
 # A line of bash, its exit code (of the first command of a pipe), and its standard error.
 ENDINGS = [
-    (f"{ANSWER} | true", 141, ""),
     ("sleep 0.1 | $M --help | true", 141, ""),
     pytest.param(f"PYTHONUNBUFFERED=1 {ANSWER} --json | true", 141, "", marks=pytest.mark.long),
     (f"{ANSWER} > /dev/full", 74, FULL),
-    ("$M --help > /dev/full", 74, FULL),
     (f"{ANSWER} >&-", 74, CLOSED),
     (f"{ANSWER} --nu 7 >&-", 2, f"{BAD}'7': allowed is a finite number of at least 0"),
     (f"{ANSWER} <&- >&- 2>&-", 74, ""),
     (f"{ANSWER} --nu 7 2> /dev/full", 2, ""),
     (f"LC_ALL=C {ANSWER} --nu \N{MINUS SIGN}1", 2, BAD),
     (f"PYTHONIOENCODING=ascii {ANSWER} --nu \N{ARABIC-INDIC DIGIT THREE}", 2, rf"{BAD}'\u0663'"),
-    (f"{ANSWER} --nu $'\\xff'", 2, rf"{BAD}'\udcff': allowed is a number"),
     (f"{ANSWER} --nu $'1\\e[31m'", 2, rf"{BAD}'1\x1b[31m': allowed is a number"),
 ]
 
@@ -171,23 +153,16 @@ def test_a_stream_that_is_closed_or_full_is_one_line_at_most(line, code, message
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize(
-    "line",
-    [
-        f"{ANSWER} <&- 2>&-",
-        f"TERM= COLUMNS=wide LC_ALL=C PYTHONIOENCODING=ascii env -u HOME {ANSWER}",
-        f"cd $FOLDER && rmdir ../gone && {ANSWER}",
-    ],
-)
-def test_an_answer_needs_no_more_than_its_output(line, tmp_path):
+def test_an_answer_needs_no_more_than_its_output(tmp_path):
     (tmp_path / "gone").mkdir()
-    process = shell(line, FOLDER=str(tmp_path / "gone"))
-    assert (process.returncode, process.stderr) == (0, "")
-    assert process.stdout.startswith("mu_macro = 0.883573\n")  # Eq 21 at 1: 0.88357
+    bare = "TERM= COLUMNS=wide LC_ALL=C PYTHONIOENCODING=ascii env -u HOME"
+    for line in (f"{ANSWER} <&- 2>&-", f"cd $FOLDER && rmdir ../gone && {bare} {ANSWER}"):
+        process = shell(line, FOLDER=str(tmp_path / "gone"))
+        assert (process.returncode, process.stderr) == (0, "")
+        assert process.stdout.startswith("mu_macro = 0.883573\n")  # Eq 21 at 1: 0.88357
 
 
-@pytest.mark.parametrize("columns", ["1", "x", "100000"])
-@pytest.mark.parametrize("words", ["", "point", "sweep"])
+@pytest.mark.parametrize(("words", "columns"), [("", "1"), ("point", "x"), ("sweep", "100000")])
 def test_help_fits_into_any_width(words, columns, monkeypatch):
     monkeypatch.setenv("COLUMNS", columns)
     process = in_process.run(*words.split(), "--help")

@@ -29,14 +29,12 @@ LENGTHS = [
     ("\u22126 mm", -6e-3),
     ("\uff15 mm", "since numbers have the digits 0 to 9"),  # full-width five
     ("1 \u00b5m", 1e-6),  # micro sign
-    ("5 mm\u00b2/mm", 5e-3),
     ("0", 0.0),  # the same in all units
     ("1/4 inch", "did you mean '0.25 inch'?"),
     (Fraction(1, 8), 0.125),
     (Q(5, "mm"), 5e-3),
     ("1,5 mm", "decimals follow a point"),
     ("1 \u00b1 0.1 um", "in it '1': 1 is a number without a unit"),
-    ("5 mm mm", "read 'mm' and stopped at 'mm'"),
     ("5 mm*rad", "the unit is mm*rad"),
     ("5 N", "units of m"),
     ("5", "a number without a unit"),
@@ -46,7 +44,6 @@ LENGTHS = [
     ("5 mil", "thou"),
     (None, "NoneType"),
     (np.array([1.0, 2.0]), "an array of shape (2,)"),
-    (Q(5, ""), "a number without a unit"),
     (Q(5, "degC"), "stopped at 'C'"),
     (Q(Uncertain(), "mm"), "Uncertain"),
 ]
@@ -60,7 +57,6 @@ RATES = [  # text, value in Hz; the value in rad/s is 2 pi times larger
     ("1 1/s", "stopped at '1/s'"),
     ("10 Hz*rad", "leaves open whether 2 pi"),
     ("10 hz", "capitals count (did you mean Hz?)"),
-    ("10", "a number without a unit"),
 ]
 OTHERS = [
     ("0.5\u00b0", "rad", 0.5 * pi / 180),
@@ -68,27 +64,22 @@ OTHERS = [
     ("30 %", "", 0.3),
     (Q(30, "percent"), "", 0.3),
     (Q(3, "N") / Q(0.01, "kN"), "", 0.3),
-    ("3e-1 %%", "", "stopped at '%%'"),
     ("210 kN/mm^2", "Pa", 210e9),
     ("210 Mpa", "Pa", "capitals count (did you mean MPa or mPa?)"),
     ("500 g", "N", "for its weight write gf or kgf, as in '500 gf'"),
     ("3.6 km/h", "m/s", 1.0),
     ("100 rpm", "m/s", "its speed is the rate in rad/s times a radius"),
-    ("7.85 g/cm^3", "kg/m^3", 7850.0),
-    ("7850 kg/m3", "kg/m^3", "stopped at '3'"),
     ("5 N/(m/s)", "N*s/m", "stopped at '/(m/s)'"),
 ]
 OTHERS += [
     ("1" + "0" * 5000 + "e-5000 m", "m", 1.0),
     ("30e6 psi", "Pa", 30e6 * POUND * GRAVITY / INCH**2),
     ("2 kips", "N", 2000 * POUND * GRAVITY),
-    ("490 lbs/ft^3", "kg/m^3", 490 * POUND / (12 * INCH) ** 3),
     ("50\N{NO-BREAK SPACE}%", "", 0.5),
     ("5e m", "m", "'e' is none of the units"),
     ("1 m/m", "m/s", "that of a pure number"),
     ("0e99999999999999999999 m", "m", "exponent is beyond the range"),
     ("5 " + "m*" * 3000 + "m", "m", "more than 12 units"),
-    (10**5000, "m", "not finite"),
     (datetime.timedelta(seconds=5), "Hz", "timedelta"),
 ]
 ROWS = [(value, "m", expected) for value, expected in LENGTHS]

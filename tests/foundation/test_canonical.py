@@ -9,8 +9,7 @@ from stubs.new_process import output
 
 from microslip.foundation import canonical
 
-TEXTS = [(1, "1"), (1.0, "1"), (0.1 + 0.2, "0.3"), (-0.0, "0"), (-2.5, "-2.5")]
-TEXTS += [(1.5e-8, "1.5e-8"), (1e22, "1e22"), (1000000, "1000000")]
+TEXTS = [(1.0, "1"), (0.1 + 0.2, "0.3"), (-0.0, "0"), (1.5e-8, "1.5e-8"), (1000000, "1000000")]
 
 
 @pytest.mark.parametrize(("value", "text"), TEXTS)

@@ -14,9 +14,6 @@ with suppress(ImportError):
 import pytest
 from stubs.new_process import PACKAGE, output, run
 
-from microslip.foundation.source_digest import LOADED, Sources
-
-KERNELS = [n for n in LOADED.names if b"compiled import kernel\n" in LOADED.content(n)]
 TWO_TYPES = """
 import sys, numpy as np
 from microslip.contact.operators import shrink
@@ -62,19 +59,6 @@ def with_code(tmp_path_factory):
 # Edits
 
 
-def test_an_edit_of_a_kernel_or_of_its_imports_changes_the_folder(package):
-    def digest():
-        sources = Sources(package)
-        return sources.digest(sources.kernels)
-
-    digests = [digest()]
-    for name in (*KERNELS, "theory/hertz.py"):  # kernels import its numbers
-        with (package / name).open("a") as file:
-            file.write("\nEDITED = True\n")
-        digests.append(digest())
-    assert len(set(digests)) == len(KERNELS) + 2
-
-
 def test_the_edited_law_of_friction_is_used(package):
     """After an edit of an inlined function, the compiled code of its caller is not used."""
     (package / "contact/caller.py").write_text(
@@ -105,12 +89,7 @@ def flipped(content):
     return bytes(changed)
 
 
-DAMAGE = {
-    "emptied": lambda content: b"",
-    "cut": lambda content: content[: len(content) * 2 // 3],
-    "a bit flipped": flipped,
-    "overwritten": lambda content: b"no pickle" * 1000,
-}
+DAMAGE = {"cut": lambda content: content[: len(content) * 2 // 3], "a bit flipped": flipped}
 
 
 @pytest.mark.parametrize("kind", DAMAGE)
@@ -134,12 +113,14 @@ import resource, signal
 signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
 resource.setrlimit(resource.RLIMIT_FSIZE, (1000, 1000))
 """
+FULL_LATER = f"from microslip.foundation import compiled\n{FULL}"
 
 
 @pytest.mark.skipif(find_spec("resource") is None, reason="needs limits of file sizes")
-def test_without_room_nothing_is_stored_and_one_line_names_the_folder(tmp_path):
+@pytest.mark.parametrize("full", [FULL, FULL_LATER], ids=["at the start", "later"])
+def test_without_room_nothing_is_stored_and_one_line_names_the_folder(full, tmp_path):
     """Files are limited to 1000 bytes, which Python reports like a full disk, as OSError."""
-    (line,) = call(tmp_path, *BOTH, program="\n".join([FULL, TWO_TYPES])).splitlines()
+    (line,) = call(tmp_path, *BOTH, program="\n".join([full, TWO_TYPES])).splitlines()
     assert str(tmp_path) in line and "NUMBA_CACHE_DIR" in line
     assert not stored(tmp_path, "c")
     assert call(tmp_path, *BOTH) == "" and len(stored(tmp_path, "c")) == 2
@@ -222,26 +203,16 @@ def test_kernels_do_not_import_linear_algebra():
 
 ANSWERS = """
 import sys, microslip
-QUESTIONS = [
-    ("transverse", 0.1, 1.0, {"stiffness": 0.1}),
-    ("bore", 0.1, 1.0, {}),
-    ("normal:lateral=0.5", 0.2, 0.4, {}),
-    ("transverse", 0.1, 0.8, {"model": "cartesian", "tolerance": 1e-2}),
-]
+ASKED = [("transverse", 0.1, 1.0, {"stiffness": 0.1}), ("bore", 0.1, 1.0, {})]
+ASKED += [("transverse", 0.1, 0.8, {"model": "cartesian", "tolerance": 1e-2})]
 order = int(sys.argv[1])
-found = [(q[:3], microslip.solve(*q[:3], **q[3], most_work=1e8)) for q in QUESTIONS[::order]]
-for question, one in found[::order]:
-    print(question, one.mu_macro.hex(), one.effort.iterations)
+found = [microslip.solve(*q[:3], **q[3], most_work=1e8) for q in ASKED[::order]][::order]
+print([(one.mu_macro.hex(), one.effort.iterations) for one in found])
 """
 
 
 def test_equal_inputs_give_equal_bits_whatever_was_compiled_before(tmp_path):
     """Kernels are compiled on demand, then read from disk, then compiled in another order."""
-
-    def answers(place, order):
-        return output(ANSWERS, order, NUMBA_CACHE_DIR=str(tmp_path / place))
-
-    compiled = answers("one", 1)
-    assert compiled.count("\n") == 4
-    assert answers("one", 1) == compiled
-    assert answers("other", -1) == compiled
+    places = ("one", 1), ("one", 1), ("other", -1)
+    answers = {output(ANSWERS, o, NUMBA_CACHE_DIR=str(tmp_path / place)) for place, o in places}
+    assert len(answers) == 1

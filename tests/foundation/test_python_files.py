@@ -1,7 +1,6 @@
 """Motions and pressures in Python files, by path."""
 
 import json
-import os
 
 import numpy as np
 import pytest
@@ -80,7 +79,6 @@ EDITS = [
     ("side_ways", lambda text: text.replace("lateral", "angle"), True),
     ("helper", lambda text: "FACTOR = 0.5\n", True),
     ("helper", lambda text: text + "# a comment\n", False),
-    ("cone", lambda text: text + "OTHER = 1\n", False),
     ("new", lambda text: "OTHER = 1\n", False),
 ]
 
@@ -106,26 +104,26 @@ def test_files_of_the_same_name_in_two_folders_do_not_disturb_each_other(mine, t
     assert not (mine / "__pycache__").exists()
 
 
-def test_a_configuration_finds_the_file_and_a_job_uses_it(mine, tmp_path, monkeypatch):
+JOB = """
+import json, sys
+from microslip.foundation import named_files
+from microslip.sweeps import evaluate
+named_files.remember(json.loads(sys.argv[1]))
+print(evaluate.computed(json.loads(sys.argv[2]))["mu_macro"])
+"""
+
+
+def test_a_configuration_finds_the_file_and_a_job_uses_it(mine, monkeypatch):
     axes = {"velocity": [0.5], "amplitude": [1.0], "tolerance": 0.1}
     sweep = {"motion": "side_ways.py:share=0.5", "pressure": "cone.py", **axes}
     (mine / "own.yaml").write_text(json.dumps({"sweeps": {"own": sweep}}))
-    configuration = load.load(mine / "own.yaml")
-    batch = request.points_of(configuration.sweeps["own"])
+    batch = request.points_of(load.load(mine / "own.yaml").sweeps["own"])
     assert batch.folder == "side_ways"
-    (point,) = batch.requests
-    assert point["motion"] == motion_named("mine/side_ways.py:share=0.5").name
-    placed = load.with_paths({"sweeps": {"own": sweep}}, [mine])
+    assert batch.requests[0]["motion"] == motion_named("mine/side_ways.py:share=0.5").name
+    placed = load.with_paths({"sweeps": {"own": sweep}}, [mine])["sweeps"]["own"]
     monkeypatch.chdir("/")
-    program = (
-        "import json, sys; from microslip.foundation import named_files\n"
-        "from microslip.sweeps import evaluate\n"
-        "named_files.remember(json.loads(sys.argv[1]))\n"
-        "print(evaluate.computed(json.loads(sys.argv[2]))['mu_macro'])"
-    )
-    names = [placed["sweeps"]["own"][role] for role in ("motion", "pressure")]
-    assert all(str(mine) in name for name in names)
-    assert np.isfinite(float(output(program, json.dumps(names), json.dumps(point))))
+    names = json.dumps([placed["motion"], placed["pressure"]])
+    assert np.isfinite(float(output(JOB, names, json.dumps(batch.requests[0]))))
 
 
 def test_a_file_that_has_changed_or_is_elsewhere_is_refused_by_its_old_name(mine, monkeypatch):
@@ -141,16 +139,13 @@ def test_a_file_that_has_changed_or_is_elsewhere_is_refused_by_its_old_name(mine
 TWO = MOTION + "\nclass Other(Motion):\n    summary = 'another'\n"
 BAD = [
     ("mine/none.py", None, "mine/none.py cannot be read: No such file; looked for "),
-    ("mine", None, "allowed is one of transverse, "),
     ("mine/x.py", "A = 1", "it has 0 subclasses of microslip.Motion; allowed is one in a file"),
     ("mine/x.py", TWO, "it has 2 subclasses of microslip.Motion: Sideways, Other; allowed"),
     ("mine/x.py", "def x(", "cannot be imported: SyntaxError in line 1: "),
     ("mine/x.py", "\n1 / 0", "cannot be imported: ZeroDivisionError in line 2: "),
-    ("mine/x.py", "raise SystemExit", "cannot be imported: SystemExit in line 1:"),
     ("mine/x.py:shar=2", MOTION, "unknown number shar; allowed: share"),
     ("mine/x.py:share", MOTION, "in it 'share': allowed are numbers as in x.py:key=0.5"),
     ("mine/x.py:share=2", MOTION, "= 2: allowed is a share in 0..1"),
-    ("mine/x.py", MOTION.replace("share: float = 1.0", "share: float = 'a' + 1"), "TypeError in"),
     ("mine/x.py", MOTION.replace("self.share)", "1 / 0)"), "x.py: ZeroDivisionError in line 16: "),
 ]
 
@@ -163,12 +158,3 @@ def test_a_file_without_a_clear_motion_is_refused_in_one_line(mine, name, conten
         motion_named(name)
     assert refused.value.argument == "motion"
     assert problem in str(refused.value) and "\n" not in str(refused.value)
-
-
-def test_a_motion_in_si_units(mine):
-    contact = {"load": "10 N", "radius": "5 mm", "young": "210 GPa", "nu": 0.3, "mu": 0.3}
-    drive = {"speed": "1 mm/s", "frequency": "20 kHz", "amplitude": "1 um"}
-    own = microslip.predict(NAME, **contact, **drive)
-    other = microslip.predict("transverse", **contact, **drive)
-    assert own.to_dict()["mu_macro"] == pytest.approx(other.to_dict()["mu_macro"], abs=2e-3)
-    assert os.path.basename(NAME) in own.to_dict()["motion"]

@@ -36,16 +36,11 @@ EDITS = [
     ('"""Docstring."""', '"""Another one."""', False),
     ('    """Docstring."""\n    if', "    if", False),
     ('"""What it limits."""\n', "", False),
-    ("\n\n\n", "\n", False),
     ("factor * x", "(factor*x)", False),
     ("is too large", "is much too large", "message"),
     ("LIMIT = 3", "LIMIT = 4", True),
-    ("LIMIT = 3", "LIMIT = 3.0", True),
-    ("factor * x", "x * factor", True),
     ('"a b"', '"a c"', True),
-    ('"thing"', '"thong"', True),
     ("name: str", "name: int", True),
-    ("import numpy as np", "import scipy as np", True),
     ("def double", "def (", True),
 ]
 """Old text, new text, and whether the edit changes digests: a message changes those of products."""
@@ -107,7 +102,7 @@ def test_a_result_of_a_method_depends_on_its_file_and_the_imports_of_this_file(
     package, monkeypatch
 ):
     monkeypatch.setattr(source_digest, "LOADED", Sources(package))
-    digest = source_digest._of_solver.__wrapped__  # without the cache
+    digest = source_digest.of_solver.__wrapped__  # without the cache
     sources, methods = Sources(package), ("one", "_shared", "_deeper")
     files = SOLVER | {f"periodic/methods/{name}.py" for name in methods}
     assert digest("one") == sources.digest(files)
@@ -144,30 +139,21 @@ def test_a_second_process_parses_only_edited_files(package, monkeypatch):
     assert Sources(package).digest(SOLVER) == after and len(parsed) == 1
 
 
-@pytest.mark.parametrize("damage", [lambda b: b[:-9], lambda b: b"", lambda b: b"[1, 2]"])
-def test_damaged_parse_results_are_replaced(damage, package):
+def test_damaged_parse_results_are_replaced(package):
     first = Sources(package).digest(SOLVER)
     (cache,) = (package / "__pycache__").glob("sources.*.json")
     whole = cache.read_bytes()
-    cache.write_bytes(damage(whole))
-    assert Sources(package).digest(SOLVER) == first
-    assert cache.read_bytes() == whole
-
-
-def test_importing_the_package_computes_no_digest():
-    program = "import sys, microslip; print('microslip.foundation.source_digest' in sys.modules)"
-    assert output(program) == "False\n"
+    cache.write_bytes(whole[:-9])
+    assert (Sources(package).digest(SOLVER), cache.read_bytes()) == (first, whole)
 
 
 # The package itself
 
+BORE = {"motion": "bore", "poisson": "0", "cells": 4, "angles": 4, "steps": 8}
 REQUESTS = [
     {"kind": "point", "motion": "zigzag", "poisson": "0.3", "model": "auto", "tolerance": "0.1"},
-    {"kind": "point", "motion": "transverse", "poisson": "0", "model": "auto", "tolerance": "0.1"}
-    | {"pressure": "power:exponent=1"},
-    {"kind": "field", "motion": "continuous-bore", "cells": 4},
-    {"kind": "period", "motion": "bore", "poisson": "0", "cells": 4, "angles": 4, "steps": 8},
-    {"kind": "patches", "motion": "bore", "poisson": "0", "cells": 4, "angles": 4, "steps": 8},
+    {"kind": "period"} | BORE,
+    {"kind": "patches"} | BORE,
     {"kind": "run", "motion": "transverse", "poisson": "0", "model": "radial", "tolerance": "0.01"}
     | {"method": "euler", "cells": 8, "angles": 1, "steps": 16},
 ]
@@ -183,7 +169,6 @@ print(json.dumps([m.__file__ for n, m in sys.modules.items() if n.startswith("mi
 @pytest.mark.long
 def test_all_modules_that_requests_load_count():
     requests = [{"velocity": "0.5", "amplitude": "0.5"} | request for request in REQUESTS]
-    del requests[2]["amplitude"]
     files = json.loads(output(LOADED_BY, json.dumps(requests)))
     loaded = {Path(file).relative_to(PACKAGE).as_posix() for file in files}
     assert "sweeps/evaluate.py" in loaded

@@ -7,7 +7,6 @@ import io
 import json
 import math
 import os
-import sys
 from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -30,8 +29,8 @@ class Answer(NamedTuple):
         True for exit code 0.
     csv : callable or None
         csv(): content of the .csv file of --output.  None if there is no such file.
-    dataset : xr.Dataset or None
-        Content of the .nc file of --output, and of the figure.
+    dataset : callable or None
+        dataset(): the xarray.Dataset of the .nc file of --output, and of the figure.
     figure : str
         Name of the figure in report.figures.drawing.
     is_table : bool
@@ -42,7 +41,7 @@ class Answer(NamedTuple):
     text: str
     complete: bool
     csv: Callable[[], str] | None = None
-    dataset: Any = None
+    dataset: Callable[[], Any] | None = None
     figure: str = ""
     is_table: bool = False
 
@@ -51,18 +50,18 @@ class Answer(NamedTuple):
 
         Raises InputError if a file cannot be written.
         """
-        if figure is not None:
+        if figure is not None and self.dataset is not None:
             from microslip.report.figures.drawing import draw, save
 
-            save(draw(self.figure, {self.figure: self.dataset}), figure)
+            save(draw(self.figure, {self.figure: self.dataset()}), figure)
         if output is None or self.csv is None and self.dataset is None:
             return self
         try:
             with writing_beside(output) as beside:
                 if self.csv is not None and output.lower().endswith(".csv"):
                     beside.write_text(self.csv(), encoding="utf-8", newline="\n")
-                else:
-                    self.dataset.to_netcdf(beside, engine="netcdf4")
+                elif self.dataset is not None:
+                    self.dataset().to_netcdf(beside, engine="netcdf4")
         except (OSError, CacheError) as error:
             raise InputError("output", output, f"cannot be written: {error}") from None
         lines = self.text.splitlines()
@@ -70,16 +69,13 @@ class Answer(NamedTuple):
         return self._replace(text="\n".join(lines))
 
     def print(self, as_json: bool) -> None:
-        """Print the answer.  Characters that standard output lacks, such as those of units, are
-        printed as escapes."""
         text = self.text
         if as_json:
             from microslip.sweeps.evaluate import plain
 
             text = json.dumps(plain(self.plain))
-        encoding = getattr(sys.stdout, "encoding", None) or "utf-8"
         if text:
-            print(text.encode(encoding, "backslashreplace").decode(encoding))
+            print(text)
 
 
 def csv_text(columns: Mapping[str, Any], comments: Sequence[str] = (), digits: int = 0) -> str:
@@ -110,15 +106,15 @@ def output_file(*endings: str) -> Callable[[str, str], str]:
     """Reader of an option for the name of a new file.  endings: allowed file extensions."""
 
     def read(argument: str, text: str) -> str:
-        file, allowed = Path(text), ""
+        file, problem = Path(text), ""
         if file.suffix.lower() not in endings:
-            allowed = f"a name that ends in {' or '.join(endings)}"
+            problem = f"allowed is a name that ends in {' or '.join(endings)}"
         elif file.is_dir() or not (file.parent.is_dir() and os.access(file.parent, os.W_OK)):
-            allowed = "a file in a folder that can be written to"
-        if allowed:
-            raise InputError(argument, text, f"allowed is {allowed}")
-        if ".png" in endings and (hint := extras.missing("matplotlib")):
-            raise InputError(argument, text, hint)
+            problem = "allowed is a file in a folder that can be written to"
+        elif ".png" in endings:
+            problem = extras.missing("matplotlib")
+        if problem:
+            raise InputError(argument, text, problem)
         return text
 
     return read

@@ -10,10 +10,10 @@ from itertools import product
 from typing import TYPE_CHECKING, Any
 
 from microslip.app.answer import Answer, csv_text
-from microslip.app.parser import option, with_options
+from microslip.app.parser import message, option, with_options
 from microslip.app.progress import progress
 from microslip.app.terminal import complain
-from microslip.foundation.errors import InputError, shown
+from microslip.foundation.errors import InputError
 
 if TYPE_CHECKING:
     from microslip.si.output import Prediction
@@ -81,9 +81,7 @@ def predict(motion: str, table: str | None = None, **arguments: Any) -> Answer:
     dimensionless by mu times the load without oscillation, force and mu_macro by mu times the mean
     load.
     """
-    from microslip.foundation.named_files import speaks_of_file
-    from microslip.si.predict import checked_inputs, predict_inputs
-    from microslip.si.table import grid_of, is_range, read_cases
+    from microslip.si.inputs import is_range, read_inputs
 
     files = {name: arguments.pop(name) for name in NEEDS if name in arguments}
     ranges = [name for name, value in arguments.items() if is_range(name, value)]
@@ -91,7 +89,7 @@ def predict(motion: str, table: str | None = None, **arguments: Any) -> Answer:
     for name, value in files.items():
         if source not in NEEDS[name]:
             raise InputError(name, value, f"allowed only with {NEEDS[name]}")
-    if speaks_of_file(motion):
+    if motion.startswith("file:"):
         from microslip.si.strokes import read_stroke
 
         if hint := read_stroke(motion).hint:
@@ -99,15 +97,22 @@ def predict(motion: str, table: str | None = None, **arguments: Any) -> Answer:
     if table is not None:
         if ranges:
             raise InputError(ranges[0], arguments[ranges[0]], "a range; allowed without --table")
+        from microslip.si.table import read_cases
+
         form = {name: files[name] for name in ("decimal", "encoding") if name in files}
         return _predictions(read_cases(motion, table, arguments, **form), table)
     if ranges:
+        from microslip.si.table import grid_of
+
         cases = grid_of(motion, arguments)
         sizes = sorted(len(values) for _, _, values in cases.axes.values())
         if "figure" in files and (len(sizes) > 2 or sizes[:-1] > [MOST_LINES]):
             allowed = f"one range, or with a second one of at most {MOST_LINES} values"
             raise InputError("figure", files["figure"], f"allowed with {allowed}")
         return _predictions(cases)
+    read_inputs(motion, **arguments)  # most refusals, before the import of the solver
+    from microslip.si.predict import checked_inputs, predict_inputs
+
     inputs = checked_inputs(motion, **arguments)
     with progress("microslip predict"):
         one = predict_inputs(inputs)
@@ -136,15 +141,16 @@ def _predictions(cases: Cases, table: str | None = None) -> Answer:
         if error.argument not in columns:
             raise
         raise InputError("table", table, _problem(error, cases, columns)) from None
-    problems, texts = {}, []
-    for k, (name, one) in enumerate(zip(cases.names, answers, strict=True)):
-        if not hasattr(one, "values"):
-            problems[k] = _problem(one, cases, columns)
-            texts.append(f"{name}: {problems[k]}" if isinstance(one, InputError) else problems[k])
+    shown = [one if hasattr(one, "values") else _problem(one, cases, columns) for one in answers]
+    texts = [
+        f"{name}: {text}" if isinstance(one, InputError) else text
+        for name, one, text in zip(cases.names, answers, shown, strict=True)
+        if isinstance(text, str)
+    ]
     more = len(texts) - MOST_COMPLAINTS
     for text in texts[:MOST_COMPLAINTS] + [f"{more} more without a prediction"] * (more > 0):
         complain(f"microslip predict: {text}")
-    dataset = dataset_of(cases, [problems.get(k, one) for k, one in enumerate(answers)])
+    dataset = dataset_of(cases, shown)
     if table is None:
         places = list(product(*(values for _, _, values in cases.axes.values())))
     else:
@@ -152,15 +158,15 @@ def _predictions(cases: Cases, table: str | None = None) -> Answer:
         about = {"long_name": "line of the file"}
         dataset = dataset.assign_coords(line=("case", cases.starts["line"], about))
     rows = []
-    for k, one in enumerate(answers):
-        place = dict(zip(cases.axes or cases.starts, places[k], strict=True))
-        plain = {} if k in problems else one.to_dict()
-        rows.append({**place, "error": problems.get(k), **plain, **place})
+    for values, one in zip(places, shown, strict=True):
+        place = dict(zip(cases.axes or cases.starts, values, strict=True))
+        plain = {"error": one} if isinstance(one, str) else {"error": None, **one.to_dict()}
+        rows.append(place | plain | place)
     return Answer(
         *(rows, table_text(cases, answers)),
         all(getattr(one, "converged", False) for one in answers),
         csv=lambda: csv_text(dataset.to_dataframe().reset_index()),
-        dataset=dataset,
+        dataset=lambda: dataset,
         figure="curve",
     )
 
@@ -188,13 +194,13 @@ def _problem(error: InputError | str, cases: Cases, columns: Collection[str] = (
         return with_options(error)
     name = error.argument if error.argument in columns else option(error.argument)
     source = getattr(cases.shared.get("map"), "encoding", {}).get("source")
-    wrong = source if error.argument == "map" else error.value
-    value = "" if wrong is None else f" = {shown(wrong)}"
-    allowed = with_options(error.allowed, [one for one in INPUTS if one not in columns])
-    return " ".join(f"{name}{value}: {allowed}".split())
+    value = source if error.argument == "map" else error.value
+    return message(name, value, error.allowed, [one for one in INPUTS if one not in columns])
 
 
-def fit(motion: str, measured: str, **arguments: Any) -> Answer:
+def fit(
+    motion: str, measured: str, output: object = None, figure: object = None, **arguments: Any
+) -> Answer:
     """Coefficient of friction and u_lim from measured friction.
 
     The coefficient of friction without vibration, and the displacement u_lim at which the whole
@@ -207,14 +213,13 @@ def fit(motion: str, measured: str, **arguments: Any) -> Answer:
     """
     import microslip
 
-    files = {arguments.pop(name, None) for name in ("output", "figure")}
     with progress("microslip fit"):
         result = microslip.fit(motion, measured, **arguments)
     for text in result.left_out:
         complain(f"microslip fit: {with_options(text)}; left out")
     complete = len(result.told) == 2 and not result.left_out
-    dataset = None if files == {None} else result.to_xarray()
-    return Answer(result.to_dict(), str(result), complete, dataset=dataset, figure="fit")
+    values = result.to_dict()
+    return Answer(values, str(result), complete, dataset=result.to_xarray, figure="fit")
 
 
 def response(path: str, output: str | None = None, **arguments: Any) -> Answer:
@@ -230,11 +235,10 @@ def response(path: str, output: str | None = None, **arguments: Any) -> Answer:
         result = microslip.predict_response(path, **arguments)
     plain = {name: values.tolist() for name, (_, values) in result.columns.items()}
     plain |= result.attributes | {"converged": result.converged}
-    dataset = result.to_xarray() if output else None
     return Answer(
         *(plain, str(result), result.converged),
         csv=lambda: csv_text(result.columns),
-        dataset=dataset,
+        dataset=result.to_xarray,
         is_table=True,
     )
 

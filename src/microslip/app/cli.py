@@ -16,9 +16,9 @@ from pathlib import Path
 
 from microslip import __version__
 from microslip.app.commands import COMMANDS
-from microslip.app.parser import Option, Parser, option, with_options
+from microslip.app.parser import Option, Parser, message, option
 from microslip.app.terminal import complain
-from microslip.foundation.errors import CacheError, InputError, shown
+from microslip.foundation.errors import CacheError, InputError
 
 SOURCES = ("measured", "path", "record", "table")
 """Arguments with the path of a file that is read."""
@@ -49,7 +49,7 @@ def main(words: list[str]) -> int:
     if {"-h", "--help"} & set(words):
         parser.print_help_with("motions", COMMANDS[name].motions())
         return 0
-    return respond(name, parser.parse(words), parser.readers)
+    return _respond(name, parser.parse(words), parser.readers)
 
 
 def _without_command(words: list[str]) -> int:
@@ -74,15 +74,16 @@ def parser_of(name: str) -> Parser:
     """The parser of a command in COMMANDS."""
     command = COMMANDS[name]
     parser = Parser(prog=f"microslip {name}", description=command.answer.__doc__)
-    parser.add(command.places, place=True)
     for title, options in command.groups().items():
-        parser.add(options, parser.add_argument_group(title))
+        group = parser.add_argument_group(title)
+        for argument, one in options.items():
+            parser.add(argument, one, None if one.is_place else group)
     text = "print one JSON object and nothing else"
     parser.add_argument("--json", action="store_true", help=text)
     return parser
 
 
-def respond(name: str, options: argparse.Namespace, readers: Mapping[str, Option]) -> int:
+def _respond(name: str, options: argparse.Namespace, readers: Mapping[str, Option]) -> int:
     """Print the answer to a parsed command line, or an error message.
 
     Returns the exit code: 0 if the answer is complete, 1 if not, 2 for bad input.
@@ -97,12 +98,10 @@ def respond(name: str, options: argparse.Namespace, readers: Mapping[str, Option
             raise InputError("output", output, allowed)
         answer = COMMANDS[name].answer(**arguments).write(output, figure)
     except InputError as error:
-        argument, value = option(error.argument), error.value
-        if error.argument in spellings:
-            argument, value = spellings[error.argument], getattr(options, error.argument)
-        text = "" if value is None or value is True else f" = {shown(value)}"
+        argument = spellings.get(error.argument, option(error.argument))
+        value = getattr(options, error.argument) if error.argument in spellings else error.value
         names = () if error.argument == "table" else readers
-        complain(f"microslip {name}: {argument}{text}: {with_options(error.allowed, names)}")
+        complain(f"microslip {name}: {message(argument, value, error.allowed, names)}")
         return 2
     except CacheError as error:
         complain(f"microslip {name}: {error}")

@@ -20,33 +20,29 @@ class Command(NamedTuple):
     answer : callable
         Function that computes the answer.  The command line gives its arguments, and its docstring
         describes the command.
-    places, options : dict of Option
+    options : dict of Option
         Positional arguments and options, by Python argument.
     inputs : str
-        Groups or names of INPUTS that are options, too.
-    without : str
-        Name of an input that is no option.
+        Groups or names of INPUTS that are options, too, except names after a minus.
     motions : callable
         motions(): description of each motion, for the help text.
     """
 
     answer: Callable[..., Answer]
-    places: Mapping[str, Option]
     options: Mapping[str, Option]
     inputs: str = ""
-    without: str = ""
     motions: Callable[[], dict[str, str]] = dict
 
     def groups(self) -> dict[str, dict[str, Option]]:
         """All options by Python argument, in groups by their heading in the help text."""
         groups: dict[str, dict[str, Option]] = {}
-        if self.inputs:
+        if words := self.inputs.split():
             from microslip.si.inputs import INPUTS  # late, since it imports NumPy
 
             for name, one in INPUTS.items():
-                if {name, one.group} & {*self.inputs.split()} and name != self.without:
-                    read = {"read": opened_map} if name == "map" else {}
-                    option = Option(name.upper(), one.help, **read)
+                if (name in words or one.group in words) and f"-{name}" not in words:
+                    option = Option(name.upper(), one.help)
+                    option = option._replace(read=opened_map) if name == "map" else option
                     groups.setdefault(one.group, {})[name] = option
         return groups | {"options of this command": dict(self.options)}
 
@@ -57,6 +53,8 @@ def real_or_none(argument: str, text: str) -> float | None:
 
 
 real, whole = partial(Option, read=spec.read), partial(Option, read=partial(spec.read, whole=True))
+place = partial(Option, is_place=True)
+MOTION = place("MOTION", "the motion")
 FILE_FORMAT = {
     "decimal": Option("MARK", "decimal mark of the file, a point or a comma (.)"),
     "encoding": Option("NAME", "encoding of the file, such as cp1252 (utf-8)"),
@@ -68,8 +66,8 @@ EXACT = Option("FILE", "write all columns to a .csv or .nc file", output_file(".
 COMMANDS = {
     "point": Command(
         answers.point,
-        {"motion": Option("MOTION", "the motion")},
         {
+            "motion": MOTION,
             "velocity": real("V", "velocity; 0 means v -> 0; omit it with --force"),
             "amplitude": real("A", "amplitude, for a motion that oscillates"),
             "force": real("P", "in place of a velocity, over mu times the mean normal load"),
@@ -99,8 +97,8 @@ COMMANDS = {
     ),
     "predict": Command(
         answers.predict,
-        {"motion": Option("MOTION", "the motion")},
         {
+            "motion": MOTION,
             "table": Option(
                 "CSV",
                 "predict one contact for each line of a file.  Its heading names "
@@ -116,10 +114,8 @@ COMMANDS = {
     "fit": Command(
         answers.fit,
         {
-            "motion": Option("MOTION", "transverse, longitudinal or zigzag"),
-            "measured": Option("CSV", "the table"),
-        },
-        {
+            "motion": place("MOTION", "transverse, longitudinal or zigzag"),
+            "measured": place("CSV", "the table"),
             "confidence": Option("P", "confidence level of the intervals (0.95)"),
             **FILE_FORMAT,
             "figure": FIGURE,
@@ -129,8 +125,8 @@ COMMANDS = {
     ),
     "response": Command(
         answers.response,
-        {"path": Option("CSV", "the path")},
         {
+            "path": place("CSV", "the path"),
             "tolerance": real("T", "largest error of a force over mu times the load (1e-3)"),
             **FILE_FORMAT,
             "output": EXACT,
@@ -139,8 +135,8 @@ COMMANDS = {
     ),
     "fold": Command(
         answers.fold,
-        {"record": Option("CSV", "the record")},
         {
+            "record": place("CSV", "the record"),
             "output": CSV_FILE,
             "frequency": Option("F", "approximate frequency (that of the strongest component)"),
             "rows": whole("N", "number of samples of the period, an even number (32)"),
@@ -149,7 +145,6 @@ COMMANDS = {
     ),
     "export iwan": Command(
         answers.iwan,
-        {},
         {
             "elements": whole("N", "number of elements"),
             "tolerance": real("T", "in place of it: largest error over mu times the load (1e-3)"),
@@ -159,10 +154,8 @@ COMMANDS = {
     ),
     "export table": Command(
         answers.table,
-        {"motion": Option("MOTION", "the motion")},
-        {"output": CSV_FILE},
-        inputs="bodies load motion drive output",
-        without="force",
+        {"motion": MOTION, "output": CSV_FILE},
+        inputs="bodies load motion drive output -force",
         motions=answers.real_motions,
     ),
 }

@@ -20,20 +20,20 @@ def job_log(path: str | Path, shown: int = logging.WARNING) -> Iterator[logging.
     SolverError or a full disk.
     """
     try:
-        file = open(path, "w", encoding="utf-8")  # noqa: SIM115 - closing it may fail
+        file = logging.FileHandler(path, "w", "utf-8")
     except OSError as error:
         sys.exit(f"Error: {advice('write', path, error)}")
     log = logging.getLogger("microslip")
     log.setLevel(logging.INFO)
     logging.raiseExceptions = False  # what a full disk has refused is written or reported below
-    handlers: list[logging.Handler] = [logging.StreamHandler(file), logging.StreamHandler()]
-    handlers[1].setLevel(shown)
-    for handler in handlers:
+    screen = logging.StreamHandler()
+    screen.setLevel(shown)
+    for handler in (file, screen):
         log.addHandler(handler)
-    problem = "failed"
+    code: str | int = 1
     try:
         yield log
-        problem = ""
+        code = 0
     except (CacheError, SolverError) as error:
         log.error("Error: %s", error)
     except Exception as error:
@@ -43,13 +43,13 @@ def job_log(path: str | Path, shown: int = logging.WARNING) -> Iterator[logging.
         else:
             log.exception("The job failed:")
     finally:
-        for handler in handlers:
+        for handler in (file, screen):
             log.removeHandler(handler)
         try:
             file.close()
         except OSError as error:  # an incomplete log might lack points that did not converge
-            problem = problem or f"Error: {advice('write', path, error)}"
+            code = code or f"Error: {advice('write', path, error)}"
         # The process is about to end: a last garbage collection would take a quarter of a second.
         gc.freeze()
-    if problem:
-        sys.exit(1 if problem == "failed" else problem)
+    if code:
+        sys.exit(code)

@@ -8,6 +8,7 @@ from collections.abc import Callable, Collection, Iterable, Mapping
 from typing import Any, NamedTuple, NoReturn
 
 from microslip.app.terminal import complain
+from microslip.foundation.errors import shown
 from microslip.foundation.spec import near_miss
 
 SYNONYMS = {"--speed": "--velocity", "--velocity": "--speed"}
@@ -27,11 +28,14 @@ class Option(NamedTuple):
         Placeholder of the value in the help text, and the help text.
     read : callable
         read(argument, text) returns the value of a text, or raises InputError about the argument.
+    is_place : bool
+        True for a positional argument.
     """
 
     metavar: str
     help: str
     read: Callable[[str, str], Any] = lambda argument, text: text
+    is_place: bool = False
 
 
 class Parser(argparse.ArgumentParser):
@@ -52,16 +56,13 @@ class Parser(argparse.ArgumentParser):
         complain(f"{self.prog}: {message} (see {self.prog} --help)")
         raise SystemExit(2)
 
-    def add(self, options: Mapping[str, Option], group: Any = None, place: bool = False) -> None:
-        """Add options by the name of the Python argument.  place: True for positional arguments."""
-        self.readers |= options
-        for name, one in options.items():
-            words: dict[str, Any] = {} if place else {"dest": name}
-            names = [name] if place else [option(name), *SECOND_NAMES.get(name, ())]
-            text = one.help.replace("%", "%%")
-            (group or self).add_argument(
-                *names, **words, action=_Store, metavar=one.metavar, help=text
-            )
+    def add(self, name: str, one: Option, group: Any = None) -> None:
+        """Add an option by the name of the Python argument."""
+        self.readers[name] = one
+        names = [name] if one.is_place else [option(name), *SECOND_NAMES.get(name, ())]
+        words: dict[str, Any] = {} if one.is_place else {"dest": name}
+        words |= {"metavar": one.metavar, "help": one.help.replace("%", "%%")}
+        (group or self).add_argument(*names, **words, action=_Store)
 
     def print_help_with(self, title: str, texts: Mapping[str, str]) -> None:
         """Print the help text with a list of names, each with a text."""
@@ -95,25 +96,26 @@ class Parser(argparse.ArgumentParser):
 class _Store(argparse.Action):
     """Action that stores a value and the spelling of its option, and refuses a second value."""
 
-    def __call__(
-        self,
-        parser: argparse.ArgumentParser,
-        namespace: argparse.Namespace,
-        value: object,
-        option_string: str | None = None,
-    ) -> None:
-        spelling = option_string or str(self.metavar)
+    def __call__(self, parser: Any, namespace: Any, values: Any, option_string: Any = None) -> None:
+        spelling = option_string or self.metavar
         if first := namespace.spellings.get(self.dest):
             same = "" if first == spelling else f", as {first} the first time"
             parser.error(f"{spelling} is given twice{same}; allowed: once")
         namespace.spellings[self.dest] = spelling
-        setattr(namespace, self.dest, value)
+        setattr(namespace, self.dest, values)
 
 
 def option(argument: str) -> str:
     """Option of a Python argument, such as --contact-radius for contact_radius.  An environment
     variable, in capitals, is returned unchanged."""
     return argument if argument.isupper() else f"--{argument.replace('_', '-')}"
+
+
+def message(argument: str, value: object, allowed: str, names: Iterable[str]) -> str:
+    """One line about an argument, without the value None, and with options in place of the Python
+    arguments `names`."""
+    text = "" if value is None else f" = {shown(value)}"
+    return " ".join(f"{argument}{text}: {with_options(allowed, names)}".split())
 
 
 def with_options(text: str, arguments: Iterable[str] = ()) -> str:
@@ -123,9 +125,7 @@ def with_options(text: str, arguments: Iterable[str] = ()) -> str:
     others are also ordinary words.
     """
     text = re.sub(r"\b(decimal|encoding) = ", r"--\1 ", text)
-    names = "|".join(name for name in arguments if "_" in name)
-    if not names:
-        return text
+    names = "|".join(name for name in arguments if "_" in name) or "(?!)"
     return re.sub(rf"(?:\ba )?\b({names})\b", lambda match: option(match[1]), text)
 
 
@@ -136,8 +136,7 @@ def _joined(words: list[str]) -> list[str]:
     """
     joined: list[str] = []
     for word in words:
-        is_value = bool(joined) and re.fullmatch("--[^=]*", joined[-1]) and NEGATIVE.match(word)
-        if is_value:
+        if joined and re.fullmatch("--[^=]*", joined[-1]) and NEGATIVE.match(word):
             joined[-1] += f"={word}"
         else:
             joined.append(word)

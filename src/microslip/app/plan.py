@@ -92,19 +92,19 @@ class Plan:
         if figure is not None:
             kind, rule, inputs = figure.kind, "figure", figure.datasets
             links = {f"figures/{name}{ending}": ending for ending in (".png", ".pdf")}
-            parts = [self.products[dataset].stem for dataset in inputs], []
             if kind == "explorer":
                 rule, links = "explorer", {f"{name}.html": ".html"}
-                parts = parts[0], list(self._batches(name))
-        elif sweep is not None:
+        if sweep is not None:
             kind = "certified" if sweep.is_certified else "sweep"
             common, runs = request.settings_of(sweep), request.runs_of(configuration, name)
             solver = source_digest.of_request(common)
             code = source_digest.of_builder(*MAP_CODE) if sweep.is_certified else ""
             parts = common, sweep.model_dump(mode="json"), runs, solver, code
         else:
-            settings = configuration.studies[name].model_dump(mode="json")
-            parts = list(self._batches(name)), settings
+            study = configuration.studies.get(name)
+            settings = None if study is None else study.model_dump(mode="json")
+            stems = [self.products[dataset].stem for dataset in inputs]
+            parts = stems, list(self._batches(name)), settings
         files = BUILDERS.get(kind) or drawing.modules_of(kind)
         digest = source_digest.of_builder(*files), self._maker
         stem = f"{name}.{fingerprint(kind, digest, *parts)[: request.CONTENT_NAME]}"
@@ -116,7 +116,7 @@ class Plan:
         A certified map has one batch with all points.  Its value is None, because its requests
         depend on the results.
         """
-        configuration = self.configuration
+        configuration, blocks = self.configuration, []
         if (sweep := configuration.sweeps.get(name)) is not None:
             if sweep.is_certified:
                 folder = request.folder_of(request.solver_names(sweep)[0])
@@ -125,15 +125,12 @@ class Plan:
             runs = request.runs_of(configuration, name)
             blocks += [Batch(runs)] if runs else []
         elif name in configuration.studies:
-            pieces = registry.pieces(name, configuration.studies[name])
-            blocks = [Batch(piece) for piece in pieces]
+            blocks = list(map(Batch, registry.pieces(name, configuration.studies[name])))
         elif configuration.figures[name].kind == "explorer":
             maps = explorer.maps_of(configuration, configuration.figures[name])
-            periods = [explorer.period_requests(configuration, *maps, name=one) for one in maps]
-            size = explorer.PERIODS_PER_JOB
-            blocks = [Batch(part) for some in periods for part in request.cut(some, size)]
-        else:
-            blocks = []
+            for one in maps:
+                periods = explorer.period_requests(configuration, *maps, name=one)
+                blocks += map(Batch, request.cut(periods, explorer.PERIODS_PER_JOB))
         return {f"{block.folder}/{block.name}": block for block in blocks}
 
 
@@ -159,16 +156,17 @@ class Results:
         self._listed = cache(self._list)
         self.stems: dict[str, str] = {}
         self.missing: dict[str, list[str]] = {}
-        self._is_there: dict[str, bool] = {}
+        complete: set[str] = set()
         for name, product in plan.products.items():
             endings = tuple(product.links.values())
             self.stems[name], is_there = self._chosen("data", product.stem, endings)
-            is_there &= all(self._is_there[dataset] for dataset in product.inputs)
-            self._is_there[name] = is_there
+            if is_there and complete.issuperset(product.inputs):
+                complete.add(name)
         for name, product in plan.products.items():
-            if whole or not self._is_there[name]:
-                datasets = [f"data/{self.stems[dataset]}.nc" for dataset in product.inputs]
-                self.missing[name] = datasets + self.batch_files(name)
+            if not whole and name in complete:
+                continue
+            datasets = [f"data/{self.stems[dataset]}.nc" for dataset in product.inputs]
+            self.missing[name] = datasets + self.batch_files(name)
 
     def files(self, name: str) -> list[str]:
         """Paths of the files of a product."""
@@ -213,12 +211,11 @@ class Results:
 
     def order_of_batch(self, folder: str, name: str) -> str:
         """JSON text of a batch for its job, or of the name of a certified map."""
+        path = f"{folder}/{name.partition('-')[0]}"
         for product in self.missing:
-            batch = self.plan.batches(product).get(f"{folder}/{name.partition('-')[0]}", "")
-            if batch is None:
-                return canonical_json(product)
-            if isinstance(batch, Batch):
-                return canonical_json(batch._asdict())
+            if path in (batches := self.plan.batches(product)):
+                batch = batches[path]
+                return canonical_json(product if batch is None else batch._asdict())
         raise SourcesEdited("the solver")
 
     def orders(self, *names: str) -> str:

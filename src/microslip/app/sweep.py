@@ -15,7 +15,7 @@ import re
 import shutil
 import sys
 import tempfile
-from contextlib import redirect_stderr, redirect_stdout
+from contextlib import redirect_stderr, redirect_stdout, suppress
 from importlib import import_module
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -31,7 +31,6 @@ if TYPE_CHECKING:
 
 SETS_CORES = re.compile(r"-[cje]|--(cores|jobs|executor|profile|workflow-profile)(=|$)")
 """Pattern of arguments that set the number of parallel jobs, directly or by a profile."""
-KEY_AND_VALUE = re.compile(r"[A-Za-z_][\w-]*\w=")
 PRODUCTS = (".nc", ".html", ".pdf", ".png")
 """File extensions of products, which are no configurations."""
 OPTIONS = {
@@ -57,7 +56,8 @@ def main(arguments: list[str]) -> int:
     if {"-h", "--help"} & set(arguments):
         usage = "microslip sweep [CONFIGURATION | TARGET ...] [--dry-run] [options of Snakemake]"
         parser = Parser(usage=usage, description=main.__doc__)
-        parser.add(OPTIONS)
+        for name, one in OPTIONS.items():
+            parser.add(name, one)
         paths = {name: os.path.relpath(path) for name, path in configurations().items()}
         parser.print_help_with("configurations", paths)
         return 0
@@ -112,12 +112,10 @@ def _spare_cache() -> None:
     a traceback.
     """
     home = os.environ.get("XDG_CACHE_HOME") or os.path.expanduser("~/.cache")
-    try:
+    with suppress(OSError):
         os.makedirs(os.path.join(home, "snakemake"), exist_ok=True)
         if os.access(home, os.W_OK):
             return
-    except OSError:
-        pass
     spare = tempfile.mkdtemp(prefix="microslip-")
     atexit.register(shutil.rmtree, spare, ignore_errors=True)
     os.environ["XDG_CACHE_HOME"] = spare
@@ -138,12 +136,11 @@ def _check(arguments: list[str]) -> None:
         if isinstance(count, int) and count < 1:
             raise InputError(f"--{name}", count, "allowed is a whole number of at least 1, or all")
     for entry in options.config or ():
-        if not KEY_AND_VALUE.match(entry):
+        if not re.match(r"[A-Za-z_][\w-]*\w=", entry):
             raise InputError("--config", entry, "allowed is KEY=VALUE")
     if sum(word.partition("=")[0] == "--configfile" for word in arguments) > 1:
-        raise InputError(
-            "--configfile", "twice", "Snakemake would ignore the first; allowed is --configfile A B"
-        )
+        allowed = "Snakemake would ignore the first; allowed is --configfile A B"
+        raise InputError("--configfile", "twice", allowed)
     configuration = _configuration(options)
     names = ["all", *configuration.datasets, *configuration.figures]
     for target in options.targets:
@@ -166,13 +163,10 @@ def _configuration(options: argparse.Namespace) -> Configuration:
             problem = "not a configuration" if is_product else "no such file"
             hint = "; targets go before --configfile" if index or is_product else ""
             raise InputError("--configfile", file, f"{problem}; allowed is a YAML file{hint}")
-    folder = options.directory or "."
-    paths = [os.path.relpath(file) for file in options.configfile or ()]
-    if not paths:
-        default = Path(folder, "config/config.yaml")
-        shipped = source_digest.workflow_file("config/config.yaml")
-        paths = [os.path.relpath(default if os.path.lexists(default) else shipped)]
-    mapping: dict = {}
+    folder, default = options.directory or ".", "config/config.yaml"
+    mine, shipped = Path(folder, default), source_digest.workflow_file(default)
+    given = options.configfile or [mine if os.path.lexists(mine) else shipped]
+    paths, mapping = list(map(os.path.relpath, given)), dict[str, object]()
     for file in paths:
         update_config(mapping, load.read_yaml(file))
     update_config(mapping, parse_config(options.config))

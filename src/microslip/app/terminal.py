@@ -11,7 +11,6 @@ import signal
 import sys
 import threading
 from collections.abc import Callable
-from concurrent.futures import ThreadPoolExecutor, wait
 from typing import Any, NoReturn
 
 from microslip.foundation import files
@@ -21,9 +20,6 @@ CANNOT_WRITE = 74
 CLOSED_PIPE = 141
 """Exit code if the program that reads the output has ended.  A program ended by SIGPIPE has the
 same code."""
-OF_SIGNAL = 128
-"""Offset of the exit code: a program that is ended by signal n returns this number plus n."""
-
 STOPPED_BY = {"SIGINT": "interrupted", "SIGTERM": "terminated", "SIGHUP": "terminal closed"}
 STACK = 2**24
 """Size of a thread's stack in bytes, 16 MB.  Some systems give a thread less than the compiler of
@@ -91,14 +87,9 @@ def _open_closed_streams() -> None:
     full device.
     """
     missing = sys.stdout is None
-    for number, mode in ((0, os.O_RDONLY), (1, os.O_WRONLY), (2, os.O_WRONLY)):
-        try:
-            os.fstat(number)
-        except OSError:
-            null = os.open(os.devnull, mode)
-            if null != number:
-                os.dup2(null, number)
-                os.close(null)
+    while (number := os.open(os.devnull, os.O_RDWR)) < 3:
+        pass  # the lowest number that is free
+    os.close(number)
     if sys.stderr is None:
         sys.stderr = open(2, "w", errors="backslashreplace", closefd=False)  # noqa: SIM115
     encoding = "utf-8" if missing else sys.stdout.encoding
@@ -138,10 +129,12 @@ def _code_in_thread(command: Callable[[], int]) -> int:
     is one instruction, which may take a minute, but does not block other threads.
     """
     threading.stack_size(STACK)
-    code = ThreadPoolExecutor(1).submit(_code_of, command)
-    while not code.done():
-        wait([code], WAIT)
-    return code.result()
+    codes: list[int] = []
+    thread = threading.Thread(target=lambda: codes.append(_code_of(command)))
+    thread.start()
+    while thread.is_alive():
+        thread.join(WAIT)
+    return codes[0] if codes else 1  # after an error with a traceback
 
 
 def _end(number: int, frame: object) -> NoReturn:
@@ -152,4 +145,4 @@ def _end(number: int, frame: object) -> NoReturn:
         own_line = "\n" if sys.stderr.isatty() else ""  # after ^C, or after a progress line
         os.write(2, f"{own_line}microslip: {STOPPED_BY[signal.Signals(number).name]}\n".encode())
     finally:
-        os._exit(OF_SIGNAL + number)
+        os._exit(128 + number)  # as shells report a program that a signal has ended

@@ -264,13 +264,11 @@ def _file_in(name: Any, role: str, folders: Iterable) -> named_files.NamedFile |
 
     Raises InputError if the file is missing.
     """
-    if not (named_files.speaks_of_file(name) or named_files.speaks_of_module(name)):
-        return None
     file = named_files.parse(name, role)
-    if file.digest and file.path:  # an earlier call found the file
+    if file is None or file.digest and file.path:  # an earlier call found the file
         named_files.remember([name])
         return file
-    return named_files.read(name, role, folders)[0]
+    return named_files.read(file, role, folders)[0]
 
 
 def _refused(error: InputError, source: str, name: str) -> ConfigError:

@@ -6,7 +6,8 @@ by Numba's settings and by a listener to Numba's events:
 - Numba notices an edit of the file of a function, but not an edit of another file that the function
   uses.  So the name of the folder contains a digest of all kernels and of what they import.
 - Numba raises an error for a folder that is read-only or full.  So the folder is checked once.  If
-  it is not usable, another folder is used, or compiled code is not stored.
+  it is not usable, another folder is used, or compiled code is not stored.  If code cannot be
+  stored later, for example on a disk that has filled up, the function is used without storing it.
 - Numba raises an error for a damaged file.  So the folder contains a list of checksums, which is
   written after each compilation.  At the start of a process, other files are removed.
 - Two processes that compile one function at the same time can mix up the codes of its signatures.
@@ -24,6 +25,7 @@ import shutil
 import sys
 import time
 from collections.abc import Callable
+from functools import partial
 from pathlib import Path
 from types import ModuleType
 from typing import IO
@@ -51,22 +53,22 @@ ROOM = 16_000_000
 SPELL = 1.0
 """Seconds without compilation after which the next compilation is announced again.  Between the
 kernels of one solution, milliseconds pass."""
-LONGEST_WAIT = 120.0
-"""Longest time in seconds that a process waits while others compile. The limit is necessary because
-another process can be suspended."""
 PAUSE = 0.05
 """Seconds between two attempts to lock the folder."""
+ATTEMPTS = iter(range(2400))
+"""Attempts of this process to lock the folder.  They end after two minutes of waiting, because the
+process that has the lock can be suspended."""
 REPORTED = "MICROSLIP_SAID_UNSTORED"
 """Environment variable that is set after the message about a folder.  Jobs inherit it."""
 
 
 def _usable_folder() -> Path | None:
     """Folder for the compiled code of the running sources; None if no folder is usable."""
-    chosen = [Path(place) for place in [os.environ.get("NUMBA_CACHE_DIR")] if place]
-    places = [*chosen, LOADED.folder / "__pycache__", user_cache_path("microslip")]
+    chosen = os.environ.get("NUMBA_CACHE_DIR")
+    places = [LOADED.folder / "__pycache__", user_cache_path("microslip")]
     problems: list[str] = []
     digest = LOADED.digest(LOADED.kernels)[:16]
-    for place in places:
+    for place in [Path(chosen), *places] if chosen else places:
         folder = place / f"compiled-{digest}"
         try:
             folder.mkdir(parents=True, exist_ok=True, mode=0o700)
@@ -77,17 +79,17 @@ def _usable_folder() -> Path | None:
             problems.append(f"{place} ({error.strerror})")
             continue
         if problems and chosen:
-            _report(problems, f"it is stored in {place}")
+            _report(" or ".join(problems), f"it is stored in {place}")
         return folder
-    _report(problems)
+    _report(" or ".join(problems))
     return None
 
 
-def _report(problems: list[str], remedy: str = "each process compiles it again") -> None:
+def _report(problem: str, remedy: str = "each process compiles it again") -> None:
     """Name the folders that cannot be used, once for this process and its jobs."""
     if not os.environ.get(REPORTED):
         os.environ[REPORTED] = "1"
-        line = f"compiled code cannot be stored in {' or '.join(problems)}; {remedy}"
+        line = f"compiled code cannot be stored in {problem}; {remedy}"
         print(f"microslip: {line}; NUMBA_CACHE_DIR names another folder", file=sys.stderr)
 
 
@@ -105,10 +107,8 @@ class _Listener(event.Listener):
     """Listener to Numba's compiler lock, which encloses loading, compiling and storing, and to the
     compilations inside it."""
 
-    depth, is_compiling, ended = 0, False, -SPELL
-    seconds, _started = 0.0, 0.0
-    patience = LONGEST_WAIT
-    _lock: IO | None = None
+    depth, is_compiling, ended, seconds, started = 0, False, -SPELL, 0.0, 0.0
+    lock: IO | None = None
 
     def on_start(self, event: event.Event) -> None:
         if event.kind == "numba:compile":
@@ -117,19 +117,20 @@ class _Listener(event.Listener):
                 print("microslip: compiling the solver, once for each kind", file=sys.stderr)
             self.is_compiling = True
         elif self.depth == 0:
-            self._started, self._lock = time.monotonic(), _lock()
-        self.depth += event.kind != "numba:compile"
+            self.started, self.lock = time.monotonic(), _lock()
+        self.depth += 1
 
     def on_end(self, event: event.Event) -> None:
-        self.depth -= event.kind != "numba:compile"
-        if self.depth == 0:
-            self.seconds += time.monotonic() - self._started
-            if self.is_compiling:
-                self.is_compiling, self.ended = False, time.monotonic()
-                if FOLDER is not None:
-                    _list_checksums(FOLDER)
-            if self._lock is not None:
-                self._lock.close()
+        self.depth -= 1
+        if self.depth:
+            return
+        self.seconds += time.monotonic() - self.started
+        if self.is_compiling:
+            self.is_compiling, self.ended = False, time.monotonic()
+            if FOLDER is not None:
+                _list_checksums(FOLDER)
+        if self.lock is not None:
+            self.lock.close()
 
 
 def _lock() -> IO | None:
@@ -139,13 +140,12 @@ def _lock() -> IO | None:
         import fcntl
 
         file = open(f"{FOLDER}/lock", "w")  # noqa: SIM115
-        while _Listener.patience > 0.0:
+        for _ in ATTEMPTS:
             try:
                 fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
                 return file
             except BlockingIOError:
                 time.sleep(PAUSE)
-                _Listener.patience -= PAUSE
     return None
 
 
@@ -193,9 +193,20 @@ def kernel(function: Callable | None = None, **options: object) -> Callable:
     before = config.CACHE_DIR, getattr(config, "CACHE_LOCATOR_CLASSES", "")
     config.CACHE_DIR, config.CACHE_LOCATOR_CLASSES = str(FOLDER), f"{__name__}.Locator"
     try:
-        return numba.njit(cache=FOLDER is not None, **(OPTIONS | options))(function)
+        dispatcher = numba.njit(cache=FOLDER is not None, **(OPTIONS | options))(function)
     finally:
         config.CACHE_DIR, config.CACHE_LOCATOR_CLASSES = before
+    dispatcher.compile = partial(_compile, dispatcher.compile)
+    return dispatcher
+
+
+def _compile(compile_and_store: Callable, signature: object) -> object:
+    """Compile a function and store its code, or only compile it if the code cannot be stored."""
+    try:
+        return compile_and_store(signature)
+    except OSError as error:  # the function has been compiled
+        _report(f"{FOLDER} ({error.strerror})")
+        return compile_and_store(signature)
 
 
 def _import_blas() -> None:

@@ -3,7 +3,6 @@ and renamed."""
 
 import os
 import time
-import uuid
 from collections.abc import Iterable, Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
@@ -74,7 +73,7 @@ def writing_beside(path: str | os.PathLike[str]) -> Iterator[Path]:
     """
     path = Path(path)
     # no other thread, process or container uses this name
-    beside = path.with_name(f".{path.name}.{uuid.uuid4().hex[:16]}.part")
+    beside = path.with_name(f".{path.name}.{os.urandom(8).hex()}.part")
     _PARTIAL.add(beside)
     try:
         with _advice("write", path):

@@ -20,13 +20,12 @@ import importlib
 import os
 import re
 import sys
-from collections.abc import Callable, Iterable, Iterator
-from contextlib import contextmanager, suppress
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field, fields, replace
 from functools import lru_cache
 from pathlib import Path
 from types import ModuleType
-from typing import TYPE_CHECKING, Any, Generic, TypeGuard, TypeVar, cast
+from typing import TYPE_CHECKING, Any, Generic, TypeVar
 
 from microslip.foundation import spec
 from microslip.foundation.csv_table import check_format
@@ -47,15 +46,12 @@ DIGITS = 16
 OPTIONS = re.compile(r"(?:^|,)(grid|pitch|sha256|decimal|encoding)=([^,]*)$")
 DECIMALS = {"point": ".", "comma": ","}
 """Decimal marks, by the words that represent them in names."""
-EXAMPLE = "a file, as in file:measured.csv or file:measured.csv,decimal=comma"
 HINT = (
     "grid=cells or grid=samples, and pitch=0.5 mm, for pressures; decimal=comma or encoding=cp1252"
 )
 PACKED = {b"\x1f\x8b": "gzip", b"PK\x03\x04": "zip, as spreadsheets are", b"BZh": "bzip2"}
 PACKED[b"\xfd7zXZ"] = "xz"
 """First bytes of a compressed file -> its format."""
-LARGEST_CACHE = 8
-"""Number of objects that a FileReader keeps."""
 
 PLACES: dict[str, Path] = {}
 """Paths of files by digest."""
@@ -67,6 +63,8 @@ class NamedFile:
 
     Attributes
     ----------
+    text : str
+        The name as the user wrote it.
     path : str
         Path in the name.  It is empty if the name contains only the digest.
     digest : str
@@ -80,6 +78,7 @@ class NamedFile:
         Decimal mark (a key of DECIMALS) and encoding of a data file.
     """
 
+    text: str = field(compare=False)
     path: str = field(compare=False)
     digest: str = ""
     numbers: str = ""
@@ -89,10 +88,15 @@ class NamedFile:
     encoding: str = "utf-8"
 
     @property
+    def is_code(self) -> bool:
+        """True for a Python file."""
+        return self.path.endswith(".py")
+
+    @property
     def name(self) -> str:
         """The name in results.  It does not contain the folder, so that files with equal content
         have equal names."""
-        return self._text(os.path.basename(self.path) if self.path.endswith(".py") else "")
+        return self._text(os.path.basename(self.path) if self.is_code else "")
 
     @property
     def placed(self) -> str:
@@ -100,55 +104,51 @@ class NamedFile:
         return self._text(self.path)
 
     def _text(self, path: str) -> str:
-        sha256 = f"sha256={self.digest}"
-        if self.path.endswith(".py"):
-            return f"{path}:{','.join(filter(None, [sha256, self.numbers]))}"
-        options = {one.name: (one.default, getattr(self, one.name)) for one in fields(self)[3:]}
-        words = [f"{name}={value}" for name, (usual, value) in options.items() if value != usual]
-        return PREFIX + ",".join(filter(None, [path, sha256, *words]))
+        options = ((one, getattr(self, one.name)) for one in fields(self)[4:])
+        words = [f"{one.name}={value}" for one, value in options if value != one.default]
+        words = [f"sha256={self.digest}", self.numbers, *words]
+        words = words if self.is_code else [path, *words]
+        return (f"{path}:" if self.is_code else PREFIX) + ",".join(filter(None, words))
 
 
-def speaks_of_file(name: object) -> TypeGuard[str]:
-    """True if the name of a pressure or a motion is the name of a data file."""
-    return isinstance(name, str) and name.startswith(PREFIX) and not speaks_of_module(name)
+def parse(name: object, argument: str = "file") -> NamedFile | None:
+    """Parse the name of a data file or of a Python file.
 
-
-def speaks_of_module(name: object) -> TypeGuard[str]:
-    """True if the name of a pressure or a motion is the name of a Python file."""
-    return isinstance(name, str) and PYTHON.fullmatch(name) is not None
-
-
-def parse(name: str, argument: str = "file") -> NamedFile:
-    """Parse the name of a file.  Raises InputError about the argument if the name has another
-    form."""
+    Returns None for another text.  Raises InputError about the argument for invalid options.
+    """
+    if not isinstance(name, str):
+        return None
     if match := PYTHON.fullmatch(name):
         words = (match[2] or "").split(",")
         digests = [word for word in words if word.startswith("sha256=")]
         numbers = ",".join(word for word in words if word not in digests)
-        return NamedFile(match[1], "".join(digests[:1]).removeprefix("sha256="), numbers)
+        return NamedFile(name, match[1], "".join(digests[:1]).removeprefix("sha256="), numbers)
+    if not name.startswith(PREFIX):
+        return None
     path, options = name.removeprefix(PREFIX), {}
     while match := OPTIONS.search(path):
         if match[1] in options:
             raise InputError(argument, name, f"{match[1]} occurs twice; allowed: once")
         options[match[1]], path = match[2], path[: match.start()]
-    file = NamedFile(path, options.pop("sha256", ""), **options)
+    file = NamedFile(name, path, options.pop("sha256", ""), **options)
     if file.decimal not in DECIMALS:
         raise InputError(argument, name, "allowed for decimal is point or comma")
     if not (file.path or file.digest) or "\0" in path:
-        raise InputError(argument, name, f"allowed is {EXAMPLE}")
+        allowed = "allowed is a file, as in file:measured.csv or file:measured.csv,decimal=comma"
+        raise InputError(argument, name, allowed)
     return file
 
 
 def read(
-    name: str, argument: str, folders: Iterable[str | os.PathLike] = ()
+    file: NamedFile, argument: str, folders: Iterable[str | os.PathLike] = ()
 ) -> tuple[NamedFile, bytes]:
-    """Read the file with this name.  Returns two values: the NamedFile, which contains the absolute
-    path and the digest, and the content.
+    """Read a file.  Returns two values: the NamedFile, which contains the absolute path and the
+    digest, and the content.
 
     Parameters
     ----------
-    name : str
-        Name such as "file:pad.csv".  If it contains a digest, the file must have this digest.
+    file : NamedFile
+        If it contains a digest, the content must have this digest.
     argument : str
         Name of the argument, for messages.
     folders : iterable of paths
@@ -161,97 +161,75 @@ def read(
         If the file does not exist, or has another digest.  The message lists the paths that were
         tried.
     """
-    file = parse(name, argument)
     place = PLACES.get(file.digest) if not os.path.isabs(file.path) else None
-    place = place or _found(name, argument, file, folders)
+    if not (place or file.path):
+        problem = "no file with this content is known here; allowed is its path"
+        raise InputError(argument, file.text, f"{problem}, as in file:measured.csv")
+    here = Path.cwd()
+    # an absolute path is the same in every folder
+    places = list(dict.fromkeys(Path(here, folder, file.path) for folder in (*folders, here)))
+    place = place or next(filter(os.path.lexists, places), None)
+    if place is None:
+        looked = f"No such file; looked for {', '.join(map(str, places))}"
+        hint = f"; allowed after the path: {HINT}" if "," in file.path else ""
+        raise InputError(argument, file.text, f"{file.path} cannot be read: {looked}{hint}")
     try:
         if not place.is_file():  # a pipe might never end
             raise ValueError("a folder" if place.is_dir() else "not a regular file")
         content = content_of(place, MOST_BYTES)
     except (OSError, ValueError) as error:
         reason = getattr(error, "strerror", None) or error
-        raise InputError(argument, name, f"{place} cannot be read: {reason}") from None
+        raise InputError(argument, file.text, f"{place} cannot be read: {reason}") from None
     digest = hashlib.sha256(content).hexdigest()
     if place.suffix == ".py":
         sources, names = _imports_of(place)
         digest = sources.digest(names)
     digest = digest[:DIGITS]
     if file.digest not in ("", digest):
-        raise InputError(argument, name, f"{place} has changed: its sha256 begins with {digest}")
+        problem = f"{place} has changed: its sha256 begins with {digest}"
+        raise InputError(argument, file.text, problem)
     PLACES[digest] = place
     return replace(file, path=str(place), digest=digest), content
-
-
-def _found(name: str, argument: str, file: NamedFile, folders: Iterable[str | os.PathLike]) -> Path:
-    """Path of a file in the folders or in the working directory."""
-    if not file.path:
-        problem = "no file with this content is known here; allowed is its path"
-        raise InputError(argument, name, f"{problem}, as in file:measured.csv")
-    here = Path.cwd()
-    # an absolute path is the same in every folder
-    places = list(dict.fromkeys(Path(here, folder, file.path) for folder in (*folders, here)))
-    for place in places:
-        with suppress(OSError, ValueError):  # a name that the system does not accept
-            if os.path.lexists(place):
-                return place
-    problem = f"{file.path} cannot be read: No such file; looked for {', '.join(map(str, places))}"
-    hint = f"; allowed after the path: {HINT}" if "," in file.path else ""
-    raise InputError(argument, name, f"{problem}{hint}")
-
-
-def _files_in(names: Iterable[str]) -> Iterator[NamedFile]:
-    """The names of files among texts."""
-    return (parse(name) for name in names if speaks_of_file(name) or speaks_of_module(name))
 
 
 def remember(names: Iterable[str]) -> None:
     """Store the file paths from names that contain a path and a digest.  Other names are
     ignored."""
-    files = (file for file in _files_in(names) if file.digest and os.path.isabs(file.path))
-    PLACES.update((file.digest, Path(file.path)) for file in files)
+    for file in filter(None, map(parse, names)):
+        if file.digest and os.path.isabs(file.path):
+            PLACES[file.digest] = Path(file.path)
 
 
 def base_name(name: str) -> str:
     """Base name of a file, for messages; "" if this process has not stored the path."""
-    return "".join(Path(f.path or PLACES.get(f.digest, "")).name for f in _files_in([name]))
+    file = parse(name)
+    return Path(file.path or PLACES.get(file.digest, "")).name if file else ""
 
 
-# Data files
-
-
-class FileReader(Generic[T]):
-    """Reads objects from data files by name.  The most recent objects are stored, so that files
-    with equal content share one object.
+def read_object(named: NamedFile, argument: str, create: Callable[[NamedFile, bytes], T]) -> T:
+    """Read an object from a data file.
 
     Parameters
     ----------
-    argument : str
-        Name of the argument, for messages.
+    named, argument : NamedFile, str
+        The file, and the name of the argument for messages.
     create : callable
         create(file, content) -> object.  Raises ValueError for content in another format.
+
+    Raises
+    ------
+    InputError
+        If the file does not exist, has another format, or does not match the digest in the name.
     """
-
-    def __init__(self, argument: str, create: Callable[[NamedFile, bytes], T]):
-        self.argument, self.create = argument, lru_cache(LARGEST_CACHE)(create)
-
-    def __call__(self, name: str) -> T:
-        """Return the object for a name such as "file:measured.csv".
-
-        Raises
-        ------
-        InputError
-            If the file does not exist, has another format, or does not match the digest in the
-            name.
-        """
-        file, content = read(name, self.argument)
-        try:
-            for kind in (kind for first, kind in PACKED.items() if content.startswith(first)):
-                raise ValueError(f"packed ({kind}); allowed: CSV or netCDF as it is")
-            check_format(DECIMALS[file.decimal], file.encoding)
-            return self.create(file, content)
-        except ValueError as error:
-            problem = str(error).replace("decimal = ','", "decimal=comma after the path")
-            raise InputError(self.argument, name, f"{file.path}: {problem}") from None
+    file, content = read(named, argument)
+    try:
+        for kind in (kind for first, kind in PACKED.items() if content.startswith(first)):
+            raise ValueError(f"packed ({kind}); allowed: CSV or netCDF as it is")
+        check_format(DECIMALS[file.decimal], file.encoding)
+        return create(file, content)
+    except ValueError as error:
+        problem = str(error).replace("decimal = ','", "decimal=comma after the path")
+        raise InputError(argument, file.text, f"{file.path}: {problem}") from None
 
 
 # Python files
@@ -265,13 +243,14 @@ def _imports_of(path: Path) -> tuple[Sources, set[str]]:
     return sources, sources.closure([path.name])
 
 
-@contextmanager
-def _importing_from(path: Path) -> Iterator[None]:
-    """Context manager in which the files beside a file can be imported.
+def _run(path: Path, name: str) -> ModuleType:
+    """Run a Python file as a module with this name.  The file can import the files beside it.
 
-    Afterwards, sys.modules is as before: files in two folders can have the same name, and an
-    edited file is run again.
+    Afterwards, sys.modules is as before, except for this module: files in two folders can have the
+    same name, and an edited file is run again.
     """
+    module = sys.modules[name] = ModuleType(name)
+    module.__file__ = str(path)
     beside = {name.partition("/")[0].removesuffix(".py") for name in _imports_of(path)[1]}
 
     def pop() -> dict[str, ModuleType]:
@@ -283,12 +262,13 @@ def _importing_from(path: Path) -> Iterator[None]:
     sys.dont_write_bytecode = True
     importlib.invalidate_caches()
     try:
-        yield
+        exec(compile(path.read_bytes(), path, "exec"), module.__dict__)
     finally:
         sys.path.remove(str(path.parent))
         sys.dont_write_bytecode = writes
         pop()
         sys.modules.update(others)
+    return module
 
 
 @lru_cache(maxsize=32)
@@ -296,29 +276,29 @@ def _class_in(file: NamedFile, base: type) -> type:
     """The subclass of `base` in a Python file.  Raises ImportError unless there is one."""
     path = Path(file.path)
     name = f"microslip_{file.digest}_{path.stem}"
-    module = sys.modules[name] = ModuleType(name)
-    module.__file__ = str(path)
     try:
-        with _importing_from(path):
-            exec(compile(path.read_bytes(), path, "exec"), module.__dict__)
+        module = _run(path, name)
     except (Exception, SystemExit) as error:  # a user's code may raise anything
         raise ImportError(f"cannot be imported: {described(error, path)}") from error
-    own = [one for one in vars(module).values() if isinstance(one, type)]
+    own: list[Any] = [one for one in vars(module).values() if isinstance(one, type)]
     own = [one for one in own if issubclass(one, base) and one.__module__ == name]
     last = [one for one in own if not any(one in other.__mro__[1:] for other in own)]
     if len(last) != 1:
         names = f": {', '.join(one.__name__ for one in last)}" if last else ""
         problem = f"it has {len(last)} subclasses of microslip.{base.__name__}{names}"
         raise ImportError(f"{problem}; allowed is one in a file")
-    setattr(last[0], spec.TEXT_NAME, file.name)
+    last[0].text_name = file.name
     return last[0]
 
 
 # Both, and the classes of the package
 
 
-class Family(FileReader[T]):
+class Family(Generic[T]):
     """Motions or pressures by their texts.
+
+    The most recent objects of data files are stored, so that files with equal content share one
+    object.
 
     Parameters
     ----------
@@ -329,7 +309,7 @@ class Family(FileReader[T]):
     classes : iterable of types
         Classes of the package, in the order in which they are listed to users.
     create : callable
-        create(file, content) -> object, for data files; see FileReader.
+        create(file, content) -> object, for data files; see read_object.
 
     Attributes
     ----------
@@ -340,12 +320,11 @@ class Family(FileReader[T]):
     def __init__(
         self,
         argument: str,
-        base: type[T],
+        base: type,
         classes: Iterable[type[T]],
         create: Callable[[NamedFile, bytes], T],
     ):
-        super().__init__(argument, create)
-        self.base = base
+        self.argument, self.base, self.create = argument, base, lru_cache(8)(create)
         self.classes = {spec.name_of(one): one for one in classes}
 
     def __call__(self, text: str) -> T:
@@ -357,24 +336,24 @@ class Family(FileReader[T]):
             If the name is unknown, if its file cannot be used, or if the class lacks a parameter or
             refuses its value.
         """
-        if speaks_of_file(text):
-            return super().__call__(text)
+        named, path = parse(text, self.argument), ""
+        if named is not None and not named.is_code:
+            return read_object(named, self.argument, self.create)
         names = [*self.classes, "file:NAME", "NAME.py"]
         if not isinstance(text, str) or text == "file":
             raise InputError(self.argument, text, f"allowed is one of {', '.join(names)}")
-        path = ""
-        if speaks_of_module(text):
-            file, _ = read(text, self.argument)
-            path, words, example = file.path, file.numbers, f"{Path(file.path).name}:key=0.5"
+        if named is None:
+            name, words = spec.split(text, self.argument, names)
+            cls: Any = self.classes[name]
+        else:
+            file, _ = read(named, self.argument)
+            path, name, words = file.path, Path(file.path).name, file.numbers or None
             try:
-                cls: Any = _class_in(replace(file, numbers=""), cast(type, self.base))
+                cls = _class_in(replace(file, numbers=""), self.base)
             except ImportError as error:
                 raise InputError(self.argument, text, f"{path}: {error}") from error
-            numbers = spec.numbers_in(words, text, self.argument, example) if words else {}
-        else:
-            name, numbers = spec.split(text, self.argument, names)
-            cls = self.classes[name]
-        spec.refuse_unknown(text, self.argument, numbers, [one.name for one in fields(cls)])
+        parameters = [one.name for one in fields(cls)]
+        numbers = spec.numbers_in(words, text, self.argument, name, parameters)
         try:
             return _shared_object(cls, *sorted(numbers.items()))
         except InputError as error:  # its text omits default values

@@ -21,13 +21,7 @@ SIZES = -4, 7
 WIDE = Context(prec=800)
 """Decimal context with enough digits for calculations with any two floats."""
 SEPARATOR = " +- "
-PREFIXES = tuple(
-    zip(
-        ("G", "M", "k", "", "m", "u", "n", "p"),
-        (1e9, 1e6, 1e3, 1.0, 1e-3, 1e-6, 1e-9, 1e-12),
-        strict=True,
-    )
-)
+PREFIXES = {"G": 1e9, "M": 1e6, "k": 1e3, "": 1.0, "m": 1e-3, "u": 1e-6, "n": 1e-9, "p": 1e-12}
 """Metric prefixes of printed units, and their sizes."""
 
 
@@ -135,7 +129,7 @@ def prefixed(value: float, unit: str) -> tuple[str, float]:
     """The unit with the largest metric prefix that leaves the value at least 1, and its size.  For
     0, the unit has no prefix."""
     size = abs(value) or 1.0
-    prefix, factor = next((one for one in PREFIXES if size >= one[1]), PREFIXES[-1])
+    prefix, factor = next((one for one in PREFIXES.items() if size >= one[1]), ("p", 1e-12))
     return f"{prefix}{unit}", factor
 
 

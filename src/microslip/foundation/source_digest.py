@@ -103,15 +103,12 @@ class Sources:
         files: modules and folders of the package.
         """
         starts = {n for n in self.names for f in files if n == f or n.startswith(f"{f}/")}
-        return self.closure(
-            starts, lambda name: not (is_physics(name) or name.startswith("foundation/"))
-        )
+        return self.closure(starts, lambda n: not (is_physics(n) or n.startswith("foundation/")))
 
     def _imports(self, modules: Iterable[str]) -> list[str]:
         """Paths of the modules with these names and of the packages that contain them."""
-        parts = [
-            n.removeprefix(self.prefix).split(".") for n in modules if n.startswith(self.prefix)
-        ]
+        inside = (n.removeprefix(self.prefix) for n in modules if n.startswith(self.prefix))
+        parts = [name.split(".") for name in inside]
         paths = {"/".join(one[:end]) for one in parts for end in range(1, len(one) + 1)}
         files = (file for path in paths for file in (f"{path}.py", f"{path}/__init__.py"))
         return [file for file in files if (self.folder / file).is_file()]
@@ -175,7 +172,9 @@ def _text(node: object, messages: bool) -> str:
     ast.dump.
     """
     if isinstance(node, list):
-        return f"[{''.join(_text(item, messages) for item in node if not _is_docstring(item))}]"
+        return f"[{''.join(_text(item, messages) for item in node)}]"
+    if isinstance(node, ast.Expr) and isinstance(getattr(node.value, "value", None), str):
+        return ""  # documents a module, a function or a constant
     if not messages and _is_message(node):
         return "-"
     if not isinstance(node, ast.AST):
@@ -191,12 +190,6 @@ def _is_message(node: object) -> bool:
     return isinstance(node, ast.Constant) and isinstance(node.value, str) and " " in node.value
 
 
-def _is_docstring(node: object) -> bool:
-    """True for a statement that is a string: it documents a module, a function or a constant."""
-    value = node.value if isinstance(node, ast.Expr) else None
-    return isinstance(value, ast.Constant) and isinstance(value.value, str)
-
-
 # The package that is running
 
 LOADED = Sources()
@@ -204,16 +197,12 @@ LOADED = Sources()
 
 def of_request(request: dict) -> str:
     """Digest of the code that influences the result of a request."""
-    return _of_solver((request.get("method") or "").partition(":")[0].replace("-", "_"))
-
-
-def of_solver() -> str:
-    """Digest of the physics, except comparison methods."""
-    return _of_solver("")
+    return of_solver((request.get("method") or "").partition(":")[0].replace("-", "_"))
 
 
 @cache
-def _of_solver(method: str) -> str:
+def of_solver(method: str = "") -> str:
+    """Digest of the physics, and of the file of a comparison method."""
     files = {f"{METHODS}{method}.py"}.intersection(LOADED.names)
     return LOADED.digest(LOADED.solver | LOADED.closure(files, is_physics))
 

@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-import difflib
 import math
 import re
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable
 from dataclasses import fields
 from functools import cached_property
 from typing import Any
@@ -17,9 +16,9 @@ NUMBER = re.compile(
     r"[+-]?(([0-9]+\.?[0-9]*|\.[0-9]+)(e[+-]?[0-9]+)?|inf|infinity|nan)", re.ASCII | re.IGNORECASE
 )
 WHOLE = re.compile(r"[+-]?[0-9]{1,18}", re.ASCII)
-TEXT_NAME = "text_name"
-"""Attribute with the name of a class in a user's file."""
 MINUS = "\N{MINUS SIGN}"
+HALVES = {"diameter": "radius", "stroke": "amplitude", "peak_to_peak": "amplitude"}
+"""Quantities that are half of another one, keyed by words in the name of the latter."""
 
 
 def read(argument: str, text: str, whole: bool = False) -> float | int:
@@ -60,10 +59,6 @@ def read(argument: str, text: str, whole: bool = False) -> float | int:
     return number
 
 
-HALVES = {"diameter": "radius", "stroke": "amplitude", "peak_to_peak": "amplitude"}
-"""Quantities that are half of another one, keyed by words in the name of the latter."""
-
-
 def near_miss(name: object, names: Iterable[str]) -> str:
     """'did you mean NAME? ' for the most similar name, or '' if there is none.  If the name is
     twice an argument, the text says so."""
@@ -72,32 +67,35 @@ def near_miss(name: object, names: Iterable[str]) -> str:
     for one in names:
         if half != word and half == one.lstrip("-").replace("-", "_"):
             return f"{one} is half of it; "
+    import difflib  # late, since most processes do not need it
+
     near = difflib.get_close_matches(str(name), names, n=1)
     return f"did you mean {near[0]}? " if near else ""
 
 
-def split(text: str, what: str, names: Iterable[str]) -> tuple[str, dict[str, float]]:
-    """Split a text such as "elliptic:phase=90" into the name and a dict of numbers.
+def split(text: str, what: str, names: Iterable[str]) -> tuple[str, str | None]:
+    """Split a text such as "elliptic:phase=90" into the name and the text of its numbers, which is
+    None without a colon.
 
-    Raises InputError about the argument `what` if `names` does not contain the name, or if the
-    numbers are invalid.
+    Raises InputError about the argument `what` if `names` does not contain the name.
     """
-    name, colon, rest = text.partition(":")
+    name, colon, numbers = text.partition(":")
     if name not in names:
         hint = near_miss(name, names)
         raise InputError(what, text, f"{hint}allowed is one of {', '.join(names)}")
-    numbers = numbers_in(rest, text, what, f"{name}:key=0.5") if colon else {}
-    return name, numbers
+    return name, numbers if colon else None
 
 
-def numbers_in(part: str, text: str, what: str, example: str) -> dict[str, float]:
-    """Numbers by name in a part of a text, such as "forward=0.5,phase=90".
+def numbers_in(
+    part: str | None, text: str, what: str, name: str, parameters: Iterable[str] | None = None
+) -> dict[str, float]:
+    """Numbers by name in a part of a text, such as "forward=0.5,phase=90"; none if it is None.
 
-    If the part cannot be read, raises InputError about the argument `what`.  The message contains
-    the whole text and an example.
+    If the part cannot be read, or if a number is not in `parameters`, raises InputError about the
+    argument `what`.  The message contains the whole text, and an example with the name.
     """
-    numbers = {}
-    for one in part.split(","):
+    numbers: dict[str, float] = {}
+    for one in [] if part is None else part.split(","):
         key, equals, value = (word.strip() for word in one.partition("="))
         if key in numbers:
             raise InputError(what, text, f"{key} occurs twice; allowed: each number once")
@@ -109,18 +107,11 @@ def numbers_in(part: str, text: str, what: str, example: str) -> dict[str, float
             if NUMBER.fullmatch(value):  # a number out of range
                 problem = f"{error.allowed},"
         if not (key and equals and math.isfinite(numbers[key])):
-            raise InputError(what, text, f"in it {one!r}: {problem} as in {example}")
-    return numbers
-
-
-def refuse_unknown(
-    text: str, what: str, numbers: dict[str, float], parameters: Iterable[str]
-) -> None:
-    """Raise InputError about the argument `what` for a number that is not in `parameters`."""
-    unknown = sorted(numbers.keys() - set(parameters))
-    if unknown:
+            raise InputError(what, text, f"in it {one!r}: {problem} as in {name}:key=0.5")
+    if parameters is not None and (unknown := sorted(numbers.keys() - set(parameters))):
         allowed = ", ".join(parameters) or "none"
         raise InputError(what, text, f"unknown number {unknown[0]}; allowed: {allowed}")
+    return numbers
 
 
 def refuse_strange(record: Any, what: str) -> None:
@@ -149,36 +140,11 @@ def refuse_outside(
         raise InputError(what, text, f"{key} = {number:g}: allowed is {kind} in {low:g}..{high:g}")
 
 
-def refuse_shares(text: str, what: str, shares: dict[str, float]) -> None:
-    """Raise InputError about the argument `what` if a fraction is outside 0 to 1."""
-    for key, share in shares.items():
-        refuse_outside(text, what, key, share, (0.0, 1.0), kind="a share")
-
-
-def refuse_counts(text: str, what: str, counts: Mapping[str, float], most: int) -> None:
-    """Raise InputError about the argument `what` unless all counts are from 1 to `most`."""
-    for key, count in counts.items():
-        if count != round(count) or not 1 <= count <= most:
-            raise InputError(
-                what, text, f"{key} = {count:g}: allowed is a whole number from 1 to {most}"
-            )
-
-
 def name_of(cls: type) -> str:
-    """Name of a class in texts, such as "continuous-bore" for ContinuousBore."""
+    """Name of a class in texts, such as "continuous-bore" for ContinuousBore.  A class in a user's
+    file has the attribute `text_name`."""
     name = re.sub(r"(?<=[a-z0-9])(?=[A-Z])", "-", cls.__name__).lower()
-    return vars(cls).get(TEXT_NAME, name)
-
-
-def text_of(record: Any) -> str:
-    """Text of a dataclass of numbers.  It contains the name, and the numbers that differ from
-    their defaults.
-
-    The numbers have 12 digits.
-    """
-    name, usual = name_of(type(record)), {field.name: field.default for field in fields(record)}
-    words = (f"{k}={getattr(record, k):.12g}" for k, v in usual.items() if getattr(record, k) != v)
-    return name + "".join(f"{',' if k or ':' in name else ':'}{w}" for k, w in enumerate(words))
+    return vars(cls).get("text_name", name)
 
 
 class Named:
@@ -186,8 +152,13 @@ class Named:
 
     @cached_property
     def name(self) -> str:
-        """Name of the class, followed by the numbers that differ from their defaults."""
-        return text_of(self)
+        """Name of the class, followed by the numbers that differ from their defaults, with 12
+        digits."""
+        record: Any = self
+        name, values = name_of(type(self)), ((f, getattr(self, f.name)) for f in fields(record))
+        words = [f"{field.name}={value:.12g}" for field, value in values if value != field.default]
+        mark = "," if ":" in name else ":"
+        return f"{name}{mark}{','.join(words)}" if words else name
 
     def __str__(self) -> str:
         return self.name

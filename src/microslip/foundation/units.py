@@ -124,18 +124,12 @@ UNITS["turn"] = Unit(TURN, UNITS["rad"].powers)
 """Every accepted name of a unit, with its prefix."""
 
 
-def _define(names: str, definition: str, prefixes: dict[str, int]) -> None:
-    number, star, units = definition.partition("*")
-    known = unit_of(units if star and number[0].isdigit() else definition)
-    factor = known.factor * (Fraction(number) if star and number[0].isdigit() else 1)
-    for name, (prefix, ten) in product(names.split(","), prefixes.items()):
-        UNITS.setdefault(prefix + name, Unit(factor * Fraction(10) ** ten, known.powers))
-
-
 for _entries, _prefixes in DEFINITIONS.items():
-    for _entry in _entries.split():
-        _names, _definition = _entry.split("=")
-        _define(_names, _definition, _prefixes)
+    for _names, _times, _units in re.findall(r"(\S+?)=(?:([\d.e/-]+)\*)?(\S+)", _entries):
+        _factor, _powers = unit_of(_units)
+        for _name, (_prefix, _ten) in product(_names.split(","), _prefixes.items()):
+            _size = _factor * Fraction(_times or 1) * Fraction(10) ** _ten
+            UNITS.setdefault(_prefix + _name, Unit(_size, _powers))
 
 
 def read(value: Any, si: str) -> Quantity:

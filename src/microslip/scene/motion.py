@@ -115,12 +115,13 @@ class Motion(spec.Named):
     def __post_init__(self) -> None:
         spec.refuse_strange(self, "motion")
         shares = {name: wave.share for name, wave in self.waves.items()}
-        spec.refuse_shares(self.name, "motion", shares)
-        cycles = {
-            f"{'normal' if name in NORMAL else name}_cycles": wave.cycles
-            for name, wave in self.waves.items()
-        }
-        spec.refuse_counts(self.name, "motion", cycles, MOST_CYCLES)
+        for name, share in shares.items():
+            spec.refuse_outside(self.name, "motion", name, share, (0.0, 1.0), kind="a share")
+        for name, wave in self.waves.items():
+            if wave.cycles not in range(1, MOST_CYCLES + 1):
+                cycles = f"{'normal' if name in NORMAL else name}_cycles = {wave.cycles:g}"
+                allowed = f"allowed is a whole number from 1 to {MOST_CYCLES}"
+                raise InputError("motion", self.name, f"{cycles}: {allowed}")
         if shares and not any(shares.values()):
             raise InputError("motion", self.name, f"allowed is {' or '.join(shares)} above 0")
 

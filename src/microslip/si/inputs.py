@@ -319,6 +319,12 @@ def read_inputs(motion: Any, **given: Any) -> Inputs:
     )
 
 
+def is_range(name: str, value: object) -> bool:
+    """Whether the value of a quantity is a text with a range."""
+    quantity = name in INPUTS and INPUTS[name].unit is not None
+    return quantity and isinstance(value, str) and ".." in value
+
+
 def read_input(name: str, value: Any, kind: Kind = AT_REST) -> Quantity:
     """Read one quantity of INPUTS and check its range.  Raises InputError.
 

@@ -12,13 +12,14 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass
+from functools import lru_cache
 from typing import Any
 
 import numpy as np
 
 from microslip.foundation.csv_table import check_format, parsed_file
 from microslip.foundation.errors import InputError
-from microslip.foundation.named_files import FileReader, NamedFile
+from microslip.foundation.named_files import NamedFile, parse, read_object
 from microslip.foundation.units import read
 from microslip.scene.files import COLUMNS, UNITS, read_period, read_samples
 from microslip.scene.samples import NORMAL, PLANE, Sampled
@@ -118,6 +119,7 @@ def factors(units: Mapping[str, str | None]) -> dict[str, float]:
     return result
 
 
+@lru_cache(8)
 def _of_content(file: NamedFile, content: bytes) -> Stroke:
     table, columns = read_period(file, content, need_units=True)
     if len(table.lines) > MOST_ROWS:
@@ -132,8 +134,11 @@ def _of_content(file: NamedFile, content: bytes) -> Stroke:
     return Stroke(file.name, {n: columns[n] for n in COLUMNS if n in columns}, frequency)
 
 
-read_stroke = FileReader("motion", _of_content)
-"""Function that returns the Stroke of a name such as "file:stroke.csv"."""
+def read_stroke(name: str) -> Stroke:
+    """Return the Stroke of a name such as "file:stroke.csv"."""
+    file = parse(name, "motion")
+    assert file is not None
+    return read_object(file, "motion", _of_content)
 
 
 def read_record(

@@ -15,7 +15,7 @@ import numpy as np
 from microslip.foundation.csv_table import LABELS, SOURCES, table_of
 from microslip.foundation.errors import InputError
 from microslip.foundation.number_text import SEPARATOR, number_text
-from microslip.si.inputs import INPUTS, Inputs, kind_of, read_quantity
+from microslip.si.inputs import INPUTS, Inputs, is_range, kind_of, read_quantity
 from microslip.si.output import REASONS, TEXTS, Prediction, Value, input_column
 from microslip.si.predict import checked_inputs, predict_inputs, unsolved
 from microslip.si.search import NoSolutionError
@@ -183,12 +183,6 @@ def read_cases(
     starts = {"line": table.lines} if table.lines else {"case": list(range(counts[0]))}
     labels = {name: [x or "" for x in texts] for name, texts in table.labels.items()}
     return Cases(motion, table.columns, dict(shared), names, starts | labels, table.errors)
-
-
-def is_range(name: str, value: object) -> bool:
-    """Whether the value of a quantity is a text with a range."""
-    quantity = name in INPUTS and INPUTS[name].unit is not None
-    return quantity and isinstance(value, str) and ".." in value
 
 
 def values_of(name: str, text: str) -> list[str]:

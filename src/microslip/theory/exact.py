@@ -170,7 +170,7 @@ def _of_family(motion: str) -> Kinks:
     name, _, rest = motion.partition(":")
     if name not in (LOOP, LOAD):
         return Kinks()
-    numbers = spec.numbers_in(rest, motion, "motion", f"{name}:forward=0.5") if rest else {}
+    numbers = spec.numbers_in(rest or None, motion, "motion", name)
     if name == LOAD:
         share = numbers.get("indentation", 0.0) or numbers.get("load", 1.0)
         return Kinks((1.0 / share,) if share > 0.0 else (), (0.0, 1.0, 1.0, 1.0, 0.0))

@@ -68,8 +68,8 @@ def split(text: str) -> tuple[str, dict[str, float]]:
     if isinstance(reason, str):
         raise InputError("method", text, reason)
     name, numbers = spec.split(text, "method", names())
-    spec.refuse_unknown(text, "method", numbers, tuple(declared(name, "parameters") or ()))
-    return name, numbers
+    allowed = tuple(declared(name, "parameters") or ())
+    return name, spec.numbers_in(numbers, text, "method", name, allowed)
 
 
 def missing(text: str) -> str:
