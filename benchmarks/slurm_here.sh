@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Run the small sweep with and without Slurm, and compare datasets and points byte for byte. This
+# Run the small sweep with and without Slurm, and compare datasets and batches byte for byte. This
 # machine is Slurm's only node.
 #
 #     benchmarks/slurm_here.sh [--markdown FILE]
@@ -163,13 +163,12 @@ local_seconds=$seconds
 # Results
 
 sums() { # folder: checksums of all results by name
-    (cd "$work/$1" && find results -name "*.nc" -o -path "*/points/*.json" \
-        -o -path "*/histories/*.json" | xargs sha256sum | sort)
+    (cd "$work/$1" && find results -type l -o -name "*.jsonl" | xargs sha256sum | sort)
 }
 sums slurm >"$work/slurm.sums"
 sums local >"$work/local.sums"
 count() { grep -c "$1" "$work/local.sums" || true; }
-[ "$(count '\.nc$')" -gt 0 ] && [ "$(count /points/)" -gt 0 ] || refuse "the sweep left no results"
+[ "$(count '\.nc$')" -gt 0 ] && [ "$(count /batches/)" -gt 0 ] || refuse "the sweep left no results"
 different=$(comm -3 "$work/local.sums" "$work/slurm.sums" | awk '{print $2}' | sort -u)
 
 report() {
@@ -213,8 +212,7 @@ print(version(sys.argv[1]))" "$package") |"
     echo "The run with Slurm was first. The load average at the start was $load."
     echo
     if [ -z "$different" ]; then
-        echo "Equal, byte for byte: $(count '\.nc$') datasets, $(count /points/) points," \
-            "$(count /histories/) single runs."
+        echo "Equal, byte for byte: $(count '\.nc$') datasets, $(count /batches/) batches."
     else
         echo "Not equal:" $different
     fi

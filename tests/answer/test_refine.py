@@ -94,10 +94,9 @@ def test_levels_are_added_until_the_error_is_within_the_tolerance():
     assert result.converged and value_of(result).error <= 1e-3
     cells = [resolution.cells for resolution in fake.asked]
     assert len(set(cells)) == len(cells) and max(cells) > 64
-    # each run starts from the run at half its level, if there is one
-    by_cells = dict(zip(cells, fake.runs, strict=True))
-    halves = [by_cells.get(n // 2) if n > 6 else None for n in cells]
-    assert fake.guesses == [halves[k] if n > 6 else None for k, n in enumerate(cells)]
+    # each run starts from the finest one so far
+    finest = [cells.index(max(cells[:k])) for k in range(1, len(cells))]
+    assert fake.guesses == [None, *(fake.runs[k] for k in finest)]
 
 
 def test_distances_and_residuals_are_weighted_as_the_runs_enter_the_value():

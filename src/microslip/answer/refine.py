@@ -108,9 +108,8 @@ def refine(
     Parameters
     ----------
     run : callable
-        `run(problem, resolution, guess)` returns a run.Run.  `guess` is the run of the first
-        problem at half the level or, for another interpolation, at the same level; None if there is
-        no such run.
+        `run(problem, resolution, guess)` returns a run.Run.  `guess` is the finest run of the first
+        problem so far; None if there is no such run.
     ladder : Ladder
         Resolutions of the problem.
     problems : sequence of problem.Problem
@@ -145,7 +144,8 @@ def refine(
             places = [(0, level // 4), (0, level // 2), *((k, level) for k in range(len(problems)))]
             for number, at in places:
                 if (number, at) not in runs:
-                    guess = runs.get((0, at if number else at // 2))
+                    finest = max((place for place in runs if place[0] == 0), default=None)
+                    guess = None if finest is None else runs[finest]
                     runs[number, at] = run(problems[number], ladder.resolution(at), guess)
             estimates, order = _estimates(
                 [runs[place] for place in places], ladder, goal, name, energy_unit, drive_work
