@@ -57,7 +57,7 @@ _WHERE = {
     "Fold": "microslip.si.fold",
     "iwan": "microslip.answer.along",
     "Iwan": "microslip.theory.masing",
-    "predict_iwan": "microslip.si.iwan",
+    "predict_iwan": "microslip.si.response",
     "shakedown": "microslip.answer.force",
     "Shakedown": "microslip.answer.force",
     "Propulsion": "microslip.answer.propulsion",

@@ -5,7 +5,7 @@ import pytest
 
 import microslip
 from microslip.foundation.errors import InputError
-from microslip.si.table import grid_of, interpolation_errors, values_of
+from microslip.si.table import interpolation_errors, values_of
 
 CONTACT = {"young": "210 GPa", "nu": 0, "radius": "5 mm", "mu": 0.3, "frequency": "20 kHz"}
 
@@ -38,29 +38,16 @@ def test_other_texts_are_refused_with_an_example(text):
         values_of("load", text)
 
 
-@pytest.mark.slow
-def test_each_point_is_its_prediction(tmp_path):
-    grid = microslip.predict_grid(
-        "transverse", speed="1..10 mm/s, 2", amplitude="0..0.5 um, 3", load="10 N", **CONTACT
-    )
-    assert dict(grid.sizes) == {"speed_m_s": 2, "amplitude_m": 3}
-    assert grid.amplitude_m.values == pytest.approx([0.0, 2.5e-7, 5e-7], rel=1e-12)
-    assert grid.speed_m_s.attrs["units"] == "m/s"
-    alone = microslip.predict(
-        "transverse", speed="10 mm/s", amplitude="0.25 um", load="10 N", **CONTACT
-    )
-    point = grid.isel(speed_m_s=1, amplitude_m=1)
+def test_points_are_predictions_and_survive_a_bad_one(tmp_path):
+    given = {"load": ["10 N", 20.0], "amplitude": "0.1e-6..1 m, 2", "speed": 0.01}
+    grid = microslip.predict_grid("transverse", **given, **CONTACT)
+    assert dict(grid.sizes) == {"load_N": 2, "amplitude_m": 2}
+    assert grid.load_N.values.tolist() == [10.0, 20.0] and grid.load_N.attrs["units"] == "N"
+    alone = microslip.predict("transverse", load=20, amplitude=1e-7, speed=0.01, **CONTACT)
+    point = grid.isel(load_N=1, amplitude_m=0)
     for name in ("mu_apparent", "mu_apparent_error", "friction_force_N", "u_lim_m"):
         assert float(point[name]) == getattr(alone, name)
-    assert np.all(grid.mu_macro.isel(amplitude_m=0) == 1.0)
     grid.to_netcdf(tmp_path / "grid.nc", engine="netcdf4")
-
-
-def test_sequences_are_axes_and_other_points_survive_a_bad_one():
-    grid = microslip.predict_grid(
-        "transverse", load=["10 N", 20.0], amplitude=["0.1 um", "1 m"], speed=0.01, **CONTACT
-    )
-    assert grid.load_N.values.tolist() == [10.0, 20.0]
     assert np.isnan(grid.mu_macro.isel(amplitude_m=1)).all()
     assert np.isfinite(grid.mu_macro.isel(amplitude_m=0)).all()
     assert all("allowed" in text for text in grid.error.values[:, 1])
@@ -94,10 +81,3 @@ def test_interpolation_errors_of_parabolas():
     values = xr.DataArray(f, {"x": x, "y": y, "z": z}, dims=("x", "y", "z"))
     errors = interpolation_errors(values)
     assert errors == {"x": pytest.approx(1.0 * 2.0), "y": None, "z": pytest.approx(2.0 * 2.0)}
-
-
-def test_the_factor_of_a_motion_from_a_file_is_a_range(tmp_path):
-    file = tmp_path / "stroke.csv"
-    file.write_text("lateral [um]\n0\n0.1\n0\n-0.1\n")
-    grid = grid_of(f"file:{file}", {"amplitude": "50..150 %, 3", "load": "1 N"})
-    assert grid.axes["amplitude_factor"] == ("amplitude", "", [0.5, 1.0, 1.5])

@@ -138,24 +138,6 @@ def test_a_force_below_the_threshold_moves_nothing(share):
     assert result.time_to_1_mm_s is None and result.converged
 
 
-def test_a_force_just_below_the_threshold_is_held_before_any_drift_is_computed(monkeypatch):
-    """A force below the friction at speed 0 by twice its error needs no drift computation."""
-    requests = SIDEWAYS | {"amplitude": stroke(1e-3), "nu": 0.3, "tolerance": 0.1}
-    held = microslip.predict("transverse", speed=0.0, **requests)
-    force = held.friction_force_N - 2.0 * held.friction_force_error_N
-    assert force > 0.9 * STILL
-
-    def no_drift(motion, velocity, *changes, **settings):
-        assert velocity == 0.0, "a drift was computed"
-        return microslip.solve(motion, velocity, *changes, **settings)
-
-    monkeypatch.setattr(solve, "solve", no_drift)
-    result = microslip.predict("transverse", force=force, **requests)
-    assert (result.outcome, result.speed_m_s, result.speed_error_m_s) == ("stays", 0.0, 0.0)
-    assert result.converged and result.mu_macro == pytest.approx(force / STILL, rel=1e-12)
-    assert force < result.force_threshold_N - result.force_threshold_error_N
-
-
 @pytest.mark.parametrize("force", [3.0, 1e12])
 def test_all_of_friction_and_more_runs_away(force):
     result = microslip.predict("transverse", amplitude=stroke(0.5), force=force, **SIDEWAYS)
@@ -278,20 +260,6 @@ def test_the_natural_frequency_is_that_of_the_mass_on_both_springs():
 def said(capsys, *words, code=0):
     assert cli.main(["predict", "transverse", *words]) == code
     return capsys.readouterr().out
-
-
-@pytest.mark.parametrize(
-    ("force", "code", "text"),
-    [
-        ("1 N", 0, "it stays: the force is below the threshold"),
-        ("2.5 N", 0, "it moves, cycle by cycle"),
-        ("4 N", 1, "it runs away: the force 1.33333 is at least full friction"),
-    ],
-)
-def test_the_command_line_says_what_comes_of_a_force(capsys, force, code, text):
-    printed = said(capsys, *WORDS, "--amplitude", f"{stroke(0.5)!r} m", "--force", force, code=code)
-    assert text in printed and "CONVERGED" not in printed
-    assert ("time to 1 mm" in printed) == ("moves" in text)
 
 
 def test_a_contact_that_goes_along_with_the_vibration_has_the_threshold_of_what_is_left():

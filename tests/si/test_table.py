@@ -35,8 +35,6 @@ def test_each_case_is_its_prediction(tmp_path):
     ("cases", "message"),
     [
         ({}, "a mapping of names to sequences"),
-        ([1.0], "a mapping of names to sequences"),
-        ({"load": "10 N"}, "a sequence of one value for each row"),
         ({"load": ["10 N"], "speed": [0.1, 0.2]}, "columns of one length"),
         ({"load": []}, "1 to 100000 cases"),
         ({"mu": [0.3]}, "not allowed: the table has it"),

@@ -51,7 +51,6 @@ def monte_carlo(mu, load, amplitude, force):
     ("settings", "drawn"),
     [
         ({"mu": "0.15 +- 0.05"}, {"mu": (0.15, 0.05)}),
-        ({"force": "90 N +- 5 %"}, {"force": (90.0, 4.5)}),
         ({"amplitude": "0.25 um +- 0.05 um"}, {"amplitude": (0.25e-6, 0.05e-6)}),
         (
             {"mu": "0.15 +- 0.01", "load": "1 kN +- 5 %", "force": "80 N +- 10 N"},
@@ -94,17 +93,6 @@ def test_an_amplitude_that_may_be_almost_zero_has_an_exact_interval(deviation):
     assert result.probability_stays == pytest.approx(np.mean(threshold > 20.0), abs=5e-3)
 
 
-@pytest.mark.slow
-def test_an_unlikely_outcome_has_a_bound_of_its_probability():
-    """The contact stays only at an amplitude 4 standard deviations below its centre."""
-    settings = PAIR | {"force": "38 N", "amplitude": "0.3 um +- 0.05 um"}
-    result = microslip.predict("transverse", **settings)
-    draws = 0.3 + 0.05 * np.random.default_rng(5).standard_normal(1_000_000)
-    share = np.mean(40.0 * static_limit(draws * 1e-6 / U_LIM_OF_PAIR) > 38.0)
-    assert 0.0 < share < 1e-4
-    assert abs(result.probability_stays - share) <= result.probability_stays_error < 1e-3
-
-
 @pytest.mark.parametrize(
     ("motion", "settings", "name", "values"),
     [
@@ -132,26 +120,12 @@ def test_the_ends_of_an_interval_are_the_values_at_the_quantiles_of_one_input(
     assert result.probability_stays is None
 
 
-def test_without_uncertain_inputs_there_is_no_probability():
-    result = microslip.predict("transverse", **SHAKEN)
-    assert result.probability_stays is None and result.force_threshold_spread_N is None
-    assert math.isfinite(result.safety_factor_error)
-    assert "probability" not in str(result)
-
-
-def test_a_contact_that_may_run_away_has_an_infinite_spread_of_its_speed():
-    """Friction of 3 N +- 0.2 N is below the force of 2.9 N at one standard deviation."""
-    settings = BALL | {"mu": "0.3 +- 0.02", "amplitude": 0.0, "force": "2.9 N"}
-    result = microslip.predict("transverse", **settings)
-    assert math.isinf(result.speed_spread_m_s) and "nan" not in str(result)
-    assert result.probability_stays == pytest.approx(0.6915, abs=1e-3)  # 0.5 deviations above
-
-
 def test_a_draw_without_a_result_of_the_solver_hides_no_limit_of_the_force():
     """The contact runs away if mu is below 0.09, 1.2 deviations below its value."""
     settings = JOINT | {"mu": "0.15 +- 0.05", "amplitude": 0.0, "force": "90 N"}
     result = microslip.predict("transverse", **settings)
     assert result.probability_runs_away == pytest.approx(0.1151, abs=1e-3)
+    assert math.isinf(result.speed_spread_m_s) and "nan" not in str(result)
 
 
 @pytest.mark.filterwarnings("error")
@@ -172,25 +146,6 @@ def test_a_force_that_may_vanish_has_an_unbounded_safety_factor():
     low, high = result.safety_factor_low, result.safety_factor_high
     assert low == pytest.approx(3.0 / (0.5 + END * 0.49), rel=1e-3)
     assert high == math.inf and "to inf" in str(result)
-
-
-@pytest.mark.slow
-def test_a_contact_that_stays_at_the_centre_may_move():
-    """The force is 1.5 standard deviations below the threshold; 6.68 % of the draws are above."""
-    settings = JOINT | {"amplitude": "0.25 um"}
-    threshold = microslip.predict("transverse", **settings, speed=0.0).force_threshold_N
-    result = microslip.predict("transverse", **settings, force=f"{threshold - 3.0!r} N +- 2 N")
-    assert result.outcome == "stays" and result.speed_spread_m_s > 0.0
-    assert result.probability_moves == pytest.approx(0.0668, abs=2e-3)
-
-
-def test_a_spread_of_mu_alone_is_a_share_of_the_force():
-    """The friction of a steady spin is independent of u_lim and proportional to mu."""
-    result = microslip.predict("continuous-bore", **SPIN | {"mu": "0.3 +- 0.03"})
-    assert result.friction_force_spread_N == pytest.approx(0.1 * result.friction_force_N, rel=1e-9)
-    assert result.mu_apparent_spread == pytest.approx(0.1 * result.mu_apparent, rel=1e-9)
-    assert result.mu_macro_spread == 0.0
-    assert result.inputs["mu"] == "0.3 +- 0.03"
 
 
 def test_all_outputs_of_a_spin_have_the_spread_of_a_monte_carlo():

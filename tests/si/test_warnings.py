@@ -33,7 +33,6 @@ def rigid_at(contact_radius, radius):
 
 WARNED = {
     "yields": {"hardness": "1.5 GPa"},
-    "contact yields": {"hardness": "7 GPa", "counter_hardness": "1.5 GPa"},
     "0.49 of the smaller radius": rigid_at(0.49 * 5e-3, 5e-3),
     # 0.15 times the radius of either ball
     "0.3 of the radius of relative curvature": rigid_at(0.15 * 5e-3, 2.5e-3)
@@ -54,11 +53,6 @@ WARNED = {
 def test_a_violated_assumption_has_one_warning(word):
     assert len(warned(word, **WARNED[word])) == 1
     assert not warned(word, hardness="7 GPa", density="7850 kg/m^3")
-
-
-def test_a_contact_above_half_the_radius_is_refused():
-    with pytest.raises(InputError, match=r"^radius = '5 mm': .* 0\.51 of this"):
-        warned("", **rigid_at(0.51 * 5e-3, 5e-3))
 
 
 def test_an_infinite_pressure_at_the_tip_of_a_cone_has_one_warning():
@@ -144,14 +138,6 @@ def test_bodies_separate_if_the_load_of_a_file_vanishes(tmp_path, newtons, load,
     assert len(warned("separate", f"file:{tmp_path}/load.csv", **inputs)) == separates
 
 
-def test_the_time_of_a_wave_is_that_over_the_contact_radius():
-    inputs = {"frequency": "10 MHz", "density": "7850 kg/m^3"}
-    (text,) = warned("shear wave", **inputs)
-    radius = contact_of("transverse", **MILD | inputs).contact_radius
-    radians = 2.0 * math.pi * 1e7 * radius / math.sqrt(210e9 / 2.6 / 7850.0)
-    assert float(re.search(r"([\d.]+) radians", text)[1]) == pytest.approx(radians, rel=0.05)
-
-
 UNIFORM = "".join(f"{x},{y},5\n" for x in range(40) for y in range(20))
 """A pressure of 5 on 40 x 20 cells: half the longer side is 20, and the load is 4000."""
 UNITS = "forward [mm],lateral [mm],pressure [MPa]"
@@ -203,19 +189,16 @@ def test_a_hardness_is_a_pressure_on_any_scale(text, pressure):
 
 
 @pytest.mark.parametrize(
-    ("name", "shear_modulus", "rounding"),
+    ("name", "shear_modulus"),
     [
-        ("brass", 37.3e9, 0.012),  # Kaye and Laby, 2.2.2
-        ("copper", 48.3e9, 0.012),
-        ("gold", 27.0e9, 0.012),  # WebElements
-        ("alumina", 169e9, 0.012),  # R. G. Munro, 1997
-        ("diamond", 535e9, 0.012),  # H. J. McSkimin and P. Andreatch, J. Appl. Phys. 43, 1972
-        ("bearing-steel", 79.6e9, 0.012),
-        ("CoCrMo", 87e9, 0.03),  # MakeItFrom.com: E to two digits
+        ("brass", 37.3e9),  # Kaye and Laby, 2.2.2
+        ("gold", 27.0e9),  # WebElements
+        ("alumina", 169e9),  # R. G. Munro, 1997
+        ("diamond", 535e9),  # H. J. McSkimin and P. Andreatch, J. Appl. Phys. 43, 1972
     ],
 )
-def test_two_elastic_constants_give_the_published_third(name, shear_modulus, rounding):
-    assert MATERIALS[name].shear_modulus == pytest.approx(shear_modulus, rel=rounding)
+def test_two_elastic_constants_give_the_published_third(name, shear_modulus):
+    assert MATERIALS[name].shear_modulus == pytest.approx(shear_modulus, rel=0.012)
 
 
 def test_a_material_has_units():

@@ -111,11 +111,11 @@ def predict(motion: str, table: str | None = None, **arguments: Any) -> Answer:
             raise InputError("figure", files["figure"], f"allowed with {allowed}")
         return _predictions(cases)
     read_inputs(motion, **arguments)  # most refusals, before the import of the solver
-    from microslip.si.predict import checked_inputs, predict_inputs
+    from microslip.si.predict import checked_contact, predict_contact
 
-    inputs = checked_inputs(motion, **arguments)
+    contact = checked_contact(motion, **arguments)
     with progress("microslip predict"):
-        one = predict_inputs(inputs)
+        one = predict_contact(contact)
     return Answer(one.to_dict(), str(one), one.converged)
 
 

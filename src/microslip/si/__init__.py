@@ -8,10 +8,10 @@
     )
     print(prediction.mu_apparent, prediction.force_reduction, prediction.warnings)
 
-`quantities` reads texts with units, and `inputs` reads the bodies, the contact, the motion and the
-drive.  `request` makes these inputs dimensionless and calls the solver.  `reduction` searches for a
-missing amplitude, speed or load.  `static_limit` computes the force threshold.  `drive_result`
-computes the friction or the drift.  `predict` returns the answers in a record defined by
-`prediction`.  `uncertain` and `outcomes` propagate the uncertainty of the inputs.  `validity`
-contains the limits of the theory.
+`inputs` is the table of the inputs, with their checks, and `output` the table of the outputs, with
+all forms of a Prediction.  `contact` computes the dimensionless groups, and `solve` the
+dimensionless answer.  `search` determines a missing amplitude, speed or load.  `predict` multiplies
+the answer by its units, `uncertain` propagates the uncertainty of the inputs, and `warnings`
+contains the limits of the theory.  `table` predicts many contacts.  `response` and `strokes` read
+measured paths and motions.  `fit` and `fold` evaluate measurements.
 """

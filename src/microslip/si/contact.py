@@ -8,13 +8,14 @@ are assumed to be uncoupled.
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
 from functools import cached_property, reduce
 from typing import Any
 
 import numpy as np
+from scipy.special import ellipe, ellipk
 
 from microslip.foundation.arguments import LARGEST
-from microslip.foundation.errors import InputError
 from microslip.scene.by_name import motion_named, pressure_named
 from microslip.scene.hertz import SMALLEST_RATIO
 from microslip.scene.motion import Motion
@@ -28,13 +29,10 @@ surface is tilted by 30 degrees at the edge, and a sphere is 7 % deeper than Her
 ROUND = 1e-6
 """Largest relative difference between two radii that count as equal."""
 OUT_OF_RANGE = "outside the range of floating-point numbers; allowed are sizes of real bodies"
-DRIVES = {
-    "force": "force",
-    "drive_stiffness": "stiffness",
-    "mass": "mass",
-    "damping": "damping",
-}
+DRIVES = {"force": "force", "drive_stiffness": "stiffness", "mass": "mass", "damping": "damping"}
 """Arguments of microslip.solve, keyed by the inputs of the drive."""
+INPUT_OF = {"velocity": "speed"} | {group: name for name, group in DRIVES.items()}
+"""Inputs of `predict`, keyed by the arguments of microslip.solve."""
 
 
 class Contact:
@@ -55,6 +53,8 @@ class Contact:
         Radii of the bodies, m; empty if the contact radius is an input.
     radius : float or array
         Radius of relative curvature, 1/R = 1/R1 + 1/R2, m.
+    mean_radius : float or array
+        Geometric mean of both radii of relative curvature of a Hertz contact, m.
     ratio : float or array
         Shorter divided by longer axis of a Hertz contact; 1 for other contacts.
     contact_radius : float or array
@@ -74,31 +74,36 @@ class Contact:
         self.inputs, self.kind, self.bodies = inputs, inputs.kind, inputs.bodies
         self.mu, self.load, self.steady = inputs.mu, inputs.load, inputs.kind.steady
         self.E_star = 1.0 / sum((1.0 - one.poisson**2) / one.young for one in self.bodies)
-        compliances = [1.0 / one.shear_modulus for one in self.bodies]
+        compliances = [2.0 * (1.0 + one.poisson) / one.young for one in self.bodies]
         self.G = 1.0 / sum(compliances)
         shares = [one / sum(compliances) for one in compliances]
         self.poisson = sum(b.poisson * x for b, x in zip(self.bodies, shares, strict=True))
         self.G_star = 4.0 * self.G / (2.0 - self.poisson)
         self.radii: tuple = ()
         self.ratio: Any = 1.0
-        sphere, indents = 0.75 * self.load / self.E_star, True
+        sphere, indents, over, cube = 0.75 * self.load / self.E_star, True, 1.0, 1.0
         if inputs.contact_radius is not None:
             a, shape = inputs.contact_radius, self.shape
             self.radius, indents = a**3 / sphere, shape.is_indenter or shape.hertzian
             stiffness, largest, area = shape.G_star, shape.largest, shape.area
+            if shape.hertzian and not shape.is_round:
+                over, cube = curvatures(shape.ratio)  # type: ignore[attr-defined]
+            longer = self.radius / cube
         else:
             self.radii = tuple(r for r in (inputs.radius, inputs.counter_radius) if r is not None)
             self.radius = longer = 1.0 / sum(1.0 / one for one in self.radii)
-            stretch: Any = 1.0
+            stiffness = hertz.G_STAR
             if inputs.radius_across is not None:
                 self.radii += (inputs.radius_across,)
-                self.ratio, stretch = ellipse_of_radii(self.radius, inputs.radius_across)
                 longer = np.maximum(self.radius, inputs.radius_across)
+                self.ratio = ratio_of_axes(np.minimum(self.radius, inputs.radius_across) / longer)
+                over, cube = curvatures(self.ratio)
+                stiffness *= ellipk(1.0 - self.ratio**2) / ellipk(0.0)
             with np.errstate(invalid="ignore"):  # NaN for a hollow smaller than the sphere
-                a = stretch * np.power(sphere * longer, 1.0 / 3.0)
+                a = np.power(sphere * longer * cube, 1.0 / 3.0)
             a = a if np.ndim(a) else float(a)
-            stiffness, largest, area = _hertz_ellipse(self.ratio)
-        self.contact_radius = a
+            largest, area = 1.5 / (math.pi * self.ratio), math.pi * self.ratio
+        self.contact_radius, self.mean_radius = a, longer * over**0.5
         self.u_lim = self.mu * self.load * stiffness / (self.G_star * a)
         depth = self.u_lim * self.G_star / (self.mu * self.E_star)
         self.indentation = depth if indents else math.nan
@@ -161,10 +166,8 @@ class Contact:
     @cached_property
     def amplitude(self) -> Any:
         """Amplitude for microslip.solve, the largest of `amplitudes`; None for a steady motion."""
-        if self.steady:
-            return None
-        first, *others = self.amplitudes.values()
-        return reduce(np.maximum, others, first)
+        sizes = self.amplitudes.values()
+        return reduce(np.maximum, sizes) if sizes else None
 
     @cached_property
     def motion(self) -> str | Motion:
@@ -203,7 +206,7 @@ class Contact:
     def mean_load(self) -> float:
         """Mean normal load divided by the load without oscillation.  It is above 1 if the bodies
         separate in each period."""
-        if self.steady or self.kind.stroke is None and self.amplitudes.get("load", 0.0) <= 1.0:
+        if self.kind.stroke is None and self.amplitudes.get("load", 0.0) <= 1.0:
             return 1.0
         return float(self._record.mean_load(float(self.amplitude), self.shape))
 
@@ -212,7 +215,7 @@ class Contact:
         """Fraction of a period without contact, 0 to 1."""
         if self.kind.stroke is not None:
             return self._record.share_without_load(float(self.amplitude))  # type: ignore[attr-defined]
-        swing = float(self.amplitudes.get("load", 0.0)) if not self.steady else 0.0
+        swing = float(self.amplitudes.get("load", 0.0))
         return math.acos(1.0 / swing) / math.pi if swing > 1.0 else 0.0
 
     def drive(self, mean_load: Any = 1.0) -> dict[str, Any]:
@@ -222,16 +225,11 @@ class Contact:
         mu F_z / (u_lim omega^2), and the damping by mu F_z / (u_lim omega).  F_z is the load
         without oscillation; mean_load: mean load divided by F_z.
         """
-        friction, u_lim, omega = self.mu * self.load, self.u_lim, self.omega
-        units = {
-            "force": (friction * mean_load, 1.0),
-            "drive_stiffness": (friction, u_lim),
-            "mass": (friction, u_lim * omega * omega),
-            "damping": (friction, u_lim * omega),
-        }
-        inputs = {name: getattr(self.inputs, name) for name in units}
-        given = {name: one for name, one in inputs.items() if one is not None}
-        return {DRIVES[n]: one / (units[n][0] / units[n][1]) for n, one in given.items()}
+        stiffness = self.mu * self.load / self.u_lim
+        units = {"force": self.mu * self.load * mean_load, "drive_stiffness": stiffness}
+        units |= {"mass": stiffness / self.omega / self.omega, "damping": stiffness / self.omega}
+        sizes = {name: getattr(self.inputs, name) for name in units}
+        return {DRIVES[n]: one / units[n] for n, one in sizes.items() if one is not None}
 
     @property
     def coordinates(self) -> dict[str, Any]:
@@ -240,7 +238,7 @@ class Contact:
         inputs, stroke = self.inputs, self.kind.stroke
         groups = {"poisson": self.poisson, "ratio": self.ratio, "phase": inputs.phase}
         if stroke is None:
-            groups |= {} if self.steady else self.amplitudes
+            groups |= self.amplitudes
         else:
             groups["factor"] = inputs.amplitude / self.u_lim
             if not stroke.columns.keys() <= {"forward", "lateral"}:
@@ -251,125 +249,90 @@ class Contact:
         groups |= self.drive()
         return {name: one for name, one in groups.items() if one is not None}
 
-    # Checks
-
-    def check(self) -> None:
-        """Raise InputError for a contact outside Hertz's theory or the range of the solver."""
-        inputs, a = self.inputs, self.contact_radius
+    def refusals(self) -> Iterator[tuple[str, Any, str]]:
+        """The input, whether it is refused, and what is allowed: the limits of Hertz's theory and
+        of the solver."""
+        inputs, a, smallest = self.inputs, self.contact_radius, self.smallest_radius
         finite = all(0.0 < one < math.inf for one in (a, self.u_lim, self.load / a**2))
         if self.radii:
-            self._check_radii(finite and 0.0 < self.indentation < math.inf)
-        elif not (finite and self.largest_pressure > 0.0):
-            raise inputs.error("contact_radius", OUT_OF_RANGE)
-        if inputs.search is None and inputs.kind is not AT_REST:
-            self._check_groups()
-
-    def _check_radii(self, finite: bool) -> None:
-        inputs, a, smallest = self.inputs, self.contact_radius, self.smallest_radius
-        second = "radius_across" if inputs.radius_across is not None else "counter_radius"
-        own = "counter_radius" if inputs.counter_radius is not None else "radius"
-        name = "radius" if smallest == abs(self.radii[0]) else second
-        size = f"contact radius would be {a:.3g} m, {a / smallest:.2g} of this radius"
-        if 1.0 / self.radius <= 0.0:
-            raise inputs.error(own, "allowed is a hollow with a larger radius than the sphere")
-        if not 0.0 < self.radius < math.inf:
-            raise inputs.error(own, OUT_OF_RANGE)
-        if self.ratio < SMALLEST_RATIO:
-            problem = f"the contact would be an ellipse of ratio {self.ratio:.2g}"
-            raise inputs.error("radius_across", f"{problem}; allowed is {SMALLEST_RATIO:g} or more")
-        if a >= LARGEST_RATIO * smallest:
-            theory = "by Hertz's theory, which is for contacts much smaller than either body, the "
-            allowed = f"{theory}{size}; allowed is less than {LARGEST_RATIO:g}"
-            raise inputs.error(name, allowed)
-        if not finite:
-            raise _load_error(inputs)
-
-    def _check_groups(self) -> None:
-        inputs, most, amplitudes = self.inputs, LARGEST["amplitude"], {}
-        groups = {n: self.drive().get(group, 0.0) for n, group in DRIVES.items()}
-        groups |= {} if inputs.speed is None else {"speed": self.velocity}
-        if self.kind.stroke is None and not self.steady:
-            amplitudes = self.amplitudes
-        if self.kind.several and amplitudes and not any(amplitudes.values()):
-            allowed = "allowed is a value above 0 if no other amplitude is above 0"
-            raise inputs.error(self.kind.needed[0], allowed)
-        if amplitudes.get("load", 0.0) > most:
-            raise inputs.error("load_amplitude", f"allowed is at most {most:g} times the load")
-        if not self.steady and not self.amplitude <= most:
+            second = "radius_across" if inputs.radius_across is not None else "counter_radius"
+            own = "counter_radius" if inputs.counter_radius is not None else "radius"
+            yield own, inputs.counter_radius == 0.0, "allowed is a radius other than 0"
+            allowed = "allowed is a hollow with a larger radius than the sphere"
+            yield own, 1.0 / self.radius <= 0.0, allowed
+            yield own, not 0.0 < self.radius < math.inf, OUT_OF_RANGE
+            allowed = f"the contact would be an ellipse of ratio {self.ratio:.2g}; allowed is "
+            yield second, self.ratio < SMALLEST_RATIO, f"{allowed}{SMALLEST_RATIO:g} or more"
+            allowed = "by Hertz's theory, which is for contacts much smaller than either body, the "
+            allowed += f"contact radius would be {a:.3g} m, {a / smallest:.2g} of this radius; "
+            name, allowed = "radius" if smallest == abs(self.radii[0]) else second, allowed
+            allowed += f"allowed is less than {LARGEST_RATIO:g}"
+            yield name, a >= LARGEST_RATIO * smallest, allowed
+            allowed = f"with these bodies and radii, {OUT_OF_RANGE}"
+            yield "load", not (finite and 0.0 < self.indentation < math.inf), allowed
+        else:
+            yield "contact_radius", not (finite and self.largest_pressure > 0.0), OUT_OF_RANGE
+        if inputs.search is not None or self.kind is AT_REST:
+            return
+        most, amplitudes = LARGEST["amplitude"], {} if self.kind.stroke else self.amplitudes
+        still = self.kind.several and amplitudes and not any(amplitudes.values())
+        allowed = "allowed is a value above 0 if no other amplitude is above 0"
+        yield next(iter(self.kind.needed), ""), still, allowed
+        allowed = f"allowed is at most {most:g} times the load"
+        yield "load_amplitude", amplitudes.get("load", 0.0) > most, allowed
+        if not self.steady:
             unit = f"the {self.u_lim:.3g} m at which the whole contact slides"
             if self.kind.unit == "rad":
                 unit = "the angle at which the stick radius is half the contact radius"
             allowed = f"{self.amplitude:.3g} times {unit}; allowed is at most {most:g} times"
-            raise inputs.error("amplitude", allowed)
+            yield "amplitude", not self.amplitude <= most, allowed
+        groups = self.drive() | ({} if inputs.speed is None else {"speed": self.velocity})
         for name, group in groups.items():
-            if not math.isfinite(group):
-                raise inputs.error(name, f"divided by that of the contact it is {OUT_OF_RANGE}")
-        if inputs.drive_stiffness and inputs.speed == 0.0 and self.kind.name == "longitudinal":
-            allowed = "allowed is a speed above 0 for a longitudinal motion with a spring"
-            raise inputs.error("speed", allowed)
-
-
-def _load_error(inputs: Inputs) -> InputError:
-    load = inputs.texts.get("load", f"{inputs.load:.6g} N")
-    return InputError("load", load, f"with these bodies and radii, {OUT_OF_RANGE}")
+            allowed = f"divided by that of the contact it is {OUT_OF_RANGE}"
+            yield INPUT_OF.get(name, name), not math.isfinite(group), allowed
+        allowed = "allowed is a speed above 0 for a longitudinal motion with a spring"
+        springs = self.kind.name == "longitudinal" and inputs.drive_stiffness
+        yield "speed", springs and inputs.speed == 0.0, allowed
 
 
 def contact_of(inputs: Inputs) -> Contact:
     """The checked contact of scalar inputs.  Raises InputError."""
-    if inputs.counter_radius == 0.0:
-        raise inputs.error("counter_radius", "allowed is a radius other than 0")
-    try:
-        with np.errstate(all="ignore"):  # `check` refuses what is not finite
-            contact = Contact(inputs)
-            contact.check()
-    except (ArithmeticError, ValueError) as error:
-        if isinstance(error, InputError):
-            raise
-        if inputs.contact_radius is not None:
-            raise inputs.error("contact_radius", OUT_OF_RANGE) from None
-        if math.isinf(1.0 / inputs.radius):
-            raise inputs.error("radius", OUT_OF_RANGE) from None
-        raise _load_error(inputs) from None
-    return contact
+    numbers = {name: np.float64(one.si) for name, one in inputs.quantities.items()}
+    with np.errstate(all="ignore"):  # numbers that are not finite are refused
+        contact = Contact(inputs.at(**numbers))
+        for name, is_refused, allowed in contact.refusals():
+            if is_refused:
+                raise inputs.error(name, allowed)
+    return Contact(inputs)
 
 
-def ellipse_of_radii(forward: Any, lateral: Any) -> tuple[Any, Any]:
-    """Semi-axes of Hertz's ellipse.
-
-    Parameters
-    ----------
-    forward, lateral : float or array
-        Radii of relative curvature along both axes, m.
+def curvatures(ratio: Any) -> tuple[Any, Any]:
+    """Curvatures of bodies whose contact is Hertz's ellipse with the ratio b/a of the semi-axes.
 
     Returns
     -------
-    tuple of float or array
-        The ratio b/a, at most 1; the semi-axis a, divided by (3 F R / (4 E*))^(1/3).  R is the
-        larger radius (K. L. Johnson, Contact Mechanics, 4.2).
+    tuple of array
+        The smaller curvature divided by the larger one; a^3, divided by 3 F R / (4 E*) with the
+        larger radius R of relative curvature (K. L. Johnson, Contact Mechanics, 4.2).
     """
-    from scipy.special import ellipe, ellipk
+    m = np.where(ratio == 1.0, 0.5, 1.0 - ratio**2)
+    first, second = ellipk(m), ellipe(m)
+    # 1/(2 R) = p0/E* b/(a^2 m) (K - E) along the long axis, with p0 = 3 F/(2 pi a b)
+    over = ratio**2 * (first - second) / (second - ratio**2 * first)
+    cube = 4.0 / math.pi * (first - second) / m
+    return np.where(ratio == 1.0, 1.0, over), np.where(ratio == 1.0, 1.0, cube)
 
-    over = np.minimum(forward, lateral) / np.maximum(forward, lateral)
+
+def ratio_of_axes(over: Any) -> Any:
+    """Ratio b/a of the semi-axes of Hertz's ellipse.
+
+    over: smaller curvature divided by the larger one, float or array.
+    """
     low, high = np.full_like(over, math.log(1e-8)), np.zeros_like(over)
     with np.errstate(invalid="ignore"):
         for _ in range(60):  # bisection of log(b/a); the curvatures' ratio increases with b/a
             middle = 0.5 * (low + high)
-            k = np.exp(middle)
-            m = 1.0 - k**2
-            below = k**2 * (ellipk(m) - ellipe(m)) < over * (ellipe(m) - k**2 * ellipk(m))
+            below = curvatures(np.exp(middle))[0] < over
             low, high = np.where(below, middle, low), np.where(below, high, middle)
         ratio = np.where(over >= 1.0 - ROUND, 1.0, np.exp(0.5 * (low + high)))
-        m = np.where(ratio == 1.0, 0.5, 1.0 - ratio**2)
-        # 1/(2 R) = p0/E* b/(a^2 m) (K - E) along the long axis, with p0 = 3 F/(2 pi a b)
-        stretch = (4.0 / math.pi * (ellipk(m) - ellipe(m)) / m) ** (1.0 / 3.0)
-        stretch = np.where(ratio == 1.0, 1.0, stretch)
-    return (ratio, stretch) if np.ndim(ratio) else (float(ratio), float(stretch))
-
-
-def _hertz_ellipse(ratio: Any) -> tuple[Any, Any, Any]:
-    """G* in working units, largest pressure divided by F/a^2, and area divided by a^2."""
-    if np.ndim(ratio) == 0 and ratio == 1.0:
-        return 0.75, 1.5 / math.pi, math.pi
-    from scipy.special import ellipk
-
-    return 1.5 * ellipk(1.0 - ratio**2) / math.pi, 1.5 / (math.pi * ratio), math.pi * ratio
+    return ratio if np.ndim(ratio) else float(ratio)

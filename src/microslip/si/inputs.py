@@ -4,9 +4,9 @@ files, their checks, help texts and reference page."""
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from functools import partial
+from functools import cached_property, partial
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from microslip.foundation.arguments import SMALLEST_TOLERANCE
@@ -152,8 +152,19 @@ class Kind:
         return not (self.unit or self.steady)
 
     @property
-    def amplitude_unit(self) -> str:
-        return "m" if self.unit is None else self.unit
+    def defaults(self) -> dict[str, float]:
+        """Inputs that a file contains, and the factor 1 of its samples."""
+        if self.stroke is None:
+            return {}
+        own = {"amplitude": 1.0, "frequency": self.stroke.frequency, "load": self.stroke.mean_load}
+        return {name: value for name, value in own.items() if value is not None}
+
+    def input(self, name: str) -> Input:
+        """The entry of INPUTS, with the unit of the amplitude of this motion.  Without a motion,
+        all quantities are exact."""
+        one = INPUTS[name]
+        unit = one.unit if name != "amplitude" or self.unit is None else self.unit
+        return one._replace(unit=unit, exact=one.exact or self is AT_REST)
 
 
 def _kinds(text: str) -> dict[str, Kind]:
@@ -225,13 +236,11 @@ class Inputs:
     Attributes
     ----------
     kind : Kind
-        The motion.
+        Kind of the motion.
+    motion : object
+        The motion as the user wrote it; None for a contact without a motion.
     quantities : dict of Quantity
         Quantities by name.
-    bodies : tuple of Material
-        The body and the counterbody.
-    texts : dict of str
-        The inputs as the user wrote them, by name.
     search : str or None
         Name of the input that a reduction replaces.
     given : mapping
@@ -239,9 +248,8 @@ class Inputs:
     """
 
     kind: Kind
+    motion: Any
     quantities: dict[str, Quantity]
-    bodies: tuple[Material, Material]
-    texts: dict[str, str]
     search: str | None
     given: Mapping[str, Any] = field(repr=False)
 
@@ -257,24 +265,65 @@ class Inputs:
         quantities = dict(self.quantities)
         for name, value in si.items():
             quantities[name] = replace(quantities.get(name, Quantity(0.0, "")), si=value)
-        body, other = self.bodies
-        properties = {"young": "young", "nu": "poisson"}
-        changes = {key: si[name] for name, key in properties.items() if name in si}
-        bodies = (replace(body, **changes) if changes else body), other
-        return replace(self, quantities=quantities, bodies=bodies)
+        return replace(self, quantities=quantities)
 
     def error(self, name: str, allowed: str) -> InputError:
         """The InputError for an input, with its value as the user wrote it."""
-        return InputError(name, self.given.get(name), allowed)
+        value = self.given.get(name)
+        if value is None and name in self.quantities:
+            value = f"{self.quantities[name].si:.6g} {self.unit(name)}"
+        return InputError(name, value, allowed)
 
     def unit(self, name: str) -> str:
         """SI unit of a quantity."""
-        return self.kind.amplitude_unit if name == "amplitude" else INPUTS[name].unit or ""
+        return self.kind.input(name).unit or ""
 
     @property
     def uncertain(self) -> dict[str, Quantity]:
         """The quantities with an uncertainty."""
         return {name: one for name, one in self.quantities.items() if one.deviation}
+
+    @cached_property
+    def bodies(self) -> tuple[Material, Material]:
+        """The body and the counterbody."""
+        return self._body("")[0], self._body("counter_")[0]
+
+    def _body(self, side: str) -> tuple[Material, str]:
+        """A body and its text.  side: "counter_" for the counterbody, otherwise empty."""
+        name, known = "counterbody" if side else "material", self.quantities
+        if side or name in self.given:
+            body, text = read_body(name, self.given.get(name, "rigid"))
+            text += " (default)" if name not in self.given else ""
+        else:
+            body = Material(self.young, self.nu)
+            text = f"E = {known['young'].text}, nu = {known['nu'].text}"
+        for key in ("hardness", "density"):
+            if one := known.get(f"{side}{key}"):
+                if body.rigid:
+                    raise self.error(f"{side}{key}", "allowed for an elastic body, not a rigid one")
+                changes: dict[str, Any] = {key: one.si}
+                body, text = replace(body, **changes), f"{text}, {key} {one.text}"
+        return body, text
+
+    @property
+    def texts(self) -> dict[str, str]:
+        """The inputs as the user wrote them, in the order of the printed answer."""
+        own = {n: str(x) for n, x in self.given.items()}
+        own |= {n: one.text for n, one in self.quantities.items() if n in own}
+        own["counterbody"] = self._body("counter_")[1]
+        if "map" in own:
+            own["map"] = "friction from a map"
+        if "contact_radius" in own:
+            own.setdefault("pressure", "hertz")
+        elif "radius_across" not in own:
+            own.setdefault("counter_radius", "flat (default)")
+        if (self.counter_radius or 0.0) < 0.0:
+            own["counter_radius"] += ", hollow"
+        if self.kind.stroke is not None:
+            own["amplitude"] += " times the samples"
+        texts = {"motion": f"{self.motion}: the sphere {self.kind.description}"}
+        texts["body"] = self._body("")[1]
+        return texts | {n: own[n] for n in INPUTS if n in own and n not in OF_BODIES}
 
 
 def read_inputs(motion: Any, **given: Any) -> Inputs:
@@ -299,24 +348,23 @@ def read_inputs(motion: Any, **given: Any) -> Inputs:
     for name in given.keys() - INPUTS.keys():
         hint = f"{near_miss(name, INPUTS)}allowed are {', '.join(INPUTS)}"
         raise InputError(name, given[name], hint)
-    _refuse_contradictions(motion, kind, given)
-    if (stroke := kind.stroke) is not None:
-        own = {"amplitude": 1.0, "frequency": stroke.frequency, "load": stroke.mean_load}
-        given = {name: value for name, value in own.items() if value is not None} | given
-    search = _searched(motion, kind, given)
-    _refuse_missing(motion, kind, given, search)
+    known = kind.defaults | given
+    missing = [n for n in SEARCHED if n not in known and n in (*kind.needed, "speed", "load")]
+    for names, is_refused, allowed in _refusals(motion, kind, given, missing):
+        for name in names.split():
+            if is_refused and name in given:
+                raise InputError(name, given[name], allowed)
+    search = missing[0] if "reduction" in given else None
+    _refuse_missing(motion, kind, known, search)
     quantities = {
-        name: read_input(name, given[name], kind)
+        name: read_quantity(name, known[name], kind.input(name))
         for name, one in INPUTS.items()
-        if one.unit is not None and name in given
+        if one.unit is not None and name in known
     }
-    bodies, texts = zip(*(_body(side, given, quantities) for side in ("", "counter_")), strict=True)
-    if all(body.rigid for body in bodies):
-        allowed = "allowed is an elastic body if the counterbody is rigid"
-        raise InputError("material", given.get("material"), allowed)
-    return Inputs(
-        kind, quantities, bodies, _texts(motion, kind, given, quantities, texts), search, given
-    )
+    inputs = Inputs(kind, motion, quantities, search, known)
+    if all(body.rigid for body in inputs.bodies):
+        raise inputs.error("material", "allowed is an elastic body if the counterbody is rigid")
+    return inputs
 
 
 def is_range(name: str, value: object) -> bool:
@@ -325,14 +373,9 @@ def is_range(name: str, value: object) -> bool:
     return quantity and isinstance(value, str) and ".." in value
 
 
-def read_input(name: str, value: Any, kind: Kind = AT_REST) -> Quantity:
-    """Read one quantity of INPUTS and check its range.  Raises InputError.
-
-    kind: motion, for the unit of its amplitude.  Without a motion, the quantity must be exact.
-    """
-    one = INPUTS[name]
-    unit = kind.amplitude_unit if name == "amplitude" else one.unit
-    return read_quantity(name, value, one._replace(unit=unit, exact=one.exact or kind is AT_REST))
+def read_input(name: str, value: Any) -> Quantity:
+    """Read one exact quantity of INPUTS and check its range.  Raises InputError."""
+    return read_quantity(name, value, AT_REST.input(name))
 
 
 def read_quantity(name: str, value: Any, one: Input) -> Quantity:
@@ -352,65 +395,43 @@ def read_quantity(name: str, value: Any, one: Input) -> Quantity:
     return quantity
 
 
-def _refuse_contradictions(motion: Any, kind: Kind, given: Mapping[str, Any]) -> None:
-    """Raise InputError for inputs that contradict each other or the motion."""
-    moves, names, file = kind is not AT_REST, given.keys(), kind.stroke
+def _refusals(
+    motion: Any, kind: Kind, given: Mapping[str, Any], missing: Sequence[str]
+) -> Iterator[tuple[str, object, str]]:
+    """Inputs, whether they are refused, and what is allowed: the contradictions between inputs.
+
+    missing: inputs that a reduction could replace.
+    """
+    names, file, moves = given.keys(), kind.stroke, kind is not AT_REST
     groups = ("bodies", "load", "drive", "output") if moves else ("bodies", "load")
     own = {*kind.needed, *kind.optional, "reduction"} if moves else set()
     others = [n for n, one in INPUTS.items() if one.group not in groups and n not in own]
     size = "a contact_radius"
     if "contact_radius" not in names:
         size = "a pressure, which needs a contact_radius in place of radii"
-
-    def refuse(arguments: str, contradiction: object, allowed: str) -> None:
-        for name in arguments.split():
-            if contradiction and name in names:
-                raise InputError(name, given[name], allowed)
-
-    def only_without(arguments: str, contradiction: object, what: str) -> None:
-        refuse(arguments, contradiction, f"allowed only without {what}")
-
-    def only_with(arguments: str, *needed: str) -> None:
-        missing = not names & set(needed)
-        refuse(arguments, missing, f"allowed only with a {' or a '.join(needed)}")
-
-    refuse(" ".join(others), True, f"{motion or 'a contact without a motion'} has none")
-    only_without("frequency", file and file.frequency, "a column time, which contains it")
-    only_without("map", file, "a motion from a file: no map has its unit of the amplitude")
-    only_without(
-        "radius counter_radius radius_across", names & {"contact_radius", "pressure"}, size
-    )
-    only_without("radius_across", "counter_radius" in names, "a counter_radius")
-    refuse("force", "speed" in names, "allowed is a force or a speed, not both")
-    steady = f"allowed only for a motion that oscillates; {motion} is steady"
-    refuse("drive_stiffness mass damping", kind.steady, steady)
-    only_without("drive_stiffness damping", "force" in names, "a force")
-    only_with("mass", "force", "drive_stiffness")
-    only_with("damping", "drive_stiffness")
-    only_without("material", names & {"young", "nu"}, "young and nu")
-    only_without("force drive_stiffness wear_coefficient", "map" in names, "a map")
-    without = "a force and a drive_stiffness"
-    only_without("reduction", names & {"force", "drive_stiffness"}, without)
-
-
-def _searched(motion: Any, kind: Kind, given: Mapping[str, Any]) -> str | None:
-    """Name of the missing input, which a search determines; None without a reduction."""
-    if "reduction" not in given:
-        return None
-    missing = [name for name in SEARCHED if name not in given]
-    if kind.steady or kind.several and "amplitude" not in kind.needed:
-        missing = [name for name in missing if name != "amplitude"]
-    allowed = ""
-    if not kind.unit and missing != ["speed"]:
-        what = "several amplitudes" if kind.several else "no amplitude"
-        allowed = f"not allowed: {motion} has {what}"
-    elif not missing:
-        allowed = "allowed only without the amplitude, the speed or the load, which it determines"
-    elif len(missing) > 1:
-        allowed = f"it determines one quantity, but {' and '.join(missing)} are missing"
-    if allowed:
-        raise InputError("reduction", given["reduction"], allowed)
-    return missing[0]
+    steady = f"for a motion that oscillates; {motion} is steady"
+    without, only_with = "allowed only without ", "allowed only with a "
+    sized, drive = names & {"contact_radius", "pressure"}, names & {"force", "drive_stiffness"}
+    no_map, no_drive = "force drive_stiffness wear_coefficient", "drive_stiffness mass damping"
+    yield " ".join(others), True, f"{motion or 'a contact without a motion'} has none"
+    yield "frequency", file and file.frequency, f"{without}a column time, which contains it"
+    yield "map", file, f"{without}a motion from a file: no map has its unit of the amplitude"
+    yield "radius counter_radius radius_across", sized, without + size
+    yield "radius_across", "counter_radius" in names, f"{without}a counter_radius"
+    yield "force", "speed" in names, "allowed is a force or a speed, not both"
+    yield no_drive, kind.steady, f"allowed only {steady}"
+    yield "drive_stiffness damping", "force" in names, f"{without}a force"
+    yield "mass", not drive, f"{only_with}force or a drive_stiffness"
+    yield "damping", "drive_stiffness" not in names, f"{only_with}drive_stiffness"
+    yield "material", names & {"young", "nu"}, f"{without}young and nu"
+    yield no_map, "map" in names, f"{without}a map"
+    yield "reduction", drive, f"{without}a force and a drive_stiffness"
+    has = f"not allowed: {motion} has {'several amplitudes' if kind.several else 'no amplitude'}"
+    yield "reduction", not kind.unit and missing != ["speed"], has
+    allowed = "allowed only without the amplitude, the speed or the load, which it determines"
+    yield "reduction", not missing, allowed
+    allowed = f"it determines one quantity, but {' and '.join(missing)} are missing"
+    yield "reduction", len(missing) > 1, allowed
 
 
 def _refuse_missing(motion: Any, kind: Kind, given: Mapping[str, Any], search: str | None) -> None:
@@ -424,53 +445,7 @@ def _refuse_missing(motion: Any, kind: Kind, given: Mapping[str, Any], search: s
         needed["radius"] = "needed, or a contact_radius"
     if "material" not in given:
         needed |= {"young": "needed, or a material", "nu": "needed"}
-    missing = [name for name in needed if name not in given and name != search]
-    if missing:
-        also = f"; also missing: {', '.join(missing[1:])}" if missing[1:] else ""
-        raise InputError(missing[0], None, f"{needed[missing[0]]}{also}")
-
-
-def _body(
-    side: str, given: Mapping[str, Any], quantities: Mapping[str, Quantity]
-) -> tuple[Material, str]:
-    """A body and its text.  side: "counter_" for the counterbody, otherwise empty."""
-    name = "counterbody" if side else "material"
-    if side or name in given:
-        body, text = read_body(name, given.get(name, "rigid"))
-        text += " (default)" if name not in given else ""
-    else:
-        young, nu = quantities["young"], quantities["nu"]
-        body, text = Material(young.si, nu.si), f"E = {young.text}, nu = {nu.text}"
-    for key in ("hardness", "density"):
-        if one := quantities.get(f"{side}{key}"):
-            if body.rigid:
-                allowed = "allowed for an elastic body, not a rigid one"
-                raise InputError(f"{side}{key}", one.text, allowed)
-            changes: dict[str, Any] = {key: one.si}
-            body, text = replace(body, **changes), f"{text}, {key} {one.text}"
-    return body, text
-
-
-def _texts(
-    motion: Any,
-    kind: Kind,
-    given: Mapping[str, Any],
-    quantities: Mapping[str, Quantity],
-    bodies: tuple[str, ...],
-) -> dict[str, str]:
-    """The inputs as the user wrote them, in the order of the printed answer."""
-    texts = {} if motion is None else {"motion": f"{motion}: the sphere {kind.description}"}
-    texts["body"] = bodies[0]
-    own = {name: str(value) for name, value in given.items()}
-    own |= {name: one.text for name, one in quantities.items()} | {"counterbody": bodies[1]}
-    if "map" in own:
-        own["map"] = "friction from a map"
-    if "contact_radius" in own:
-        own.setdefault("pressure", "hertz")
-    elif "radius_across" not in own:
-        own.setdefault("counter_radius", "flat (default)")
-    if (hollow := quantities.get("counter_radius")) and hollow.si < 0.0:
-        own["counter_radius"] += ", hollow"
-    if kind.stroke is not None:
-        own["amplitude"] += " times the samples"
-    return texts | {n: own[n] for n in INPUTS if n in own and n not in OF_BODIES}
+    first, *others = [n for n in needed if n not in given and n != search] or [""]
+    if first:
+        also = f"; also missing: {', '.join(others)}" if others else ""
+        raise InputError(first, None, f"{needed[first]}{also}")

@@ -7,7 +7,6 @@ import difflib
 import math
 import re
 from dataclasses import dataclass
-from itertools import pairwise
 from pathlib import Path
 from typing import Any
 
@@ -15,13 +14,8 @@ from microslip.foundation.errors import InputError
 from microslip.foundation.number_text import prefixed_text
 from microslip.foundation.units import Quantity, read
 
-ROCKWELL = dict(
-    zip(
-        (20.0, 25.0, 30.0, 35.0, 40.0, 45.0, 50.0, 55.0, 60.0, 65.0, 68.0),
-        (238.0, 266.0, 302.0, 345.0, 392.0, 446.0, 513.0, 595.0, 697.0, 832.0, 940.0),
-        strict=True,
-    )
-)
+ROCKWELL = {20: 238, 25: 266, 30: 302, 35: 345, 40: 392, 45: 446, 50: 513, 55: 595, 60: 697}
+ROCKWELL |= {65: 832, 68: 940}
 """Vickers numbers of steels, keyed by Rockwell C numbers (ASTM E140, Table 1)."""
 VICKERS = 9.80665e6 / 0.9272
 """Mean pressure of a Vickers number of 1, Pa: 1 kgf/mm^2 on the faces of the indent.  Its projected
@@ -31,11 +25,9 @@ BRINELL = 0.95
 SCALES = re.compile(r"(.*?)\s*(HV|HRC|HBW?|HBS|HR[ABD-Z]|HK|HS|Shore.*|Mohs)", re.S)
 GRADES = {"100cr6": "bearing-steel", "52100": "bearing-steel", "ti-6al-4v": "titanium"}
 """Material names keyed by aliases in lower case, for hints."""
-LIMITS = {"young": ("Pa", math.inf), "poisson": ("", 0.5), "density": ("kg/m^3", math.inf)}
-LIMITS |= {"hardness": ("Pa", math.inf)}
-"""SI unit and largest value of each property.  Except for Poisson's ratio, 0 is refused."""
+UNITS = {"young": "Pa", "poisson": "", "density": "kg/m^3", "hardness": "Pa"}
+"""SI unit of each property."""
 EXAMPLE = "E and nu as in '70 GPa, 0.22', with a point before decimals"
-TITLES = {"young": "Young's modulus", "poisson": "Poisson's ratio"}
 
 
 @dataclass(frozen=True)
@@ -66,20 +58,19 @@ class Material:
     source: str = ""
 
     def __post_init__(self) -> None:
-        for name, (unit, high) in LIMITS.items():
+        for name, unit in UNITS.items():
             value = getattr(self, name)
-            if value is None or hasattr(value, "shape") and value.shape or value == math.inf:
+            if value is None or getattr(value, "shape", ()) or value == math.inf:
                 continue
             try:
                 one = read_hardness(value) if name == "hardness" else read(value, unit)
             except ValueError as error:
                 raise InputError(name, value, str(error)) from None
-            zero = name == "poisson"
-            if one.deviation or not (0.0 < one.si <= high or zero and one.si == 0.0):
-                limits = "at least 0 and at most 0.5" if zero else f"above 0 {unit}"
-                raise InputError(
-                    name, value, f"allowed is a finite value {limits}, without an uncertainty"
-                )
+            in_range = one.si > 0.0 if unit else 0.0 <= one.si <= 0.5
+            if one.deviation or not in_range:
+                limits = f"above 0 {unit}" if unit else "at least 0 and at most 0.5"
+                allowed = f"allowed is a finite value {limits}, without an uncertainty"
+                raise InputError(name, value, allowed)
             object.__setattr__(self, name, one.si)  # the record is frozen
 
     @property
@@ -120,16 +111,14 @@ def read_body(argument: str, value: Any) -> tuple[Material, str]:
         allowed = f"allowed is one of {', '.join(MATERIALS)}{hint}, or {EXAMPLE}"
         raise InputError(argument, value, allowed)
     if len(parts) != 2:
-        count = (
-            f"{len(parts) - 1} commas in it" if isinstance(value, str) else f"{len(parts)} values"
-        )
-        raise InputError(argument, value, f"{count}; allowed: {EXAMPLE}")
-    pair: list[Any] = [part.strip() if isinstance(part, str) else part for part in parts]
+        raise InputError(argument, value, f"{len(parts)} values; allowed: {EXAMPLE}")
     try:
+        pair: Any = (part.strip() if isinstance(part, str) else part for part in parts)
         body = Material(*pair)
     except InputError as error:
-        problem = f"its {TITLES[error.argument]} {error.value!r}: {error.allowed}"
-        raise InputError(argument, value, f"{problem}, as in '70 GPa, 0.22'") from None
+        title = "Poisson's ratio" if error.argument == "poisson" else "Young's modulus"
+        problem = f"its {title} {error.value!r}: {error.allowed}, as in '70 GPa, 0.22'"
+        raise InputError(argument, value, problem) from None
     return body, str(body)
 
 
@@ -148,12 +137,11 @@ def read_hardness(value: object) -> Quantity:
         hint = f"this Brinell hardness is about {number / BRINELL:.0f} HV for steels"
         raise ValueError(f"{hint}; {allowed}")
     if scale == "HRC":
-        pairs = (one for one in pairwise(ROCKWELL.items()) if one[0][0] <= number <= one[1][0])
-        ends = next(pairs, None)
-        if ends is None:
+        if not 20.0 <= number <= 68.0:
             raise ValueError("allowed is 20 to 68 HRC, or a Vickers hardness")
-        (low, first), (high, last) = ends
-        number = first + (last - first) * (number - low) / (high - low)
+        from numpy import interp  # late: most refusals come before the import of NumPy
+
+        number = float(interp(number, [*ROCKWELL], [*ROCKWELL.values()]))
     pressure = number * VICKERS
     return Quantity(pressure, f"{' '.join(match[0].split())} = {pressure / 1e9:.3g} GPa")
 
@@ -161,10 +149,8 @@ def read_hardness(value: object) -> Quantity:
 def _materials() -> dict[str, Material]:
     with Path(__file__).with_name("materials.csv").open(encoding="utf-8", newline="") as file:
         _, *rows = csv.reader(file)
-    table: dict[str, Any] = {
-        name: [*(float(x) if x else None for x in cells), source] for name, *cells, source in rows
-    }
-    return {name: Material(*values) for name, values in table.items()}
+    numbers = {name: [float(x) if x else None for x in cells] for name, *cells, _ in rows}
+    return {name: Material(*numbers[name], source) for name, *_, source in rows}  # type: ignore
 
 
 MATERIALS = _materials() | {"rigid": Material(math.inf, 0.0)}

@@ -4,12 +4,11 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Iterator
 from dataclasses import dataclass, field
 from functools import cache
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from microslip.foundation.number_text import ROUNDING, interval_text, number_text, prefixed
+from microslip.foundation.number_text import interval_text, number_text, prefixed
 from microslip.si.inputs import INPUTS
 
 if TYPE_CHECKING:
@@ -120,6 +119,8 @@ class Value:
         thousand has no value, or an infinite one.  None if all inputs are exact.
     low, high : float or None
         Ends of the 95 % interval due to the uncertain inputs.
+    unit : str
+        SI unit, empty for a pure number.
     """
 
     value: Any
@@ -127,6 +128,7 @@ class Value:
     spread: float | None = None
     low: float | None = None
     high: float | None = None
+    unit: str = ""
     __array_ufunc__ = None  # an array times a Value is a Value
 
     def __mul__(self, other: Any) -> Value:
@@ -142,16 +144,6 @@ class Value:
 
     def __sub__(self, other: Value) -> Value:
         return self + -1.0 * other
-
-    @property
-    def pair(self) -> tuple[Any, Any]:
-        """The value and its error."""
-        return self.value, self.error
-
-    def plain(self) -> Value:
-        """The Value with floats in place of NumPy numbers; arrays are unchanged."""
-        numbers = (x if getattr(x, "ndim", 0) else float(x) for x in self.pair)
-        return Value(*numbers)
 
 
 @cache
@@ -180,8 +172,8 @@ class Prediction:
     ----------
     values : dict of Value
         Outputs by the names in OUTPUTS, in SI units.
-    input_values, input_units : dict
-        Inputs as Value in SI units, and their units.
+    input_values : dict of Value
+        Inputs by name, in SI units.
     inputs : dict of str
         The inputs as the user wrote them.
     motion, pressure : str
@@ -205,9 +197,8 @@ class Prediction:
 
     values: dict[str, Value] = field(default_factory=dict)
     input_values: dict[str, Value] = field(default_factory=dict)
-    input_units: dict[str, str] = field(default_factory=dict)
     inputs: dict[str, str] = field(default_factory=dict, compare=False)
-    motion: str
+    motion: str = ""
     pressure: str = ""
     model: str = "none"
     converged: bool = False
@@ -225,46 +216,43 @@ class Prediction:
         """The counterbody in words."""
         return self.inputs["counterbody"]
 
-    def numbers(self) -> Iterator[tuple[str, str, str, Any]]:
-        """Name of the column, SI unit, description and number of each input and each output.  The
-        value and the error of every output are present, None if they do not apply."""
-        entries: list[tuple] = []
-        for name, one in self.input_values.items():
-            entries.append((input_column, name, self.input_units[name], one, ()))
+    def columns(self) -> dict[str, tuple[Any, dict[str, str]]]:
+        """All columns by name: the value, and the attributes of a number in datasets.  The value
+        and the error of every output are present, None if they do not apply; spread, low and high
+        are present if an input is uncertain."""
+        names = (*TEXTS, *REASONS, "converged")
+        columns: dict[str, tuple[Any, dict]] = {name: (getattr(self, name), {}) for name in names}
+        columns["inputs"] = dict(self.inputs), {}
+        columns |= {name: (list(getattr(self, name)), {}) for name in LISTS}
+        rows: list[tuple] = [(input_column, n, one, ()) for n, one in self.input_values.items()]
         for name, output in OUTPUTS.items():
-            one = self.values.get(name, Value(None, None))
-            entries.append((column, name, output.unit, one, KINDS[:2]))
-        for key, name, unit, one, always in entries:
+            one = self.values.get(name, Value(None, None, unit=output.unit))
+            rows.append((column, name, one, KINDS[:2]))
+        for key, name, one, always in rows:
             for kind in KINDS:
-                number = getattr(one, kind)
-                if number is not None or kind in always:
-                    yield key(name, unit, kind), unit, f"{name.replace('_', ' ')}, {kind}", number
+                number, title = getattr(one, kind), key(name, one.unit, kind)
+                is_new = columns.get(title, (None,))[0] is None  # the speed is an input or output
+                if is_new and (number is not None or kind in always):
+                    text = f"{name.replace('_', ' ')}, {kind}"
+                    columns[title] = number, {"units": one.unit or "1", "long_name": text}
+        return columns
 
     def to_dict(self) -> dict[str, Any]:
-        """All columns as a plain dict.  The value and the error of every output are present, None
-        if they do not apply; spread, low and high are present if an input is uncertain."""
-        plain: dict[str, Any] = {name: getattr(self, name) for name in (*TEXTS, *REASONS)}
-        plain |= {"converged": self.converged, "inputs": dict(self.inputs)}
-        plain |= {name: list(getattr(self, name)) for name in LISTS}
-        for name, _, _, number in self.numbers():
-            if plain.get(name) is None:  # the speed is an input or an output
-                plain[name] = number
-        return plain
+        """The values of `columns`."""
+        return {name: value for name, (value, _) in self.columns().items()}
 
     def to_xarray(self) -> xr.Dataset:
         """The numbers as variables with units, and the texts as attributes."""
         import xarray as xr
 
-        variables = {
-            name: ((), number, {"units": unit or "1", "long_name": text})
-            for name, unit, text, number in self.numbers()
-            if number is not None
-        }
-        about = {name: getattr(self, name) or "" for name in (*TEXTS, *REASONS)}
-        about |= {name: "; ".join(getattr(self, name)) for name in ("warnings", "not_checked")}
-        about["inputs"] = "; ".join(f"{name}: {text}" for name, text in self.inputs.items())
+        columns = self.columns()
+        variables = {n: ((), x, about) for n, (x, about) in columns.items() if about}
+        variables = {name: one for name, one in variables.items() if one[1] is not None}
+        texts = {name: columns[name][0] or "" for name in (*TEXTS, *REASONS)}
+        texts |= {name: "; ".join(columns[name][0]) for name in ("warnings", "not_checked")}
+        texts["inputs"] = "; ".join(f"{name}: {text}" for name, text in self.inputs.items())
         variables["converged"] = ((), self.converged, {})
-        return xr.Dataset(variables, attrs={"record": "Prediction"} | about)
+        return xr.Dataset(variables, attrs={"record": "Prediction"} | texts)
 
     def __getattr__(self, name: str) -> Any:
         if not name.startswith("_"):
@@ -279,11 +267,11 @@ class Prediction:
         if name := self.search:
             least = "smallest" if name == "amplitude" else "largest"
             sentence = f"the {least} with a reduction of {self.inputs['reduction']}"
-            lines += _lines(name, self.input_values[name], self.input_units[name], sentence)
+            lines += _lines(name, self.input_values[name], sentence)
         lines.append("")
         for name, one in self.values.items():
             title = name if name in PLAIN else name.replace("_", " ")
-            lines += _lines(title, one, OUTPUTS[name].unit, OUTPUTS[name].sentence)
+            lines += _lines(title, one, OUTPUTS[name].sentence)
         if self.outcome:
             lines.append(line("outcome", OUTCOMES.get(self.outcome, f"it {self.reason}")))
         if self.displacement_reason:
@@ -320,61 +308,26 @@ def line(title: str, text: str) -> str:
     return f"{title:<{WIDTH - 1}} {text}"
 
 
-def _scale(size: float, unit: str) -> tuple[str, float]:
+def _scaled(size: float, unit: str) -> tuple[str, float]:
     """A readable unit for numbers of a size, and the unit in SI units."""
     if unit == "s":
         return next((one for one in TIMES if size >= 2.0 * one[1]), ("s", 1.0))
     return prefixed(size, unit) if unit in PREFIXED else (unit, 1.0)
 
 
-def _lines(title: str, one: Value, unit: str, sentence: str) -> list[str]:
+def _lines(title: str, one: Value, sentence: str) -> list[str]:
     """The line of a Value with its error, and the line of its uncertainty due to the inputs."""
     value, error = one.value, one.error
-    if not unit and abs(value) <= error <= ROUNDING:
-        value, error = 0.0, 0.0
     size = max(abs(value), error if abs(value) <= error < math.inf else 0.0)
-    name, scale = _scale(size, unit)
+    name, scale = _scaled(size, one.unit)
     text = "infinite" if math.isinf(value) else number_text(value / scale, error / scale, name)
     lines = [line(title, f"{text}: {sentence}" if sentence else text)]
     if one.spread and one.low is not None and one.high is not None:
         size = max(abs(x) for x in (one.low, one.high, 0.0) if math.isfinite(x))
-        name, scale = prefixed(size, unit) if unit in PREFIXED else (unit, 1.0)
+        name, scale = (one.unit, 1.0) if one.unit == "s" else _scaled(size, one.unit)
         ends = interval_text(one.low / scale, one.high / scale, name)
         deviation = number_text(one.spread / scale, 0.0, name, digits=2)
         deviation = "infinite" if math.isinf(one.spread) else deviation
         text = f"standard uncertainty {deviation}, 95 % interval {ends}, from the inputs"
         lines.append(line("", text))
     return lines
-
-
-PAGE = """# Inputs and outputs of a prediction
-
-The inputs are arguments of `microslip.predict`, options of `microslip predict` (with `-`
-in place of `_`), and columns of a table of contacts.
-
-| input | values | meaning |
-|---|---|---|
-{inputs}
-
-The outputs are fields of the answer.  `NAME_error` is the numerical error estimate.  If
-an input is uncertain, `NAME_spread` is the standard uncertainty, and `NAME_low` and
-`NAME_high` are the ends of the 95 % interval.  The unit is at the end of each name, as
-in `friction_force_error_N`.
-
-| output | meaning |
-|---|---|
-{outputs}
-"""
-
-
-def reference_page() -> str:
-    """The reference page of the inputs and the outputs, in Markdown."""
-    inputs = [
-        f"| `{name}` | {'text' if one.unit is None else one.range} | {one.help} |"
-        for name, one in INPUTS.items()
-    ]
-    outputs = [
-        f"| `{column(name, one.unit)}` | {one.sentence or name.replace('_', ' ')} |"
-        for name, one in OUTPUTS.items()
-    ]
-    return PAGE.format(inputs="\n".join(inputs), outputs="\n".join(outputs))

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
 from dataclasses import replace
 from functools import reduce
 from operator import mul
@@ -11,12 +10,11 @@ from typing import Any
 
 import numpy as np
 
-from microslip.si.contact import DRIVES, Contact, contact_of
+from microslip.si.contact import Contact, contact_of
 from microslip.si.inputs import INPUTS, Inputs, read_inputs
 from microslip.si.output import OUTPUTS, Prediction, Value
-from microslip.si.search import REFERENCE_LOAD, find_reduction
-from microslip.si.simpler import simplifications
-from microslip.si.solve import Answer, answer_of
+from microslip.si.search import LOAD, find_reduction
+from microslip.si.solve import answer_of, simplifications
 from microslip.si.uncertain import Draws, probabilities, with_interval
 from microslip.si.warnings import unchecked, warnings_of
 
@@ -35,14 +33,6 @@ UNKNOWN_THRESHOLD = (
     "the static friction is not the force threshold, because part of the vibration is along the "
     "drive; with a force, the prediction says whether the contact moves"
 )
-OPTIONAL = (
-    *("probability_stays", "probability_moves", "probability_runs_away"),  # see uncertain
-    *DRIVES.values(),
-    *("natural_frequency", "static", "threshold", "safety_factor", "displacement", "cycles"),
-    *("speed", "displacement_per_cycle", "pace", "torque"),
-    *("drag_power", "vibration_power", "dissipated_power", "heat", "worn"),
-)
-"""Factors of outputs that some contacts do not have."""
 
 
 def predict(motion: Any, **given: Any) -> Prediction:
@@ -74,7 +64,7 @@ def predict(motion: Any, **given: Any) -> Prediction:
         radius of a body, or if no solution has the requested reduction.  InputError is a
         ValueError.  The message names the argument, its value and the allowed values.
     """
-    return predict_inputs(checked_inputs(motion, **given))
+    return predict_contact(checked_contact(motion, **given))
 
 
 def _table_of_inputs() -> str:
@@ -88,124 +78,109 @@ def _table_of_inputs() -> str:
 predict.__doc__ = f"{predict.__doc__}{_table_of_inputs()}"
 
 
-def checked_inputs(motion: Any, **given: Any) -> Inputs:
-    """Inputs of a prediction.  Raises InputError if the inputs are invalid."""
+def checked_contact(motion: Any, **given: Any) -> Contact:
+    """The contact of a prediction.  Raises InputError if the inputs are invalid.
+
+    A placeholder replaces the input that a search determines.
+    """
     inputs = read_inputs(motion, **given)
-    placeholders = {"amplitude": 0.0, "speed": 0.0, "load": REFERENCE_LOAD}
-    contact_of(inputs.at(**{n: x for n, x in placeholders.items() if n == inputs.search}))
-    return inputs
+    placeholders = {"amplitude": 0.0, "speed": 0.0, "load": LOAD}
+    return contact_of(inputs.at(**{n: x for n, x in placeholders.items() if n == inputs.search}))
 
 
-def predict_inputs(inputs: Inputs) -> Prediction:
-    """The Prediction for checked inputs.  Raises InputError."""
-    contact, answer, root = solved(inputs, Contact)
-    values, search = outputs(contact, answer), inputs.search
-    given = {name: Value(one.si, None) for name, one in inputs.quantities.items()}
-    if search and root is not None:
-        given[search] = root
-        if math.isfinite(root.error):
-            shifted = Contact(contact.inputs.at(**{search: root.value + root.error}))
-            others = outputs(shifted, answer)
-            values = {
-                name: replace(one, error=one.error + abs(others[name].value - one.value))
-                for name, one in values.items()
-            }
+def predict_contact(contact: Contact) -> Prediction:
+    """The Prediction for a contact of `checked_contact`.  Raises InputError."""
+    inputs, search = contact.inputs, contact.inputs.search
+    given = _input_values(inputs)
+    if search:
+        contact, root = find_reduction(inputs)
+        given[search] = replace(root, unit=given[search].unit)
+    answer = answer_of(contact)
+    values = outputs(contact, answer)
+    if search and math.isfinite(root.error):
+        shifted = outputs(Contact(contact.inputs.at(**{search: root.value + root.error})), answer)
+        changes = {name: abs(shifted[name].value - one.value) for name, one in values.items()}
+        values = {n: replace(one, error=one.error + changes[n]) for n, one in values.items()}
     if inputs.uncertain:
         with np.errstate(all="ignore"):  # draws at the ends of ranges can be infinite
-            draws = Draws(inputs, contact, answer, solved)
+            draws = Draws(inputs, contact, answer)
             drawn = outputs(draws.contact, draws.answer)
             values = {n: with_interval(one, drawn[n].value) for n, one in values.items()}
             values |= probabilities(draws.contact, draws.answer)
         for name in (*inputs.uncertain, *([search] if search else ())):
             given[name] = with_interval(given[name], getattr(draws.contact.inputs, name))
     speed = values["speed"].value if "speed" in values else contact.inputs.speed
-    return Prediction(
+    return replace(
+        answer,
+        **_about(inputs),
         values={name: values[name] for name in OUTPUTS if name in values},
         input_values=given,
-        input_units={name: inputs.unit(name) for name in given},
-        inputs=inputs.texts,
-        motion=str(inputs.kind.name),
         pressure=contact.pressure,
-        model=answer.model,
-        converged=answer.converged,
-        reason=answer.reason,
-        outcome=answer.outcome or None,
-        search=search,
-        mu_static_reason=answer.reasons.get("static", ""),
-        displacement_reason=answer.reasons.get("displacement", ""),
         remarks=tuple(_remarks(contact, answer)),
         warnings=tuple(warnings_of(contact, speed)),
         not_checked=tuple(unchecked(contact)),
     )
 
 
-def unsolved(inputs: Inputs, reason: str) -> Prediction:
+def unsolved(contact: Contact, reason: str) -> Prediction:
     """The Prediction for a search without a solution.  It has no outputs."""
-    values = {name: Value(one.si) for name, one in inputs.quantities.items()}
-    values[str(inputs.search)] = Value(math.nan, math.nan)
-    return Prediction(
-        motion=str(inputs.kind.name),
-        inputs=inputs.texts,
-        input_values=values,
-        input_units={name: inputs.unit(name) for name in values},
-        search=inputs.search,
-        reason=reason,
-    )
+    values, search = _input_values(contact.inputs), str(contact.inputs.search)
+    values[search] = Value(math.nan, math.nan, unit=values[search].unit)
+    return Prediction(**_about(contact.inputs), input_values=values, reason=reason)
 
 
-def solved(
-    inputs: Inputs, contact_of: Callable[[Inputs], Contact] = contact_of
-) -> tuple[Contact, Answer, Value | None]:
-    """The contact, its answer, and the result of a search.  Raises InputError.
-
-    contact_of: Contact for checked inputs, otherwise contact_of.
-    """
-    contact, root = find_reduction(inputs) if inputs.search else (contact_of(inputs), None)
-    return contact, answer_of(contact), root
+def _about(inputs: Inputs) -> dict[str, Any]:
+    return {"motion": str(inputs.kind.name), "inputs": inputs.texts, "search": inputs.search}
 
 
-def outputs(contact: Contact, answer: Answer) -> dict[str, Value]:
+def _input_values(inputs: Inputs) -> dict[str, Value]:
+    return {n: Value(one.si, None, unit=inputs.unit(n)) for n, one in inputs.quantities.items()}
+
+
+def outputs(contact: Contact, answer: Prediction) -> dict[str, Value]:
     """Return the outputs of the contact in SI units.  An output without one of its factors is
     missing."""
     factors, values = factors_of(contact, answer), {}
     for name, output in OUTPUTS.items():
         names = (output.factors or name).split()
-        numbers = [factors[n] if n in factors else getattr(contact, n) for n in names]
-        if all(one is not None for one in numbers):
-            product: Any = reduce(mul, numbers)
-            if isinstance(product, Value):
-                values[name] = product.plain()
-            elif not np.all(np.isnan(product)):
-                values[name] = Value(product).plain()
+        numbers = [factors[n] if n in factors else getattr(contact, n, None) for n in names]
+        if any(one is None for one in numbers):
+            continue
+        product: Any = reduce(mul, numbers)
+        if not isinstance(product, Value):
+            product = Value(product)
+            if np.all(np.isnan(product.value)):
+                continue
+        value, error = (x if np.ndim(x) else float(x) for x in (product.value, product.error))
+        values[name] = Value(value, error, unit=output.unit)
     return values
 
 
-def factors_of(contact: Contact, answer: Answer) -> dict[str, Any]:
+def factors_of(contact: Contact, answer: Prediction) -> dict[str, Any]:
     """Factors of the outputs by name, in SI units, in addition to the attributes of the contact.
     All formulas accept arrays."""
     inputs, known, mean_load = contact.inputs, answer.values, answer.values["mean_load"].value
     friction, velocity, unit = known["friction"], known["velocity"], contact.speed_unit
     still, period = contact.mu * contact.load * mean_load, 2.0 * math.pi / contact.omega
     speed = Value(inputs.speed) if inputs.force is None else velocity * unit
-    factors: dict[str, Any] = dict.fromkeys(OPTIONAL)
-    factors |= contact.drive(mean_load) | known
+    factors: dict[str, Any] = contact.drive(mean_load) | known
     factors |= {"sliding_friction": still, "force_reduction": Value(1.0) - friction}
     factors |= {"millimetre": 1e-3, "per_area": 1.0 / contact.area}
     if contact.kind.unit == "rad" and np.all(inputs.amplitude == 0.0):
         factors["velocity"] = None
     if inputs.mass is not None and np.any(inputs.mass > 0.0) and not contact.steady:
-        stiffness = factors["stiffness"] if inputs.drive_stiffness is not None else 0.0
-        ratio = (stiffness + STICKING) / factors["mass"]
+        ratio = (factors.get("stiffness", 0.0) + STICKING) / factors["mass"]
         factors["natural_frequency"] = inputs.frequency * ratio**0.5
     with np.errstate(divide="ignore", invalid="ignore"):
         if inputs.force is not None:
             factors["speed"] = speed
             if "threshold" in known:
-                ends = (still * x / np.float64(inputs.force) for x in known["threshold"].pair)
+                most = still * known["threshold"]
+                ends = (np.divide(one, inputs.force) for one in (most.value, most.error))
                 factors["safety_factor"] = Value(*ends)
         if answer.outcome == "moves":
-            value, error = speed.pair
-            factors |= {"pace": Value(1.0 / value, error / value / np.asarray(value - error))}
+            value, error = speed.value, speed.error
+            factors["pace"] = Value(1.0 / value, error / value / np.asarray(value - error))
     if not contact.steady:
         factors["displacement_per_cycle"] = speed * period
     if not answer.converged:
@@ -230,7 +205,7 @@ def factors_of(contact: Contact, answer: Answer) -> dict[str, Any]:
     return factors
 
 
-def _remarks(contact: Contact, answer: Answer) -> list[str]:
+def _remarks(contact: Contact, answer: Prediction) -> list[str]:
     """Explanations of outputs that could be misread."""
     inputs, known, remarks = contact.inputs, answer.values, []
     if inputs.load_amplitude and (inputs.mass is not None or inputs.drive_stiffness is not None):

@@ -11,20 +11,21 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field
 from importlib import import_module
 from typing import Any
 
 import numpy as np
 
-from microslip.answer.along import response
+from microslip.answer.along import iwan, response
+from microslip.answer.answer import Answer
 from microslip.foundation.csv_table import LABELS, source_name, table_of
 from microslip.foundation.errors import InputError, shown
 from microslip.scene.files import UNITS
 from microslip.si.contact import Contact, contact_of
 from microslip.si.inputs import Input, read_inputs, read_quantity
 from microslip.si.output import column
-from microslip.si.strokes import factors, scales
+from microslip.si.strokes import scales
+from microslip.theory.masing import Iwan
 
 COLUMNS = {
     **{"force_forward": "N", "force_lateral": "N", "torque": "N m"},
@@ -34,8 +35,7 @@ COLUMNS = {
 """SI units of the columns of `microslip.response`."""
 
 
-@dataclass(frozen=True, eq=False)
-class RealResponse:
+class RealResponse(Answer):
     """Forces of a real contact along a path, in SI units.  Each row is a point of the path.
 
     The columns of COLUMNS, with the unit in the name (force_forward_N), and the names in
@@ -56,19 +56,6 @@ class RealResponse:
     converged : bool
         Whether every error is within the tolerance.
     """
-
-    path: dict[str, np.ndarray]
-    columns: dict[str, tuple[str, np.ndarray]] = field(repr=False)
-    attributes: dict[str, Any]
-    converged: bool
-
-    def __getattr__(self, name: str) -> Any:
-        for one, unit in COLUMNS.items():
-            if name == column(one, unit.strip("1")):
-                return self.columns[one][1]
-        if name in self.__dict__.get("attributes", {}):
-            return self.attributes[name]
-        raise AttributeError(name)
 
     def to_xarray(self) -> Any:
         """The columns as an xarray.Dataset over `row`, with units."""
@@ -135,13 +122,15 @@ def predict_response(
     torque = force * real.contact_radius * answer.problem.pressure.torque
     sizes = {"N": force, "N m": torque, "J": force * real.u_lim, "1": 1.0}
     forces = {n: (COLUMNS[n], sizes[COLUMNS[n]] * x) for n, (_, x) in answer.columns.items()}
+    places = {name: (UNITS[name], one) for name, one in columns.items()}
     attributes = {
         **{"u_lim_m": real.u_lim, "contact_radius_m": real.contact_radius},
         **{"load_N": real.load, "mu": real.mu, "tolerance": answer.tolerance},
         **{"reason": answer.reason, "converged": int(answer.converged)},
     }
-    places = {name: (UNITS[name], one) for name, one in columns.items()}
-    return RealResponse(columns, places | forces, attributes, answer.converged)
+    values = {column(name, unit.strip("1")): one for name, (unit, one) in forces.items()}
+    values |= attributes | {"path": columns, "columns": places | forces, "attributes": attributes}
+    return RealResponse(answer.problem, values, reason=answer.reason)
 
 
 def only_contact(contact: Mapping[str, object]) -> Contact:
@@ -156,33 +145,57 @@ def read_path(path: Any, **form: str) -> dict[str, np.ndarray]:
     read.  Lines cannot be skipped, since a path has no gaps.
     """
     table = table_of("path", path, UNITS, need_units=True, **form)
-    names = [name for name in table.cells if name not in LABELS]
-    columns: dict[str, Any] = {}
-    try:
-        for problem in table.errors.values():
-            raise ValueError(problem)
-        if not names or not set(names) <= UNITS.keys():
-            raise ValueError(
-                f"columns {', '.join(names)!r}; allowed are some of {', '.join(UNITS)}"
-            )
-        sizes = factors({name: table.units[name] for name in names})
-        for name in names:
-            unit = UNITS[name] if table.units[name] is None else ""
-            number = Input("", unit, "", -math.inf, exact=True)
-            lines = table.lines or range(1, 1 + len(table.cells[name]))
-            cells = zip(lines, table.cells[name], strict=True)
-            columns[name] = sizes[name] * np.array([_number(k, name, c, number) for k, c in cells])
-    except ValueError as error:
-        if isinstance(error, InputError):
-            raise
-        raise InputError("path", source_name(path), str(error)) from None
+    cells = {name: one for name, one in table.columns.items() if name not in LABELS}
+    problem, columns = next(iter(table.errors.values()), ""), {}
+    if not cells or not cells.keys() <= UNITS.keys():
+        problem = f"columns {', '.join(cells)!r}; allowed are some of {', '.join(UNITS)}"
+    for name, texts in cells.items() if not problem else ():
+        number = Input("", UNITS[name], "", -math.inf, exact=True)
+        columns[name] = np.empty(len(texts))
+        for row, cell in enumerate(texts):
+            try:
+                columns[name][row] = read_quantity(name, cell, number).si
+            except InputError as error:
+                line = table.lines[row] if table.lines else 1 + row
+                about = "empty" if cell is None else f"{cell!r}: {error.allowed}"
+                problem = problem or f"line {line}: {name} is {about}"
+    if problem:
+        raise InputError("path", source_name(path), problem)
     return {"forward": np.zeros(len(table.cells[name]))} | columns
 
 
-def _number(line: int, name: str, cell: object, form: Input) -> float:
-    """The value of a cell.  Raises ValueError with the line number."""
+def predict_iwan(
+    *, elements: int | None = None, tolerance: float | None = None, **contact: object
+) -> Iwan:
+    """Iwan model of a contact of two bodies: parallel springs with sliders, in SI units.
+
+    Parameters
+    ----------
+    elements : int or None
+        Number of elements.
+    tolerance : float or None
+        Largest error due to the number of elements, divided by mu times the load; give either this
+        (1e-3) or `elements`.
+    **contact : quantity
+        mu, load, radius, material and the other arguments of `microslip.predict` that describe a
+        contact.
+
+    Returns
+    -------
+    Iwan
+        Elements with stiffnesses in N/m and forces in N.
+
+    Raises
+    ------
+    InputError
+        If an argument is invalid.  The message names it.
+    """
+    real = only_contact(contact)
     try:
-        return read_quantity(name, cell, form).si
+        model = iwan(real.pressure, poisson=real.poisson, elements=elements, tolerance=tolerance)
     except InputError as error:
-        problem = "empty" if cell is None else f"{cell!r}: {error.allowed}"
-        raise ValueError(f"line {line}: {name} is {problem}") from None
+        if error.argument != "pressure" or real.inputs.radius_across is None:
+            raise
+        allowed = "allowed only if nu = 0, because the contact is an ellipse"
+        raise real.inputs.error("radius_across", allowed) from None
+    return model.scaled(real.mu * real.load, real.u_lim)

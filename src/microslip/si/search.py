@@ -18,7 +18,7 @@ AMPLITUDES = 1e-6, 1e4
 SPEEDS = 1e-9, 1e6
 """Smallest and largest dimensionless velocity of the search.  For a translation with an amplitude
 above 1, the velocity is divided by the amplitude."""
-REFERENCE_LOAD = 1e-12
+LOAD = 1e-12
 """Load, N, at which groups are computed in a search for the load.  It is so small that Hertz's
 theory applies to all bodies."""
 STEP = 0.05
@@ -45,8 +45,6 @@ class _Line(NamedTuple):
         See above.
     low, start, high : float
         First place, initial guess of the bracket's upper end, and last place.
-    every, none : str
-        Subjects of the messages if the reduction is too large at `low`, or too small everywhere.
     """
 
     unit: float
@@ -54,8 +52,6 @@ class _Line(NamedTuple):
     low: float
     start: float
     high: float
-    every: str
-    none: str
 
     def size(self, place: float) -> float:
         """The unknown in its SI unit."""
@@ -74,7 +70,8 @@ def find_reduction(inputs: Inputs) -> tuple[Contact, Value]:
 
     name, share, tolerance = str(inputs.search), inputs.reduction, inputs.tolerance or TOLERANCE
     _check_share(inputs, share, tolerance)
-    line = _line(inputs, name, share)
+    line, unit = _line(inputs, name, share), inputs.unit(name)
+    least, towards = ("smallest", "up") if name == "amplitude" else ("largest", "down")
     last: Any = None
     error, reductions = 0.0, []
 
@@ -91,19 +88,21 @@ def find_reduction(inputs: Inputs) -> tuple[Contact, Value]:
         reductions.append((100.0 * (1.0 - friction), 100.0 * error))
         return friction - (1.0 - share)
 
-    def refuse(problem: str) -> NoSolutionError:
-        return NoSolutionError("reduction", inputs.given["reduction"], problem)
+    def refusal(end: str, reduction: str) -> NoSolutionError:
+        allowed = f"{end} {unit}, reduces friction by more{reduction} %"
+        return NoSolutionError("reduction", inputs.given["reduction"], allowed)
 
     try:
         if excess(line.low) < 0.0:
-            raise refuse(f"{line.every} reduces friction by more: {number_text(*reductions[0])} %")
+            end = f"the {least} {name} of the search, {line.size(line.low):.2g}"
+            raise refusal(end, f": {number_text(*reductions[0])}")
         high = line.start
         if name == "speed" and excess(math.inf) > 0.0:
             high = line.high
         while excess(high) > 0.0:
             if high >= line.high:
-                most = number_text(*max(reductions))
-                raise refuse(f"{line.none} reduces friction by more than {most} %")
+                end = f"no {name} of the search, {towards} to {line.size(high):.2g}"
+                raise refusal(end, f" than {number_text(*max(reductions))}")
             high = min(high + math.log(2.0), line.high)
         place = brentq(excess, line.low, high, xtol=0.1 * tolerance)
         here, error_here = excess(place), error
@@ -116,25 +115,23 @@ def find_reduction(inputs: Inputs) -> tuple[Contact, Value]:
     try:
         contact = contact_of(replace(inputs, search=None).at(**{name: size}))
     except InputError as problem:
-        allowed = f"it takes a {name} of {size:.3g} {inputs.unit(name)}; {problem}"
+        allowed = f"it takes a {name} of {size:.3g} {unit}; {problem}"
         raise inputs.error("reduction", allowed) from None
     return contact, Value(size, abs(line.power) * size * place_error)
 
 
 def _check_share(inputs: Inputs, share: float, tolerance: float) -> None:
     """Raise InputError for a reduction that no search can determine."""
-    allowed = ""
-    if share < tolerance:
-        allowed = f"allowed is at least the tolerance, {tolerance:g}"
-    elif inputs.kind.unit == "rad" and share == 1.0:
-        allowed = "allowed is less than 100 %: the centre of a contact that spins always sticks"
-    elif inputs.search != "speed" and inputs.speed and share > 1.0 - tolerance:
-        allowed = f"allowed is at most {100.0 * (1.0 - tolerance):g} %, 100 % minus the tolerance"
-        allowed += ": at a speed some friction remains"
-    elif inputs.search == "load" and inputs.amplitude == 0.0:
-        raise inputs.error("amplitude", "allowed is above 0 with a reduction")
-    if allowed:
-        raise inputs.error("reduction", allowed)
+    most = f"{100.0 * (1.0 - tolerance):g} %, 100 % minus the tolerance: at a speed some friction"
+    spins, moves = inputs.kind.unit == "rad", inputs.search != "speed" and inputs.speed
+    for name, is_refused, allowed in (
+        ("reduction", share < tolerance, f"at least the tolerance, {tolerance:g}"),
+        ("reduction", spins and share == 1.0, "less than 100 %: the centre always sticks"),
+        ("reduction", moves and share > 1.0 - tolerance, f"at most {most} remains"),
+        ("amplitude", inputs.search == "load" and inputs.amplitude == 0.0, "above 0"),
+    ):
+        if is_refused:
+            raise inputs.error(name, f"allowed with a reduction is {allowed}")
 
 
 def _line(inputs: Inputs, name: str, share: float) -> _Line:
@@ -144,28 +141,18 @@ def _line(inputs: Inputs, name: str, share: float) -> _Line:
     if name == "amplitude":  # a place is the logarithm of the dimensionless amplitude
         contact = Contact(inputs.at(amplitude=0.0))
         unit = contact.u_lim / (contact.contact_radius if spins else 1.0)
-        text = "u_lim divided by the contact radius" if spins else "u_lim"
-        every = f"the smallest amplitude of the search, {AMPLITUDES[0]:g} times {text},"
-        return _Line(
-            unit, 1.0, low, 0.0, high, every, f"no amplitude up to {AMPLITUDES[1]:g} times {text}"
-        )
+        return _Line(unit, 1.0, low, 0.0, high)
     if name == "speed":  # a place is minus the logarithm of the speed
         contact = Contact(inputs.at(speed=0.0))
         unit = contact.speed_unit
         if not (contact.steady or spins):
             unit *= max(1.0, float(contact.amplitude))  # the speed of the vibration
         slow, fast = (-math.log(one) for one in SPEEDS)
-        every = f"the largest speed of the search, {SPEEDS[1] * unit:.2g} m/s,"
-        return _Line(unit, -1.0, fast, 0.0, slow, every, "no speed")
+        return _Line(unit, -1.0, fast, 0.0, slow)
     # A place is the logarithm of the dimensionless amplitude, which is a power of the load with a
     # negative exponent.  Under a large load nothing slips, and under a small load the dimensionless
     # velocity of a bore is large.  The reduction is largest in between.  Small steps from large
     # loads downwards find the first load with the requested reduction.
-    first, second = (Contact(inputs.at(load=f * REFERENCE_LOAD)).amplitude for f in (1.0, 8.0))
-    power = math.log(8.0) / math.log(float(second / first))
-    line = _Line(REFERENCE_LOAD * float(first) ** -power, power, low, 0.0, high, "", "")
-    return line._replace(
-        start=math.log(0.01 * share),
-        every=f"the largest load of the search, {line.size(low):.2g} N,",
-        none=f"no load of the search, down to {line.size(high):.2g} N,",
-    )
+    first, second = (float(Contact(inputs.at(load=f * LOAD)).amplitude) for f in (1.0, 8.0))
+    power = math.log(8.0) / math.log(second / first)
+    return _Line(LOAD * first**-power, power, low, math.log(0.01 * share), high)

@@ -3,18 +3,20 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, field
+from dataclasses import replace
 from typing import Any
 
 from microslip.answer import limits
 from microslip.answer.answer import Estimate, Result
 from microslip.answer.point import solve
+from microslip.contact.registry import MODELS
 from microslip.foundation import arguments
 from microslip.foundation.errors import InputError, shown
+from microslip.scene.hertz import HERTZ
 from microslip.scene.problem import Problem
-from microslip.si.contact import DRIVES, Contact
+from microslip.si.contact import INPUT_OF, Contact
 from microslip.si.map import MAP, FrictionMap
-from microslip.si.output import Value
+from microslip.si.output import Prediction, Value
 
 TOLERANCE, TOLERANCE_OF_SPEED = 1e-3, 1e-2
 """Default tolerance of mu_macro, and default relative tolerance of the speed under a force."""
@@ -28,49 +30,30 @@ SLOWEST = 1e-3
 MARGIN = 0.8
 """Safety factor on the accepted error of a second run, because the second velocity can be
 smaller."""
+SIMPLER: dict[str, dict[str, Any]] = {
+    "a sphere suffices: on a circular contact with the same u_lim, mu_macro differs by less than "
+    "its error": {"pressure": HERTZ},
+    "Poisson's ratio matters for u_lim only: with the ratio 0 and the same u_lim, mu_macro differs "
+    "by less than its error": {"poisson": 0.0},
+}
+"""Changes of a Problem, keyed by the sentence for changes that do not matter."""
 RUNS_AWAY = "runs away"
 """First words of the solver's reason for a contact that accelerates without limit."""
-ARGUMENTS = {"velocity": "speed"} | {group: name for name, group in DRIVES.items()}
-"""Inputs of `predict`, keyed by the arguments of microslip.solve."""
 
 
-@dataclass(frozen=True)
-class Answer:
-    """The dimensionless answer for a contact.
+def answer_of(contact: Contact) -> Prediction:
+    """Solve a contact.  Raises InputError.
 
-    Attributes
-    ----------
-    values : dict of Value
-        friction: mean forward force divided by mu times the mean load; velocity; static: friction
-        in the limit of vanishing velocity; threshold: smallest constant force that moves the
-        contact, divided as the friction; largest_force: smallest force at which it runs away;
-        mean_load divided by the load without oscillation; torque divided by mu F_z a; dissipation
-        per period divided by mu F_z u_lim; displacement until rest in u_lim; cycles until rest.
-        Unknown values are missing.
-    model : str
-        Contact model, "closed-form" or "map".
-    converged : bool
-        Whether the error of the friction, or of the velocity under a force, is within the
-        tolerance.
-    reason : str
-        Why the answer is not converged; otherwise empty.
-    outcome : str
-        Under a force "moves", "stays", "runs away" or "undecided"; empty if the solver failed, and
-        for a contact at a speed.
-    reasons : dict of str
-        Why the error of `static` is above its tolerance, and why `displacement` is unknown.
+    Returns
+    -------
+    Prediction
+        The dimensionless answer.  Its values are friction: mean forward force divided by mu times
+        the mean load; velocity; static: friction in the limit of vanishing velocity; threshold:
+        smallest constant force that moves the contact, divided as the friction; largest_force:
+        smallest force at which it runs away; mean_load divided by the load without oscillation;
+        torque divided by mu F_z a; dissipation per period divided by mu F_z u_lim; displacement
+        until rest in u_lim; cycles until rest.  Unknown values are missing.
     """
-
-    values: dict[str, Value]
-    model: str = "none"
-    converged: bool = False
-    reason: str = ""
-    outcome: str = ""
-    reasons: dict[str, str] = field(default_factory=dict)
-
-
-def answer_of(contact: Contact) -> Answer:
-    """Solve a contact.  Raises InputError."""
     forced = contact.inputs.force is not None
     accepted = contact.inputs.tolerance or (TOLERANCE_OF_SPEED if forced else TOLERANCE)
     limit = None if contact.steady else static_limit(contact)
@@ -87,14 +70,16 @@ def answer_of(contact: Contact) -> Answer:
         estimates |= {"torque": torque, "dissipation": result.dissipation}
     values = {"mean_load": Value(contact.mean_load)}
     values |= {n: Value(one.value, one.error) for n, one in estimates.items() if one is not None}
-    reasons, outcome = {"static": limit.reason} if limit and limit.reason else {}, ""
+    outcome, unknown = None, ""
     if forced:
         values["largest_force"] = Value(largest_force(contact))
         outcome = _outcome(contact, result)
     if outcome == "stays" and not contact.steady:
-        rest, reasons["displacement"] = _rest(contact)
+        rest, unknown = _rest(contact)
         values |= rest
-    return Answer(values, result.model, result.converged, result.reason, outcome, reasons)
+    about = {name: getattr(result, name) for name in ("model", "converged", "reason")}
+    about |= {"mu_static_reason": limit.reason if limit else "", "displacement_reason": unknown}
+    return Prediction(values=values, outcome=outcome, **about)
 
 
 def solve_at(contact: Contact, velocity: float | None, tolerance: float, **changes: Any) -> Result:
@@ -106,24 +91,28 @@ def solve_at(contact: Contact, velocity: float | None, tolerance: float, **chang
 
     Raises InputError.  The message names the input of `predict`.
     """
-    inputs, amplitude = contact.inputs, contact.amplitude
-    amplitude = None if amplitude is None else float(amplitude)
-    poisson, pressure = float(contact.poisson), contact.pressure
+    inputs, settings = contact.inputs, settings_of(contact)
+    amplitude = None if contact.steady else float(contact.amplitude)
     if velocity is not None:
         velocity = min(velocity, arguments.LARGEST["velocity"])
     if inputs.map is not None:
         assert velocity is not None  # a map is not allowed with a force
-        friction = FrictionMap(inputs.map, str(contact.motion), pressure)
-        return friction.solve(velocity, amplitude, poisson, tolerance)
+        friction = FrictionMap(inputs.map, str(contact.motion), settings["pressure"])
+        return friction.solve(velocity, amplitude, settings["poisson"], tolerance)
     try:
-        about: dict[str, Any] = {"poisson": poisson, "pressure": pressure, "tolerance": tolerance}
-        return solve(contact.motion, velocity, amplitude, **about | changes)
+        settings |= {"tolerance": tolerance, **changes}
+        return solve(contact.motion, velocity, amplitude, **settings)
     except InputError as error:
-        name = ARGUMENTS.get(error.argument, "")
+        name = INPUT_OF.get(error.argument, "")
         if not changes or name not in inputs.quantities:
             raise
         group = f"{error.value:.6g}" if isinstance(error.value, float) else shown(error.value)
         raise inputs.error(name, f"dimensionless {group}: {error.allowed}") from None
+
+
+def settings_of(contact: Contact) -> dict[str, Any]:
+    """Poisson's ratio and pressure for microslip.solve."""
+    return {"poisson": float(contact.poisson), "pressure": contact.pressure}
 
 
 def static_limit(contact: Contact) -> Result:
@@ -139,8 +128,7 @@ def static_limit(contact: Contact) -> Result:
 def problem_of(contact: Contact) -> Problem:
     """The dimensionless Problem in the limit of vanishing speed."""
     amplitude = None if contact.steady else float(contact.amplitude)
-    settings: dict[str, Any] = {"poisson": float(contact.poisson), "pressure": contact.pressure}
-    return limits.problem_of(contact.motion, 0.0, amplitude, **settings)
+    return limits.problem_of(contact.motion, 0.0, amplitude, **settings_of(contact))
 
 
 def largest_force(contact: Contact) -> float:
@@ -187,30 +175,27 @@ def _friction(
     groups = contact.drive(contact.mean_load)
     drive: dict[str, Any] = within_range(groups)
     if "force" not in drive:
-        velocity = contact.velocity
-        if velocity == 0.0 and not drive and limit is not None and limit.tolerance == tolerance:
+        if contact.velocity == 0.0 and not drive and limit and limit.tolerance == tolerance:
             return limit  # the same problem
-        return solve_at(contact, velocity, tolerance, **drive)
-    force, near = groups["force"], False
+        return solve_at(contact, contact.velocity, tolerance, **drive)
+    force, gap, error = groups["force"], math.inf, 0.0
     if threshold is not None:
-        near = abs(force - threshold.value) <= threshold.error
-        below = force <= threshold.value - threshold.error and force < largest_force(contact)
-        if below and limit is not None and limit.converged:
-            still = {"mean_velocity": Estimate(0.0), "friction": Estimate(force)}
-            return limit.changed(**still, **groups)
+        gap, error = force - threshold.value, threshold.error
+    if gap <= -error and force < largest_force(contact) and limit and limit.converged:
+        still = {"mean_velocity": Estimate(0.0), "friction": Estimate(force)}
+        return limit.changed(**still, **groups)
     result = solve_at(contact, None, tolerance, **drive)
     if not result.converged:
         return result
-    if near and threshold is not None:
+    if abs(gap) <= error:
         reason = "the force differs from its threshold by less than the error of the threshold, "
-        reason += f"{threshold.error:.1e} of mu times the load"
+        reason += f"{error:.1e} of mu times the load"
         from microslip.answer.force import GAP_MARGIN  # late: compiled code
 
-        drive["force"] = min(threshold.value + GAP_MARGIN * threshold.error, limits.LARGEST_FORCE)
+        drive["force"] = min(force - gap + GAP_MARGIN * error, limits.LARGEST_FORCE)
         faster = solve_at(contact, None, tolerance, **drive).mean_velocity
         half = 0.5 * (faster.value + faster.error)
-        between = Estimate(half, {"model": half})
-        return result.changed(reason=reason, mean_velocity=between)
+        return result.changed(reason=reason, mean_velocity=Estimate(half, {"model": half}))
     accepted = tolerance * max(result.velocity, SLOWEST)
     if result.mean_velocity.error <= accepted:
         return result
@@ -234,15 +219,15 @@ def within_range(drive: dict[str, float]) -> dict[str, float]:
     return groups
 
 
-def _outcome(contact: Contact, result: Result) -> str:
-    value, error = result.mean_velocity.value, result.mean_velocity.error
+def _outcome(contact: Contact, result: Result) -> str | None:
+    speed = result.mean_velocity
     if contact.drive(contact.mean_load)["force"] >= 1.0 or result.reason.startswith(RUNS_AWAY):
         return RUNS_AWAY
-    if not math.isfinite(value):
-        return ""
-    if value == error == 0.0:
+    if not math.isfinite(speed.value):
+        return None
+    if speed.value == speed.error == 0.0:
         return "stays"
-    return "moves" if value > error else "undecided"
+    return "moves" if speed.value > speed.error else "undecided"
 
 
 def _rest(contact: Contact) -> tuple[dict[str, Value], str]:
@@ -256,17 +241,35 @@ def _rest(contact: Contact) -> tuple[dict[str, Value], str]:
         return {}, "computed for a contact without mass only"
     if not contact.shape.is_round:
         return {}, "computed for a round contact only"
-    settings: dict[str, Any] = {"poisson": float(contact.poisson), "pressure": contact.pressure}
-    try:
-        from microslip.answer.force import shakedown  # late: compiled code
+    from microslip.answer.force import shakedown  # late: compiled code
 
-        rest = shakedown(
-            contact.motion, float(contact.amplitude), float(drive["force"]), **settings
-        )
+    amplitude, force = float(contact.amplitude), float(drive["force"])
+    try:
+        rest = shakedown(contact.motion, amplitude, force, **settings_of(contact))
     except InputError as error:  # a motion that exerts a forward force by itself
         return {}, error.allowed
     if not rest.converged:
         return {}, rest.reason
-    values = {"displacement": Value(rest.displacement, rest.displacement_error)}
-    cycles = rest.most_after
-    return values | ({} if cycles is None else {"cycles": Value(float(cycles))}), ""
+    cycles = {} if rest.most_after is None else {"cycles": Value(float(rest.most_after))}
+    return {"displacement": Value(rest.displacement, rest.displacement_error)} | cycles, ""
+
+
+def simplifications(contact: Contact, answer: Prediction) -> list[str]:
+    """Return the sentences of SIMPLER that hold for a contact: the simpler contact has the same
+    friction at the same speed, within the error of the answer.
+
+    A contact counts as simpler if another model is chosen for it.  The list is empty for a contact
+    under a force, and for an answer that is a closed form, comes from a map or is not converged.
+    """
+    inputs, friction, sentences = contact.inputs, answer.values["friction"], []
+    if inputs.force is not None or not answer.converged or answer.model not in MODELS:
+        return []
+    # the choice of a model distinguishes a velocity of 0 from others
+    problem = replace(problem_of(contact), velocity=min(contact.velocity, 1.0))
+    drive, tolerance = within_range(contact.drive(contact.mean_load)), inputs.tolerance or TOLERANCE
+    for sentence, change in SIMPLER.items():
+        if limits.choose_model(replace(problem, **change)) != answer.model:
+            result = solve_at(contact, contact.velocity, tolerance, **drive, **change)
+            if result.converged and abs(result.friction.value - friction.value) <= friction.error:
+                sentences.append(sentence)
+    return sentences

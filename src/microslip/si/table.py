@@ -15,9 +15,10 @@ import numpy as np
 from microslip.foundation.csv_table import LABELS, SOURCES, table_of
 from microslip.foundation.errors import InputError
 from microslip.foundation.number_text import SEPARATOR, number_text
-from microslip.si.inputs import INPUTS, Inputs, is_range, kind_of, read_quantity
-from microslip.si.output import REASONS, TEXTS, Prediction, Value, input_column
-from microslip.si.predict import checked_inputs, predict_inputs, unsolved
+from microslip.si.contact import Contact
+from microslip.si.inputs import INPUTS, is_range, kind_of, read_quantity
+from microslip.si.output import Prediction, Value, input_column
+from microslip.si.predict import checked_contact, predict_contact, unsolved
 from microslip.si.search import NoSolutionError
 from microslip.si.solve import RUNS_AWAY
 
@@ -211,11 +212,9 @@ def grid_of(motion: str, given: Mapping[str, Any]) -> Cases:
             values = values_of(name, values)
         if isinstance(values, str) or np.ndim(values) != 1:
             continue
-        unit = kind.amplitude_unit if name == "amplitude" else INPUTS[name].unit or ""
-        # A value out of range has a prediction with an error.
-        free = INPUTS[name]._replace(unit=unit, low=-math.inf, high=math.inf)
-        si = [read_quantity(name, value, free).si for value in values]
-        axes[input_column(name, unit)] = name, unit, si
+        one = kind.input(name)._replace(low=-math.inf, high=math.inf)  # see `predictions`
+        si = [read_quantity(name, value, one).si for value in values]
+        axes[input_column(name, one.unit or "")] = name, one.unit or "", si
         texts[name] = list(values)
     count = math.prod(map(len, texts.values()))
     if not axes or not 1 <= count <= MOST_CASES:
@@ -248,20 +247,18 @@ def predictions(cases: Cases, *, need_all: bool = False) -> Iterator[Prediction 
 
     need_all: If True, any invalid contact raises InputError.
     """
-    checked: list[Inputs | InputError | str] = []
+    checked: list[Contact | InputError | str] = []
     for case in range(len(cases.names)):
         try:
-            checked.append(
-                cases.errors.get(case) or checked_inputs(cases.motion, **cases.given(case))
-            )
+            given = cases.given(case)
+            checked.append(cases.errors.get(case) or checked_contact(cases.motion, **given))
         except InputError as error:
             checked.append(error)
-    wrong = [k for k, one in enumerate(checked) if not isinstance(one, Inputs)]
-    first = next((k for k in wrong if isinstance(checked[k], InputError)), None)
-    if first is not None and (need_all or len(wrong) == len(checked)):
-        problem = checked[first]
-        assert isinstance(problem, InputError)
-        same = len(wrong) == len(checked) and len({str(checked[k]) for k in wrong}) == 1
+    wrong = {k: one for k, one in enumerate(checked) if not isinstance(one, Contact)}
+    refused = [(k, one) for k, one in wrong.items() if isinstance(one, InputError)]
+    if refused and (need_all or len(wrong) == len(checked)):
+        first, problem = refused[0]
+        same = len(wrong) == len(checked) and len(set(map(str, checked))) == 1
         if same and problem.argument not in cases.columns:
             raise problem
         place = f"{'at' if cases.axes else 'in'} {cases.names[first]}"
@@ -269,13 +266,13 @@ def predictions(cases: Cases, *, need_all: bool = False) -> Iterator[Prediction 
     return map(_prediction, checked)
 
 
-def _prediction(inputs: Inputs | InputError | str) -> Prediction | InputError | str:
-    if not isinstance(inputs, Inputs):
-        return inputs
+def _prediction(contact: Contact | InputError | str) -> Prediction | InputError | str:
+    if not isinstance(contact, Contact):
+        return contact
     try:
-        return predict_inputs(inputs)
+        return predict_contact(contact)
     except NoSolutionError as error:
-        return unsolved(inputs, error.allowed)
+        return unsolved(contact, error.allowed)
     except InputError as error:
         return error
 
@@ -290,23 +287,21 @@ def dataset_of(cases: Cases, answers: Answers) -> xr.Dataset:
     }
     axes = axes or {"case": np.arange(len(answers))}
     shape = [len(values) for _, _, values in cases.axes.values()] or [len(answers)]
-    rows: list[dict[str, Any]] = []
-    about: dict[str, dict[str, str]] = {"error": {"long_name": "error message of the case"}}
-    for one in answers:
-        rows.append(one.to_dict() if isinstance(one, Prediction) else {"converged": False})
-        if isinstance(one, Prediction) and not about.keys() >= rows[-1].keys():
-            about |= dict.fromkeys(rows[-1], {}) | {
-                key: {"units": unit or "1", "long_name": text}
-                for key, unit, text, _ in one.numbers()
-            }
-    columns: dict[str, list[Any]] = {}
-    for name in dict.fromkeys(name for row in rows for name in row):
-        if name not in ("motion", "inputs", *axes):
-            columns[name] = _cells(name, [row.get(name) for row in rows])
+    rows: list[dict[str, tuple]] = [
+        one.columns() if isinstance(one, Prediction) else {"converged": (False, {})}
+        for one in answers
+    ]
+    about = {name: attributes for row in rows for name, (_, attributes) in row.items()}
+    columns: dict[str, list[Any]] = {
+        name: [_cell(row.get(name, (None,))[0], bool(attributes)) for row in rows]
+        for name, attributes in about.items()
+        if name not in ("motion", "inputs", *axes)
+    }
     for name, values in cases.columns.items() if not cases.axes else ():
         texts = ["" if one is None else str(one) for one in values]
         columns[name if name in LABELS else f"case_{name}"] = texts
     columns["error"] = ["" if isinstance(one, Prediction) else str(one) for one in answers]
+    about["error"] = {"long_name": "error message of the case"}
     variables = {
         name: (list(axes), np.array(values).reshape(shape), about.get(name, {}))
         for name, values in columns.items()
@@ -314,26 +309,21 @@ def dataset_of(cases: Cases, answers: Answers) -> xr.Dataset:
     return xr.Dataset(variables, axes, {"motion": str(cases.motion)})
 
 
-def _cells(name: str, values: list[Any]) -> list[Any]:
-    """A column of a dataset: texts, truth values, or numbers with NaN for None."""
-    if name == "converged":
-        return values
-    if name in (*TEXTS, *REASONS):
-        return [one or "" for one in values]
-    if any(isinstance(one, list) for one in values):
-        return ["; ".join(one or ()) for one in values]
-    return [math.nan if one is None else float(one) for one in values]
+def _cell(value: Any, is_number: bool) -> Any:
+    """Value of a column in a dataset: NaN or an empty text for None, texts of a list joined."""
+    if value is None:
+        return math.nan if is_number else ""
+    return "; ".join(value) if isinstance(value, list) else value
 
 
 def table_text(cases: Cases, answers: Answers) -> str:
     """The printed table, with a row for each contact and remarks below."""
     predicted = [one for one in answers if isinstance(one, Prediction)]
-    columns = {title: [_output(name, one) for one in predicted] for name, title in PRINTED.items()}
-    searched = {one.search: one.input_units[one.search] for one in predicted if one.search}
-    searched.pop("speed", None)
-    for name, unit in searched.items():
-        sizes = [one.input_values[name] if one.search == name else None for one in predicted]
-        columns[f"{name} {unit}"] = sizes
+    rows = [one.input_values | one.values for one in predicted]  # the speed is one of them
+    columns = {title: [row.get(name) for row in rows] for name, title in PRINTED.items()}
+    for name in dict.fromkeys(one.search for one in predicted if one.search not in (None, "speed")):
+        roots = [one.input_values[name] if one.search == name else None for one in predicted]
+        columns[f"{name} {next(filter(None, roots)).unit}"] = roots
     texts: list[Any] = []
     for title, values in columns.items():
         numbers = [one for one in values if one is not None]
@@ -344,7 +334,7 @@ def table_text(cases: Cases, answers: Answers) -> str:
         texts += [part for *part, use in zip(titles, parts, used, strict=False) if use]
     if any(one.outcome for one in predicted):
         texts.append(("outcome", [one.outcome or "" for one in predicted]))
-    rows = iter(zip(*(cells for _, cells in texts), strict=True)) if texts else repeat(())
+    cells = iter(zip(*(one for _, one in texts), strict=True)) if texts else repeat(())
     lines = ["".join(f"{title:>{WIDTH}}" for title in (*cases.starts, *(one for one, _ in texts)))]
     remarks: dict[str, list[str]] = {}
     starts = zip(*cases.starts.values(), strict=True)
@@ -353,7 +343,7 @@ def table_text(cases: Cases, answers: Answers) -> str:
         if not isinstance(one, Prediction):
             lines[-1] += "  no prediction"
             continue
-        lines[-1] += "".join(f"{text:>{WIDTH}}" for text in next(rows))
+        lines[-1] += "".join(f"{text:>{WIDTH}}" for text in next(cells))
         away = [f"it {one.reason}"] if one.outcome == RUNS_AWAY else []
         for text in (*away, *one.remarks, *one.problems):
             remarks.setdefault(text, []).append(name)
@@ -361,11 +351,6 @@ def table_text(cases: Cases, answers: Answers) -> str:
         more = f" and {len(names) - 1} more" if len(names) > 1 else ""
         lines.append(f"{names[0]}{more}: {text}")
     return "\n".join(lines)
-
-
-def _output(name: str, one: Prediction) -> Value | None:
-    """An output, or the speed as an input."""
-    return one.values.get(name) or (one.input_values.get(name) if name == "speed" else None)
 
 
 def _digits(one: Value | None) -> tuple[str, str, str]:

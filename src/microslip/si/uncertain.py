@@ -14,6 +14,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import replace
+from functools import partial
 from itertools import pairwise
 from typing import Any, NamedTuple
 
@@ -21,11 +22,11 @@ import numpy as np
 
 from microslip.foundation.errors import InputError
 from microslip.foundation.number_text import ROUNDING
-from microslip.si.contact import Contact
+from microslip.si.contact import Contact, contact_of
 from microslip.si.inputs import INPUTS, Inputs
-from microslip.si.output import INTERVAL, Value
-from microslip.si.search import NoSolutionError
-from microslip.si.solve import Answer, static_limit
+from microslip.si.output import INTERVAL, Prediction, Value
+from microslip.si.search import NoSolutionError, find_reduction
+from microslip.si.solve import answer_of, static_limit
 
 DRAWS = 2**15
 """Number of draws.  The error of a probability is about 1e-3."""
@@ -53,9 +54,6 @@ SMALLEST = 5e-324
 DRIVEN = ("velocity", "force", "stiffness", "mass", "damping")
 """Groups that have no effect on the static limit."""
 
-Solve = Callable[[Inputs], tuple[Contact, Answer, Value | None]]
-"""Function solve(inputs) -> contact, answer, result of a search or None.  Raises InputError."""
-
 
 class _Line(NamedTuple):
     """A line through the draws, along which values are interpolated.
@@ -65,16 +63,15 @@ class _Line(NamedTuple):
     places, levels : np.ndarray, shape (DRAWS,)
         Coordinate of each draw along the line, and its distance from the centre in standard
         deviations.
-    inputs_at, place_at : callable
-        inputs_at(level) -> Inputs, and place_at(level) -> coordinate.
+    at : callable
+        at(level) -> Inputs and coordinate.
     nodes : list
         Level, place and values by name of each node.
     """
 
     places: np.ndarray
     levels: np.ndarray
-    inputs_at: Callable[[float], Inputs]
-    place_at: Callable[[float], float]
+    at: Callable[[float], tuple[Inputs, float]]
     nodes: list[tuple[float, float, dict[str, float]]]
 
     def add(self, level: float, solve: Callable[[Inputs], dict[str, float]]) -> None:
@@ -82,7 +79,8 @@ class _Line(NamedTuple):
         used."""
         for one in (factor * level for factor in NEARER):
             try:
-                self.nodes.append((one, self.place_at(one), solve(self.inputs_at(one))))
+                inputs, place = self.at(one)
+                self.nodes.append((one, place, solve(inputs)))
             except (InputError, ArithmeticError):  # outside the range of the theory or the solver
                 continue
             return
@@ -111,39 +109,27 @@ class Draws:
     ----------
     inputs : Inputs
         The inputs, of which at least one is uncertain.
-    contact, answer : Contact, Answer
+    contact, answer : Contact, Prediction
         The contact and the answer for the central values.
-    solve : callable
-        See Solve.
 
     Attributes
     ----------
-    contact, answer : Contact, Answer
+    contact, answer : Contact, Prediction
         The contact and the answer of all draws, with arrays of shape (DRAWS,).
     """
 
-    def __init__(self, inputs: Inputs, contact: Contact, answer: Answer, solve: Solve):
-        self._inputs, self._centre = inputs, contact
+    def __init__(self, inputs: Inputs, contact: Contact, answer: Prediction):
+        self._inputs, self._centre, search = inputs, contact, inputs.search
         self._normal = normal_numbers(len(inputs.uncertain))
         drawn, central = self._drawn(self._normal), answer.values
         self.contact = Contact(contact.inputs.at(**drawn))
-
-        def solution(other: Inputs) -> dict[str, float]:
-            """The answer, and as "root" the logarithm of the result of a search."""
-            try:
-                _, answer, root = solve(other)
-            except NoSolutionError:
-                return {}
-            values = {name: one.value for name, one in answer.values.items()}
-            return values | ({"root": math.log(root.value)} if root else {})
-
-        middle = solution(inputs)
-        limit = None if inputs.search else middle.pop("static", None)
-        known = self._total(middle, self._lines(False, middle), LEVELS, solution)
+        middle = _numbers(contact, answer, search)
+        limit = None if search else middle.pop("static", None)
+        known = self._total(middle, self._lines(middle), LEVELS, _solution)
         if limit is not None:
             known["static"] = self._static(limit)
-        if inputs.search is not None:
-            drawn[inputs.search] = np.exp(known.pop("root"))
+        if search is not None:
+            drawn[search] = np.exp(known.pop("root"))
             self.contact = Contact(inputs.at(**drawn))
         elif central.get("threshold") == central.get("static", 0.0):
             known["threshold"] = known["static"]
@@ -161,8 +147,14 @@ class Draws:
     def _drawn(self, normal: np.ndarray) -> dict[str, Any]:
         """Values of the uncertain inputs within their ranges, from standard normal numbers of shape
         (..., inputs)."""
-        names = enumerate(self._inputs.uncertain)
-        return {name: _clipped(self._inputs, name, normal[..., k]) for k, name in names}
+        drawn = {}
+        for k, (name, one) in enumerate(self._inputs.uncertain.items()):
+            low, high = INPUTS[name].low, INPUTS[name].high
+            low = low if INPUTS[name].zero else SMALLEST
+            if INPUTS[name].low == -math.inf:  # a radius keeps its sign
+                low, high = sorted((math.copysign(SMALLEST, one.si), math.copysign(high, one.si)))
+            drawn[name] = np.clip(one.si + normal[..., k] * one.deviation, low, high)
+        return drawn
 
     def _total(
         self,
@@ -185,14 +177,14 @@ class Draws:
     def _static(self, central: float) -> np.ndarray:
         """The static limit for all draws.  Points are added where it vanishes and where it is close
         to the force."""
-        force, lines = self.contact.drive().get("force"), self._lines(True, {"static": central})
+        lines = self._lines({"static": central}, static=True)
+        force = self.contact.drive().get("force") if len(lines) == 1 else None
 
         def limit(inputs: Inputs) -> dict[str, float]:
             contact = Contact(inputs)
-            if contact.amplitude <= 0.0:
-                return {"static": 1.0}
-            finite = math.isfinite(contact.amplitude)
-            return {"static": static_limit(contact).mu_macro if finite else 0.0}
+            if 0.0 < contact.amplitude < math.inf:
+                return {"static": static_limit(contact).mu_macro}
+            return {"static": 1.0 if contact.amplitude <= 0.0 else 0.0}
 
         def refine(line: _Line) -> None:
             for _ in range(REFINEMENTS):
@@ -201,7 +193,7 @@ class Draws:
                 ends = [(a, b) for (a, x), (b, y) in pairs if (x > VANISHING) != (y > VANISHING)]
                 if ends:
                     line.add(0.5 * sum(ends[0]), limit)
-            for _ in range(REFINEMENTS if force is not None and len(lines) == 1 else 0):
+            for _ in range(0 if force is None else REFINEMENTS):
                 distance = np.abs(line.values("static") - force)
                 closest = np.argpartition(distance, DRAWS // CLOSEST)[: DRAWS // CLOSEST]
                 line.add(float(np.median(line.levels[closest])), limit)
@@ -221,12 +213,11 @@ class Draws:
             columns.append(np.atleast_1d(change))
         return np.nan_to_num(np.stack(np.broadcast_arrays(*columns), axis=-1))
 
-    def _lines(self, static: bool, central: dict[str, float]) -> list[_Line]:
+    def _lines(self, central: dict[str, float], static: bool = False) -> list[_Line]:
         """The lines along which the answer, or the static limit, varies: the principal axes of the
         groups, or the axes of the inputs if there are at most as many.  The first node of each line
         is at the centre."""
         normal, count = self._normal, len(self._inputs.uncertain)
-        base = self._centre.inputs if static else self._inputs
         groups = self._groups(self.contact, static)
         if len(groups) == 1:
             return []
@@ -237,33 +228,39 @@ class Draws:
         scores = normal if by_inputs else (groups - middle) @ axes.T
         deviations = scores.std(axis=0)
         slopes = np.linalg.lstsq(scores, normal, rcond=None)[0] * deviations[:, None]
-        directions = np.ones((1, 1)) if count == 1 and not by_inputs else slopes
-        levels = normal if count == 1 else scores / deviations
+        levels = scores / deviations
+        if count == 1:
+            slopes, levels = np.ones((1, 1)), normal
 
-        def line(axis: int) -> _Line:
-            def inputs_at(level: float) -> Inputs:
-                drawn = self._drawn(level * directions[axis])
-                return base.at(**{name: np.float64(one) for name, one in drawn.items()})
+        def at(axis: int, level: float) -> tuple[Inputs, float]:
+            drawn = self._drawn(level * slopes[axis][None, :])
+            inputs = self._inputs.at(**{name: np.float64(one[0]) for name, one in drawn.items()})
+            if by_inputs:
+                return inputs, level
+            place = self._groups(Contact(self._centre.inputs.at(**drawn)), static)[0] - middle
+            return inputs, float(place @ axes[axis])
 
-            def place_at(level: float) -> float:
-                drawn = self._drawn(level * directions[axis][None, :])
-                contact = Contact(self._centre.inputs.at(**drawn))
-                return float((self._groups(contact, static)[0] - middle) @ axes[axis])
-
-            place = float if by_inputs else place_at
-            nodes = [(0.0, place(0.0), central)]
-            return _Line(scores[:, axis], levels[:, axis], inputs_at, place, nodes)
-
-        return [line(axis) for axis in range(scores.shape[1])]
+        lines = []
+        for axis in range(scores.shape[1]):
+            along = partial(at, axis)
+            nodes = [(0.0, along(0.0)[1], central)]
+            lines.append(_Line(scores[:, axis], levels[:, axis], along, nodes))
+        return lines
 
 
-def _clipped(inputs: Inputs, name: str, normal: Any) -> Any:
-    """Values of an uncertain input within its range."""
-    one, allowed = inputs.quantities[name], INPUTS[name]
-    values = one.si + normal * one.deviation
-    if allowed.low == -math.inf:  # a radius keeps its sign
-        return np.copysign(np.maximum(values * np.sign(one.si), SMALLEST), one.si)
-    return np.clip(values, allowed.low if allowed.zero else SMALLEST, allowed.high)
+def _numbers(contact: Contact, answer: Prediction, search: str | None) -> dict[str, float]:
+    """The values of an answer, and as "root" the logarithm of the result of a search."""
+    values = {name: one.value for name, one in answer.values.items()}
+    return values | ({"root": math.log(getattr(contact.inputs, search))} if search else {})
+
+
+def _solution(inputs: Inputs) -> dict[str, float]:
+    """The numbers of the answer; empty if a search has no solution.  Raises InputError."""
+    try:
+        contact = find_reduction(inputs)[0] if inputs.search else contact_of(inputs)
+    except NoSolutionError:
+        return {}
+    return _numbers(contact, answer_of(contact), inputs.search)
 
 
 def normal_numbers(count: int) -> np.ndarray:
@@ -295,10 +292,10 @@ def with_interval(one: Value, draws: Any) -> Value:
         spread = math.inf
     elif len(finite) and np.ptp(finite) <= ROUNDING * np.abs(finite).max():
         spread, low, high = 0.0, one.value, one.value
-    return Value(one.value, one.error, spread, float(low), float(high))
+    return replace(one, spread=spread, low=float(low), high=float(high))
 
 
-def probabilities(contact: Contact, answer: Answer) -> dict[str, Value]:
+def probabilities(contact: Contact, answer: Prediction) -> dict[str, Value]:
     """Probability of each outcome under a force, with its error estimate; empty without a force.
 
     The error estimate follows from the error of the threshold, or from the difference between the
@@ -314,8 +311,8 @@ def probabilities(contact: Contact, answer: Answer) -> dict[str, Value]:
     away, threshold = force >= known["largest_force"].value, known.get("threshold")
     outcomes, shift = {"runs_away": away}, 0.0
     if threshold is not None:
-        value, error = threshold.pair
-        stays, at_least, at_most = (~away & (force < value + k * error) for k in (0.0, -1.0, 1.0))
+        ends = (threshold.value + k * threshold.error for k in (0.0, -1.0, 1.0))
+        stays, at_least, at_most = (~away & (force < end) for end in ends)
         shift = max(abs(np.mean(end) - np.mean(stays)) for end in (at_least, at_most))
         outcomes |= {"stays": stays, "moves": ~away & ~stays}
     values = {}

@@ -197,16 +197,22 @@ def measures(contact: Contact, speed: float) -> dict[str, float | None]:
 
     Pressures and the contact radius are those at the largest load in a period.
     """
-    inputs, kind, most = contact.inputs, contact.kind, contact
+    inputs, kind, most, factor = contact.inputs, contact.kind, contact, 1.0
     if inputs.load_amplitude:
         most = Contact(inputs.at(load=inputs.load + inputs.load_amplitude))
+    along = math.hypot(inputs.amplitude or 0.0, inputs.forward_amplitude or 0.0)
+    # largest displacement, m, or speed divided by omega, and largest rotation
+    reach = pace = (along, inputs.rotation_amplitude or 0.0)
+    if kind.unit == "rad":
+        reach = pace = (0.0, inputs.amplitude)
+    elif kind.stroke is not None:
+        factor, reach, pace = inputs.amplitude, kind.stroke.reach, kind.stroke.pace
     elastic = [b for b in contact.bodies if not b.rigid]
     a, pressure, edge = most.contact_radius, most.largest_pressure, contact.contact_radius
     hardness = [b.hardness for b in elastic if b.hardness is not None]
     # an infinite pressure has its own warning
     soft = [b.young for b in elastic if b.hardness is None and b.poisson < RUBBERY]
     waves = [math.sqrt(b.shear_modulus / b.density) for b in elastic if b.density is not None]
-    along, turn = _reach(contact)
     tabor, pull = _pull_off(contact)
     values: dict[str, float | None] = {
         "largest_pressure": pressure,
@@ -224,30 +230,16 @@ def measures(contact: Contact, speed: float) -> dict[str, float | None]:
         "maugis": None if tabor is None else 1.157 * tabor,
         "pull_off": pull,
         "pull_off_share": None if pull is None else pull / contact.load,
-        "amplitude": along,
-        "stroke": None if kind.steady else along / edge,
+        "amplitude": factor * reach[0],
+        "stroke": None if kind.steady else factor * reach[0] / edge,
         "mean_load": contact.load * contact.mean_load,
         "separated": contact.separated,
     }
     if waves:
-        pace = kind.stroke.pace if kind.stroke else (along, turn)
-        factor = inputs.amplitude if kind.stroke else 1.0
         slip = speed + contact.omega * factor * (pace[0] + edge * pace[1])
         slip = math.hypot(speed, contact.omega * edge) if kind.steady else slip
         values |= {"crossing": contact.omega * edge / min(waves), "slip_speed": slip / min(waves)}
     return values
-
-
-def _reach(contact: Contact) -> tuple[float, float]:
-    """Largest displacement along the surface in a period, m, and largest rotation, rad."""
-    inputs, kind = contact.inputs, contact.kind
-    if kind.stroke is not None:
-        along, turn = kind.stroke.reach
-        return inputs.amplitude * along, inputs.amplitude * turn
-    if kind.unit == "rad":
-        return 0.0, inputs.amplitude
-    along = math.hypot(inputs.amplitude or 0.0, inputs.forward_amplitude or 0.0)
-    return along, inputs.rotation_amplitude or 0.0
 
 
 def _pull_off(contact: Contact) -> tuple[float | None, float | None]:
@@ -261,34 +253,16 @@ def _pull_off(contact: Contact) -> tuple[float | None, float | None]:
     Maugis, Contact, Adhesion and Rupture of Elastic Solids, 4.2).  For a flat punch, this is
     Kendall's force (J. Phys. D 4, 1971).
     """
-    a, E_star, shape = contact.contact_radius, contact.E_star, contact.shape
-    if contact.radii or (shape.hertzian and shape.is_round):
-        across = contact.inputs.radius_across
-        radius = contact.radius if across is None else math.sqrt(contact.radius * across)
-    elif shape.hertzian:
-        radius = _mean_radius(contact)
-    elif isinstance(shape, Indenter):
+    shape, crack = contact.shape, 8.0 * math.pi * contact.E_star * ADHESION
+    if shape.hertzian:
+        radius = contact.mean_radius
+        tabor = (ADHESION**2 * radius / (contact.E_star**2 * RANGE**3)) ** (1.0 / 3.0)
+        return tabor, (1.5 if tabor > SHORT else 2.0) * math.pi * ADHESION * radius
+    if isinstance(shape, Indenter):
         with np.errstate(over="ignore"):
             load = contact.load * shape.total(shape.depth(RADII))
-        crack = np.sqrt(8.0 * math.pi * E_star * ADHESION * (a * RADII) ** 3)
-        return None, float((crack - load).max())
-    else:
-        return None, None
-    tabor = (ADHESION**2 * radius / (E_star**2 * RANGE**3)) ** (1.0 / 3.0)
-    return tabor, (1.5 if tabor > SHORT else 2.0) * math.pi * ADHESION * radius
-
-
-def _mean_radius(contact: Contact) -> float:
-    """Geometric mean of the radii of relative curvature of an elliptic contact of known size, m (K.
-    L. Johnson, Contact Mechanics, 4.2)."""
-    from scipy.special import ellipe, ellipk
-
-    ratio, a = contact.shape.ratio, contact.contact_radius  # type: ignore[attr-defined]
-    m = 1.0 - ratio**2
-    first, second = ellipk(m), ellipe(m)
-    sizes = (first - second) * (second / ratio**2 - first)
-    pressure = 1.5 * contact.load / (math.pi * a**2 * ratio)
-    return float(0.5 * contact.E_star * a * m / (pressure * ratio * math.sqrt(sizes)))
+        return None, float((np.sqrt(crack * (contact.contact_radius * RADII) ** 3) - load).max())
+    return None, None
 
 
 def _contradictions(contact: Contact) -> list[str]:
