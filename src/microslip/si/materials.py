@@ -60,7 +60,7 @@ class Material:
     def __post_init__(self) -> None:
         for name, unit in UNITS.items():
             value = getattr(self, name)
-            if value is None or getattr(value, "shape", ()) or value == math.inf:
+            if value is None or hasattr(value, "shape") and value.shape or value == math.inf:
                 continue
             try:
                 one = read_hardness(value) if name == "hardness" else read(value, unit)
