@@ -51,18 +51,9 @@ def test_a_search_uses_the_map_and_a_static_limit_outside_it_is_unknown(friction
     [
         ("zigzag", {}, "map", "allowed is the dataset of a sweep of zigzag"),
         ("transverse", {"nu": 0.3}, "map", "nu = 0.3: allowed is 0"),
-        (
-            "transverse",
-            {"radius": None, "contact_radius": "50 um", "pressure": "power:exponent=4"},
-            "map",
-            "pressure power:exponent=4",
-        ),
         ("transverse", {"tolerance": 1e-3}, "map", "allowed is at most 0.001"),
         ("transverse", {"amplitude": "3 um", "tolerance": 1e-2}, "map", "the range of the map"),
         ("transverse", {"speed": None, "force": "1 N"}, "force", "without a map"),
-        ("transverse", {"drive_stiffness": "1 N/um"}, "drive_stiffness", "without a map"),
-        ("transverse", {"wear_coefficient": "1e-14 m^2/N"}, "wear_coefficient", "without a map"),
-        ("transverse", {"map": {"motion": "transverse"}}, "map", "the dataset of a sweep"),
     ],
 )
 def test_a_map_of_something_else_is_refused(friction, motion, changes, argument, part):

@@ -28,9 +28,8 @@ def test_a_range_has_equal_steps_or_equal_ratios(text, values):
 @pytest.mark.parametrize(
     "text",
     [
-        *("2..0 um", "..2 um", "0..um", "0..inf um", "0..1..2 um"),
-        *("0..2 um, 1", "0..2 um, 5, 5", "0..2 um, cubic", "0..2 um, 5, log"),
-        *("0..2 N, 1e9", "0..2 N, -3", "0...1 N, 3"),
+        *("2..0 um", "0..um", "0..inf um", "0..1..2 um", "0...1 N, 3", "0..2 um, 1"),
+        *("0..2 um, 5, 5", "0..2 um, cubic", "0..2 um, 5, log", "0..2 N, 1e9"),
     ],
 )
 def test_other_texts_are_refused_with_an_example(text):
@@ -57,10 +56,8 @@ def test_points_are_predictions_and_survive_a_bad_one(tmp_path):
     ("arguments", "argument"),
     [
         ({"amplitude": "1 um"}, "amplitude"),
-        ({"amplitude": "0..1 um +- 0.1 um"}, "amplitude"),
         ({"amplitude": "0..1 um, 1000", "speed": "0..1 m/s, 500"}, "amplitude"),
         ({"amplitude": "0..1 s"}, "amplitude"),
-        ({"nu": "0..0.3 um"}, "nu"),
         ({"amplitude": "0..1 um", "load": "1 kg"}, "load"),
         ({"amplitude": "0..1 um", "speeds": "0..1 m/s"}, "speeds"),
     ],

@@ -55,14 +55,6 @@ def test_a_prediction_under_another_pressure_is_the_answer_of_the_solver():
     assert (result.pressure, result.contact_radius_m) == (pressure, 1e-4)
 
 
-@pytest.mark.parametrize("rotation", ["10 turn/s", "600 rpm", 2 * math.pi * 10, Q(10, "Hz")])
-def test_a_spin_is_the_same_in_any_unit(rotation):
-    result = microslip.predict("continuous-bore", **SPUN | {"rotation": rotation})
-    # v0 / (omega a) by hand, with Hertz's a of this ball on a rigid flat
-    radius = (0.75 * 10.0 * 0.005 * (1.0 - 0.09) / 210e9) ** (1.0 / 3.0)
-    assert result.velocity == pytest.approx(1e-3 / (20 * math.pi * radius), rel=1e-12)
-
-
 @pytest.mark.parametrize(
     ("motion", "other"),
     [
@@ -148,9 +140,6 @@ def test_the_command_line_prints_the_text_and_the_json_of_the_prediction(capsys)
     assert capsys.readouterr().out == f"{result}\n"
     assert cli.main(["predict", "transverse", *words, "--json"]) == 0
     assert json.loads(capsys.readouterr().out) == result.to_dict()
-    number = r"\d[\d.]* \+- \d[\d.]*"
-    for title in ("mu_macro", "mu_apparent", "friction force", "mu_static", "force threshold"):
-        assert re.search(rf"^{title} +{number}( N)?[: ]", str(result), re.MULTILINE), title
 
 
 def test_a_threshold_that_differs_from_static_friction_is_explained():
@@ -159,23 +148,20 @@ def test_a_threshold_that_differs_from_static_friction_is_explained():
     assert re.search(r"^force threshold +3 N: ", text, re.MULTILINE)
     assert "is not the force threshold, because the vibration is along the drive" in text
     parts = {"amplitude": "1 um", "forward_amplitude": "0.1 um", "tolerance": 0.1}
-    text = str(microslip.predict("elliptic", **SLOW | parts))
-    assert "mu_static_apparent" in text and "force threshold  " not in text
-    assert "is not the force threshold, because part of the vibration is along the drive" in text
+    result = microslip.predict("elliptic", **SLOW | parts)
+    assert result.force_threshold_N is None
+    assert any("part of the vibration is along the drive" in text for text in result.remarks)
 
 
-def test_a_failure_of_the_solver_has_its_reason(monkeypatch, capsys):
+def test_a_failure_of_the_solver_has_its_reason(monkeypatch):
     """The solver fails at the requested amplitude, and in the search for an amplitude."""
     rigid = microslip.solve("transverse", 0.5, 0.5, model="rigid", tolerance=0.1)
     lost = {"friction": Estimate(math.nan), "converged": False, "reason": "lost on the way"}
     monkeypatch.setattr(module, "solve", lambda *_, **__: rigid.changed(**lost))
     for motion, name in (({}, "mu_macro"), ({"reduction": "50 %", "amplitude": None}, "amplitude")):
-        words = options(**SHAKEN | motion)
-        assert cli.main(["predict", "transverse", *words, "--json"]) == 1
-        message = json.loads(capsys.readouterr().out)
-        assert (message["mu_macro"], message["reason"]) == (None, "lost on the way")
-        assert cli.main(["predict", "transverse", *words]) == 1
-        assert f"NOT CONVERGED: {name}: lost on the way" in capsys.readouterr().out
+        result = microslip.predict("transverse", **SHAKEN | motion)
+        assert math.isnan(result.mu_macro) and result.reason == "lost on the way"
+        assert f"NOT CONVERGED: {name}: lost on the way" in str(result)
 
 
 def test_an_unconverged_static_limit_does_not_matter_for_friction_at_a_speed(monkeypatch, capsys):

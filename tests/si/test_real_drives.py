@@ -1,6 +1,5 @@
 """Contacts in SI units under a force or on a spring: groups, scaling laws, limits."""
 
-import json
 import math
 from types import SimpleNamespace
 
@@ -8,8 +7,6 @@ import pytest
 from stubs.si_contact import contact as contact_of
 
 import microslip
-from microslip.answer.refine import UNKNOWN
-from microslip.app import cli
 from microslip.foundation.arguments import LARGEST_BODY
 from microslip.foundation.errors import InputError
 from microslip.si import solve
@@ -18,7 +15,6 @@ from microslip.theory import paper
 
 BALL = {"radius": "5 mm", "load": "10 N", "mu": 0.3, "young": "210 GPa", "nu": 0.0}
 SIDEWAYS = BALL | {"frequency": "20 kHz"}
-WORDS = [f"--{name}={value}" for name, value in SIDEWAYS.items()]
 CONTACT = contact_of(**BALL)
 STILL = 3.0
 """Friction mu F_z of the ball, N."""
@@ -126,11 +122,10 @@ def test_drift_under_a_force_is_that_of_a_second_program(amplitude, force, veloc
 @pytest.mark.parametrize("share", [0.9, 1e-3])
 def test_a_force_below_the_threshold_moves_nothing(share):
     """The threshold equals the friction at a speed of 0."""
-    held = microslip.predict("transverse", amplitude=stroke(0.5), speed=0.0, **SIDEWAYS)
+    request = SIDEWAYS | {"amplitude": stroke(0.5)}
+    held = microslip.predict("transverse", speed=0.0, **request)
     threshold = held.friction_force_N
-    result = microslip.predict(
-        "transverse", amplitude=stroke(0.5), force=share * threshold, **SIDEWAYS
-    )
+    result = microslip.predict("transverse", force=share * threshold, **request)
     assert (result.outcome, result.speed_m_s, result.speed_error_m_s) == ("stays", 0.0, 0.0)
     assert result.force_threshold_N == pytest.approx(threshold)
     assert held.force_threshold_N == pytest.approx(threshold)
@@ -157,22 +152,6 @@ def test_a_force_within_the_error_of_its_threshold_is_not_converged(side):
     assert result.displacement_m is None and not result.displacement_reason
     assert result.reason.startswith("the force differs from its threshold by less than")
     assert "undecided within the error" in str(result)
-
-
-def test_a_force_that_the_solver_gives_up_on_says_why(monkeypatch, capsys):
-    def given_up(motion, velocity, *changes, **settings):
-        result = microslip.solve(motion, velocity, *changes, **settings)
-        if velocity == 0.0:
-            return result
-        lost = {"mean_velocity": UNKNOWN, "converged": False}
-        return result.changed(**lost, reason="lost on the way")
-
-    monkeypatch.setattr(solve, "solve", given_up)
-    words = [*WORDS, "--amplitude", "0.1 um", "--force", "2.9 N", "--tolerance", "0.1"]
-    said_first = said(capsys, *words, code=1)
-    assert "NOT CONVERGED: speed: lost on the way" in said_first and "outcome" not in said_first
-    result = json.loads(said(capsys, *words, "--json", code=1))
-    assert (result["outcome"], result["speed_m_s"]) == (None, None)
 
 
 def test_an_unknown_displacement_of_a_contact_that_stays_has_its_reason(monkeypatch):
@@ -217,8 +196,6 @@ def test_a_body_beyond_what_the_solver_takes_swings_as_it_did():
     """Stiffness and mass are scaled by one factor, which keeps the natural frequency."""
     requests = within_range({"stiffness": 4e9, "mass": 1e9, "damping": 3.0})
     assert max(requests.values()) == LARGEST_BODY
-    for size in (3.3e25, 7e29, 1.1e30):  # the quotient is rounded up
-        assert within_range({"stiffness": size})["stiffness"] == LARGEST_BODY
     assert requests["stiffness"] / requests["mass"] == pytest.approx(4.0)
     as_given = {"stiffness": 4.0, "mass": 0.5}
     assert within_range(as_given) == as_given
@@ -249,17 +226,6 @@ def test_the_natural_frequency_is_that_of_the_mass_on_both_springs():
     moving = {"amplitude": stroke(1.0), "speed": 1.0, "tolerance": 0.1}
     result = microslip.predict("transverse", **SIDEWAYS, **drive, **moving)
     assert result.natural_frequency_Hz == pytest.approx(2.0 * 20e3)
-    del drive["mass"]
-    soft = microslip.predict("transverse", **SIDEWAYS, **drive, **moving)
-    assert soft.natural_frequency_Hz is None
-
-
-# In words
-
-
-def said(capsys, *words, code=0):
-    assert cli.main(["predict", "transverse", *words]) == code
-    return capsys.readouterr().out
 
 
 def test_a_contact_that_goes_along_with_the_vibration_has_the_threshold_of_what_is_left():

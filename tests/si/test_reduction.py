@@ -1,7 +1,6 @@
 """Searches for the amplitude, the speed or the load with a prescribed reduction of friction."""
 
 import math
-import re
 
 import pytest
 from scipy.optimize import brentq
@@ -28,9 +27,6 @@ def root(result):
         # for a bore two loads have the same reduction; the search returns the larger one
         pytest.param("bore", {"amplitude": 0.01, "load": 200.0}, {}, marks=pytest.mark.long),
         pytest.param("transverse", {}, {"radius_across": "8 mm"}, marks=pytest.mark.long),
-        pytest.param(
-            "transverse", {}, {"radius": None, "contact_radius": "60 um"}, marks=pytest.mark.long
-        ),
     ],
 )
 def test_a_search_is_the_inverse_of_a_prediction(motion, change, shape, target):
@@ -61,24 +57,13 @@ def test_the_speed_of_a_rigid_slider_is_that_of_equation_6():
     assert root(result).error < 0.01 * result.speed_m_s
 
 
-@pytest.mark.parametrize(
-    ("missing", "titles"),
-    [
-        ("amplitude", {"amplitude": 1.0}),
-        ("load", {"u_lim": 2.0 / 3.0, "contact radius": 1.0 / 3.0}),
-    ],
-)
-def test_values_that_follow_from_a_root_have_its_error(missing, titles):
-    rest = {name: value for name, value in GIVEN.items() if name != missing}
-    result = microslip.predict(
-        "transverse", reduction="40 %", **LATERAL | {"tolerance": 0.02}, **rest
-    )
-    lines = str(result).split("\n\n")[1].splitlines()
-    for title, power in titles.items():
-        line = next(one for one in lines if one.startswith(f"{title} "))
-        number, error = re.search(r"([\d.]+) \+- ([\d.e-]+)", line).groups()
-        share = power * root(result).error / root(result).value
-        assert float(error) / float(number) == pytest.approx(share, rel=0.15)
+def test_values_that_follow_from_a_root_have_its_error():
+    request = LATERAL | GIVEN | {"load": None, "reduction": "40 %", "tolerance": 0.02}
+    result = microslip.predict("transverse", **request)
+    share = root(result).error / root(result).value
+    for name, power in {"u_lim": 2.0 / 3.0, "contact_radius": 1.0 / 3.0}.items():
+        one = result.values[name]
+        assert one.error / one.value == pytest.approx(power * share, rel=0.15)
 
 
 @pytest.mark.parametrize(
@@ -89,7 +74,7 @@ def test_values_that_follow_from_a_root_have_its_error(missing, titles):
             "^reduction = 0.9: no amplitude",
         ),
         # At vanishing speed and an amplitude of u_lim/100 more than 90 % of friction remains.
-        ({"speed": None, "amplitude": "3 nm"}, "^reduction = '50 %': no speed reduces"),
+        ({"speed": None, "amplitude": "3 nm"}, "^reduction = '50 %': no speed of the search"),
         # The vibration has no effect on fast sliding.
         ({"load": None, "speed": "100 m/s"}, "^reduction = '50 %': no load of the search, down to"),
         # A contact sticks over a stroke of half the radius only if it is as large as the ball.

@@ -61,12 +61,11 @@ class FrictionMap:
         try:
             value, error = (float(one) for one in self.at(velocity, amplitude, poisson))
             reason = f"the error bound of the map is {error:.1e}; allowed is at most {tol:g}"
-            reason = "" if error <= tol else reason
         except InputError as problem:
-            allowed = problem.allowed.partition(";")[0]
-            reason = f"{problem.argument} = {problem.value}: {allowed}"
+            reason = f"{problem.argument} = {problem.value}: {problem.allowed.partition(';')[0]}"
         except ValueError as problem:
             reason = str(problem)
+        reason = "" if error <= tol else reason
         point = Problem(motion_named(self.motion), velocity, amplitude, poisson)
         friction = {"friction": Estimate(value, {"model": error})}
         place = {"pressure": self.pressure, "model": MAP, "tolerance": tol}
