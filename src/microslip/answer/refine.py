@@ -144,8 +144,8 @@ def refine(
             places = [(0, level // 4), (0, level // 2), *((k, level) for k in range(len(problems)))]
             for number, at in places:
                 if (number, at) not in runs:
-                    finest = max((place for place in runs if place[0] == 0), default=None)
-                    guess = None if finest is None else runs[finest]
+                    known = max((place for place in runs if place[0] == 0), default=None)
+                    guess = None if known is None else runs[known]
                     runs[number, at] = run(problems[number], ladder.resolution(at), guess)
             estimates, order = _estimates(
                 [runs[place] for place in places], ladder, goal, name, energy_unit, drive_work
