@@ -173,6 +173,21 @@ def test_all_outputs_of_a_spin_have_the_spread_of_a_monte_carlo():
         assert [one.low, one.high] == pytest.approx(ends, rel=0.02, abs=0.02 * values.std()), name
 
 
+def test_levels_outside_the_range_of_the_solver_are_replaced_by_nearer_ones():
+    """At 1.13 standard deviations the amplitude is 1e6 times u_lim, the largest of the solver.
+
+    At such amplitudes friction follows Eq 6.  Larger draws count as the largest solved one.
+    """
+    contact = STEEL | {"radius": "5 mm", "load": "1 nN", "mu": 0.3, "frequency": "2 kHz"}
+    still = microslip.predict("transverse", **contact, amplitude=0.0, speed="1 mm/s")
+    size = 0.885e6 * still.u_lim_m
+    moving = contact | {"speed": 2.0 * math.pi * 2e3 * size, "amplitude": f"{size:.9g} m +- 10 %"}
+    result = microslip.predict("transverse", **moving, tolerance=1e-2)
+    draws = np.minimum(np.random.default_rng(0).standard_normal(20_000), 1.125)
+    exact = [float(paper.large_amplitude_transverse(1.0, 1.0 + 0.1 * one)) for one in draws[:4000]]
+    assert result.mu_macro_spread == pytest.approx(np.std(exact), rel=0.05)
+
+
 # Two groups
 
 
