@@ -19,15 +19,13 @@ import csv
 import math
 import os
 import re
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
-from typing import Any, TypeVar
+from typing import Any
 
 from microslip.foundation.errors import InputError
 from microslip.foundation.files import content_of
 from microslip.foundation.spec import near_miss
-
-T = TypeVar("T")
 
 SEPARATORS = {",": "comma", ";": "semicolon", "\t": "tab"}
 LABELS = ("label", "name", "id", "sample", "comment")
@@ -36,17 +34,20 @@ PURE = ("", "1", "-")
 """Units in a heading that stand for a pure number."""
 HEADING = re.compile(r"(\w+)\s*(?:\[([^\]]*)\]|\(([^()]*)\))?")
 NUMBER = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?|[+-]?(nan|inf|infinity)", re.I | re.A)
-NO_ROW = re.compile(r"[\s,;\"]*|#(?!(N/A|NV|[A-Z/0]+[!?])).*")
+NO_ROW = re.compile(r"[\s,;\"]*|\s*#(?!(N/A|NV|[A-Z/0]+[!?])).*")
 """Pattern of a line without cells and of a comment.  #N/A and #DIV/0! are cells of spreadsheets."""
-SEPARATOR_LINE = re.compile(r"\"?sep=.\"?", re.I)
+SEPARATOR_LINE = re.compile(r"\s*\"?sep=.\"?\s*", re.I)
 EXAMPLES = ("speed [mm/s]", "forward [um]")
 """Headings that messages show as an example."""
 UNIT = re.compile(r"[\[(]?[^\W\d_][^\s,;]*[\])]?")
 """Pattern of a cell that may be a unit."""
 DECIMAL_COMMA = re.compile(r"(?<=[0-9]),(?=[0-9])|^([+-]?),(?=[0-9])")
-GROUPED = re.compile(r"[+-]?[1-9]\d{0,2}(\.\d{3})+", re.A)
-"""Pattern of a number such as 1.100, where the point can be a thousands separator."""
-UNGROUPED = re.compile(r"[+-]?[1-9]\d{0,2}", re.A)
+GROUPED = re.compile(r"[+-]?[1-9]\d{0,2}(\.\d{3})*", re.A)
+"""Pattern of a number such as 1.100, where the point can be a thousands separator, or 900."""
+Heads = list[tuple[str, str | None]]
+"""Name and unit of each column."""
+Rows = Iterator[tuple[int, list[str]]]
+"""Line number and cells of each row; no cells if its quotes are not in pairs."""
 UTF_8 = "allowed: UTF-8, which spreadsheets call CSV UTF-8, or the encoding of the file by name"
 SOURCES = "allowed is a path, a DataFrame of pandas, or a mapping of names to sequences"
 
@@ -76,11 +77,7 @@ class Table:
     @property
     def columns(self) -> dict[str, list[Any]]:
         """The cells with the units of their headings, such as "10 N"."""
-        units = {n: None if unit is None else f" {unit}".rstrip() for n, unit in self.units.items()}
-        return {
-            n: cells if units[n] is None else [c if c is None else f"{c}{units[n]}" for c in cells]
-            for n, cells in self.cells.items()
-        }
+        return {n: [_with_unit(c, self.units[n]) for c in one] for n, one in self.cells.items()}
 
     @property
     def labels(self) -> dict[str, list[Any]]:
@@ -96,7 +93,13 @@ class Table:
             raise ValueError(problem)
         limits = dict.fromkeys(self.cells, -math.inf) | dict(least or {})
         columns = {n: zip(self.lines, cells, strict=True) for n, cells in self.cells.items()}
-        return {n: [number(k, n, c or "", limits[n]) for k, c in one] for n, one in columns.items()}
+        return {
+            n: [_number(k, n, c or "", limits[n]) for k, c in one] for n, one in columns.items()
+        }
+
+
+def _with_unit(cell: Any, unit: str | None) -> Any:
+    return cell if cell is None or unit is None else f"{cell} {unit}".rstrip()
 
 
 def source_name(source: Any) -> str | list:
@@ -134,11 +137,16 @@ def table_of(argument: str, source: Any, names: Mapping[str, str | None], **form
     """
     check_format(form.get("decimal", "."), form.get("encoding", "utf-8"))
     if isinstance(source, str | os.PathLike):
-        table = parsed_file(argument, source, lambda content: read_table(content, names, **form))
-        if len(table.errors) == len(table.lines):
-            problems = [*table.errors.values(), "no line follows the heading; allowed: some"]
-            raise InputError(argument, str(source), problems[0])
-        return table
+        try:
+            table = read_table(content_of(source), names, **form)
+            if len(table.errors) < len(table.lines):
+                return table
+            problem = [*table.errors.values(), "no line follows the heading; allowed: some"][0]
+        except OSError as error:
+            problem = f"cannot be read ({error.strerror}); allowed is a file of CSV"
+        except ValueError as error:
+            problem = str(error)
+        raise InputError(argument, str(source), problem)
     if not (isinstance(source, Mapping) or hasattr(source, "iloc") and hasattr(source, "columns")):
         raise InputError(argument, source, SOURCES)
     table = Table({}, {}, [], {})
@@ -158,20 +166,8 @@ def table_of(argument: str, source: Any, names: Mapping[str, str | None], **form
 
 def _is_missing(value: Any) -> bool:
     """True for None, and for NaN, NA and NaT."""
-    missing = value is None or type(value).__name__ in ("NAType", "NaTType")
+    missing = type(value).__name__ in ("NoneType", "NAType", "NaTType")
     return missing or isinstance(value, float) and value != value
-
-
-def parsed_file(argument: str, path: str | os.PathLike, parse: Callable[[bytes], T]) -> T:
-    """Return parse(content of the file).  Raises InputError about the argument if the file cannot
-    be read, or if `parse` raises ValueError."""
-    try:
-        return parse(content_of(path))
-    except OSError as error:
-        problem = f"cannot be read ({error.strerror}); allowed is a file of CSV"
-    except ValueError as error:
-        problem = str(error)
-    raise InputError(argument, str(path), problem)
 
 
 def read_table(
@@ -206,40 +202,42 @@ def read_table(
         points may separate thousands.  The message begins with the line number.
     """
     lines = lines_of(content, encoding)
-    first = next((k for k, line in enumerate(lines) if is_row(k, line)), 0)
-    comments = [k for k in range(first) if lines[k].lstrip().startswith("#")]
-    separator, titles, start = _split_heading(lines, first, decimal)
-    problem = _heading_problem(titles, names, need_units, complete)
-    if problem and comments:  # a heading behind a comment mark
-        hidden = [*lines[: comments[-1]], lines[comments[-1]].lstrip("# \t")]
-        mark, marked, _ = _split_heading(hidden, comments[-1], decimal)
-        if not _heading_problem(marked, names, need_units, complete):
-            problem, separator, titles, start = "", mark, marked, first
-    if problem:
-        raise ValueError(f"line {first + 1}: {problem}")
-    units = dict(filter(None, map(_name_and_unit, titles)))
+    if SEPARATOR_LINE.fullmatch(lines[0]):
+        lines[0] = ""
+    first = next((k for k, line in enumerate(lines) if not NO_ROW.fullmatch(line)), 0)
+    comments = [k for k in range(first) if lines[k].strip()[:1] == "#" and '"' not in lines[k]]
+    problems = []
+    for k in (first, *comments[-1:]):
+        if k in comments:  # a heading behind a comment mark
+            lines[k] = lines[k].lstrip("# \t")
+        separator, heads, rows = _heading(lines, k, decimal)
+        problems.append(_heading_problem(lines[k], heads, names, need_units, complete))
+        if not problems[-1]:
+            break
+    else:
+        raise ValueError(f"line {first + 1}: {problems[0]}")
+    units = dict(heads)
     quantities = [name for name in units if names.get(name) is not None]
     table = Table({name: [] for name in units}, units, [], {})
-    for where, text in _rows(lines, start, separator):
-        cells = _cells(text, separator)
+    for where, cells in rows:
         while len(cells) > len(units) and not cells[-1]:
             cells.pop()
         row = dict.fromkeys(units, "") | dict(zip(units, cells, strict=False))
-        for name in [] if table.lines or any(map(str.isdigit, text)) else quantities:
+        for name in [] if table.lines or any(map(str.isdigit, "".join(cells))) else quantities:
             if units[name] is None and UNIT.fullmatch(row[name]):
-                allowed = f"a number, with its unit in the heading, as in {name} "
-                allowed += f"[{row[name].strip('[]()')}]"
+                unit = row[name].strip("[]()")
+                allowed = f"a number, with its unit in the heading, as in {name} [{unit}]"
                 raise ValueError(f"line {where}: {name} is {row[name]!r}; allowed: {allowed}")
         try:
             if len(cells) != len(units):
                 raise ValueError(_count_problem(where, len(cells), len(units), separator))
-            for name in [one for one in units if one not in LABELS]:
-                if name not in quantities:
-                    row[name] = _with_points(row[name], decimal)
-                elif row[name]:
-                    row[name] = with_point(where, name, row[name], decimal)
-                    if units[name] is not None:
-                        number(where, name, row[name], unit=units[name])
+            for name in [one for one in units if row[one] and one not in LABELS]:
+                if name in quantities:
+                    row[name] = _with_point(where, name, row[name], decimal)
+                if decimal == ",":
+                    row[name] = DECIMAL_COMMA.sub(r"\1.", row[name])
+                if name in quantities and units[name] is not None:
+                    _number(where, name, row[name], unit=units[name])
         except ValueError as error:
             table.errors[len(table.lines)] = str(error)
             row = {name: cell if name in LABELS else "" for name, cell in row.items()}
@@ -247,7 +245,7 @@ def read_table(
         for name, cell in row.items():
             table.cells[name].append(cell or None)
     for name in quantities if "," not in (separator, decimal) else ():
-        refuse_thousands(name, table.cells[name], table.lines)
+        _refuse_thousands(name, dict(zip(table.lines, table.cells[name], strict=True)))
     return table
 
 
@@ -267,43 +265,61 @@ def lines_of(content: bytes, encoding: str) -> list[str]:
     return text.replace("\r\n", "\n").replace("\r", "\n").split("\n")
 
 
-def is_row(index: int, line: str) -> bool:
-    """False for an empty line, a comment, and a first line that names the separator."""
-    stripped = line.strip()
-    names_separator = index == 0 and SEPARATOR_LINE.fullmatch(stripped)
-    return not (NO_ROW.fullmatch(stripped) or names_separator)
-
-
-def _split_heading(lines: list[str], index: int, decimal: str) -> tuple[str, list[str], int]:
-    """The separator and the titles of the heading that begins in a line, and the index of the line
-    below."""
+def _heading(lines: list[str], index: int, decimal: str) -> tuple[str, Heads, Rows]:
+    """The separator, the heading that begins in a line, and the rows below.  The heading is empty
+    if the line is not one."""
     for separator in sorted(SEPARATORS, key=decimal.__eq__):  # the comma last if it is decimal
-        text, end = _joined(lines, index, separator)
-        titles = _cells(text, separator) or [text]
+        rows = _rows(lines, index, separator)
+        titles = next(rows, (0, []))[1]
         while len(titles) > 1 and not titles[-1]:
             titles.pop()
-        if all(map(HEADING.fullmatch, titles)):
-            return separator, titles, end
-    return separator, [text], end
+        heads = [head for head in map(_name_and_unit, titles) if head]
+        if heads and len(heads) == len(titles):
+            return separator, heads, rows
+    return separator, [], rows
+
+
+def _rows(lines: list[str], index: int, separator: str) -> Rows:
+    """Line number and cells of each row from a line on.  The lines of a quoted cell, which ends in
+    the next line with an odd number of quotes, are joined by spaces."""
+    while index < len(lines):
+        where, text, cells = index + 1, lines[index], _cells(lines[index], separator)
+        if not cells and text.count('"') % 2:
+            odd = (k for k in range(where, len(lines)) if lines[k].count('"') % 2)
+            end = next(odd, index)
+            joined = " ".join(lines[index : end + 1])
+            if more := _cells(joined, separator):
+                text, cells, index = joined, more, end
+        index += 1
+        if not NO_ROW.fullmatch(text):
+            yield where, cells
+
+
+def _cells(text: str, separator: str) -> list[str]:
+    """Cells of a row; empty if the quotes are not in pairs around whole cells."""
+    rows = csv.reader([text], delimiter=separator, strict=True, skipinitialspace=True)
+    try:
+        return [cell.strip() for cell in next(rows, [])]
+    except csv.Error:
+        return []
 
 
 def _heading_problem(
-    titles: list[str], names: Mapping[str, str | None], need_units: bool, complete: str
+    line: str, heads: Heads, names: Mapping[str, str | None], need_units: bool, complete: str
 ) -> str:
-    """What is wrong with the titles of a table, and what is allowed."""
-    pairs = [pair for pair in map(_name_and_unit, titles) if pair]
-    columns = [name for name, _ in pairs]
+    """What is wrong with the heading of a table, and what is allowed."""
+    columns = [name for name, _ in heads]
     how = "each with its unit" if need_units else "with a unit or without"
     shown = next((f", as in {one}" for one in EXAMPLES if one.split()[0] in names), "")
     allowed = complete or f"some of {', '.join(names)}, {how}{shown}; texts: {', '.join(LABELS)}"
-    if titles[0].startswith("LabVIEW Measurement"):
+    if line.startswith("LabVIEW Measurement"):
         allowed += "; of a LabVIEW file keep only the table, below a heading with units"
-    if len(pairs) < len(titles) or complete and sorted(columns) != sorted(names):
-        return f"the heading is {','.join(titles)[:80]!r}; allowed: {allowed}"
-    for name, unit in pairs:
+    if not heads or complete and sorted(columns) != sorted(names):
+        return f"the heading is {line.strip()[:80]!r}; allowed: {allowed}"
+    for name, unit in heads:
         if name not in (*names, *LABELS):
-            hint = near_miss(name, names)
-            return f"a column {name!r}; {hint}allowed: {allowed}".replace("? allowed", "?; allowed")
+            hint = near_miss(name, names).replace("? ", "?; ")
+            return f"a column {name!r}; {hint}allowed: {allowed}"
         if columns.count(name) > 1:
             return f"{name} is there twice; allowed: {allowed}"
         if need_units and names.get(name) and not unit:
@@ -321,52 +337,18 @@ def _name_and_unit(title: str) -> tuple[str, str | None] | None:
     return match[1].lower(), None if unit is None else "" if unit.strip() in PURE else unit.strip()
 
 
-def _rows(lines: list[str], index: int, separator: str) -> Iterator[tuple[int, str]]:
-    """Line number and text of each row from a line on."""
-    while index < len(lines):
-        where = index + 1
-        text, index = _joined(lines, index, separator)
-        if is_row(where - 1, text):
-            yield where, text
-
-
-def _joined(lines: list[str], index: int, separator: str) -> tuple[str, int]:
-    """The row that begins in a line, and the index of the line below it.  The lines of a quoted
-    cell, which ends in the next line with an odd number of quotes, are joined by spaces."""
-    if lines[index].count('"') % 2 and not _cells(lines[index], separator):
-        odd = (k for k in range(index + 1, len(lines)) if lines[k].count('"') % 2)
-        end = next(odd, index) + 1
-        text = " ".join(lines[index:end])
-        if _cells(text, separator):
-            return text, end
-    return lines[index], index + 1
-
-
-def _cells(text: str, separator: str) -> list[str]:
-    """Cells of a row; empty if the quotes are not in pairs around whole cells."""
-    rows = csv.reader([text], delimiter=separator, strict=True, skipinitialspace=True)
-    try:
-        return [cell.strip() for cell in next(rows, [])]
-    except csv.Error:
-        return []
-
-
 def _count_problem(where: int, count: int, columns: int, separator: str) -> str:
     """What is wrong with a row of `count` cells; 0 for open quotes."""
     if not count:
         allowed = "allowed are cells in whole pairs of double quotes"
         return f"line {where}: a double quote is open or inside a cell; {allowed}"
     hint = "; for decimal commas in quotes give decimal = ','" if count > columns else ""
-    parted = f"parted by a {SEPARATORS[separator]} as in the heading"
-    allowed = f"{columns}, {parted}, one with such a sign in double quotes{hint}"
+    allowed = f"{columns}, parted by a {SEPARATORS[separator]} as in the heading"
+    allowed += f", one with such a sign in double quotes{hint}"
     return f"line {where}: {count} cells; allowed: {allowed}"
 
 
-def _with_points(text: str, decimal: str) -> str:
-    return DECIMAL_COMMA.sub(r"\1.", text) if decimal == "," else text
-
-
-def with_point(where: int, name: str, cell: str, decimal: str) -> str:
+def _with_point(where: int, name: str, cell: str, decimal: str) -> str:
     """Text of a cell with decimal points and hyphens for minus signs.  Raises ValueError if the
     decimal mark of a number differs from the declared one."""
     cell = cell.strip("'").strip().replace("−", "-")
@@ -376,10 +358,10 @@ def with_point(where: int, name: str, cell: str, decimal: str) -> str:
     if decimal == "," and re.search(r"\d\.\d", cell):
         allowed = "allowed: no points where commas are decimal"
         raise ValueError(f"line {where}: {name} is {cell!r}; {allowed}")
-    return _with_points(cell, decimal)
+    return cell
 
 
-def number(
+def _number(
     where: int, name: str, word: str, least: float = -math.inf, unit: str | None = None
 ) -> float:
     """Convert a word to a number.
@@ -397,18 +379,16 @@ def number(
     return value
 
 
-def refuse_thousands(name: str, words: Iterable[str | None], lines: Iterable[int]) -> None:
+def _refuse_thousands(name: str, words: Mapping[int, str | None]) -> None:
     """Raise ValueError for a column in which points may be thousands separators.
 
     Programs with decimal commas may write 900 and 1.100 for 900 and 1100.  If commas separate the
     cells or are decimal, numbers have no such points.
     """
-    cells = [(where, word) for where, word in zip(lines, words, strict=True) if word is not None]
-    cells = [(where, word) for where, word in cells if word.lstrip("+-") != "0"]
-    grouped = [(where, word) for where, word in cells if GROUPED.fullmatch(word)]
-    plain = sum(bool(UNGROUPED.fullmatch(word)) for _, word in cells)
-    if grouped and plain and len(grouped) + plain == len(cells):
+    cells = [(k, word) for k, word in words.items() if word and word.lstrip("+-") != "0"]
+    points = [(k, word) for k, word in cells if "." in word]
+    if 0 < len(points) < len(cells) and all(GROUPED.fullmatch(word) for _, word in cells):
         raise ValueError(
-            f"line {grouped[0][0]}: {name} is {grouped[0][1]!r} beside whole numbers, so that its "
+            f"line {points[0][0]}: {name} is {points[0][1]!r} beside whole numbers, so that its "
             "point may part thousands; allowed: no such points, and as many decimals in all lines"
         )

@@ -41,38 +41,35 @@ from microslip.scene.samples import NORMAL, PLANE, Sampled, uneven_row
 COLUMNS = (*PLANE, *NORMAL)
 UNITS = {"forward": "m", "lateral": "m", "angle": "rad", "load": "N", "indentation": "m"}
 """SI units of the columns of a path or a period."""
+FORM = UNITS | {"time": "s"}
+"""SI units of the columns of a file."""
 EVEN_TIMES = 1e-2
 """Largest allowed deviation of a time from equal spacing, divided by the spacing.  It changes a
 sine with N samples by at most 2 pi EVEN_TIMES / N of its amplitude."""
 
 
-def read_samples(
-    content: bytes, *, need_units: bool = False, decimal: str = ".", encoding: str = "utf-8"
-) -> tuple[Table, dict[str, np.ndarray]]:
-    """Read the samples in a file: the table, and its columns as numbers in the units of the file.
-
-    The keyword arguments are passed to `csv_table.read_table`.  Raises ValueError if the content
-    has another format, or has no displacement or load.
-    """
-    form: dict = {"need_units": need_units, "decimal": decimal, "encoding": encoding}
-    table = read_table(content, UNITS | {"time": "s"}, **form)
-    columns = {name: np.array(one) for name, one in table.numbers().items() if name in table.units}
+def columns_of(table: Table) -> dict[str, np.ndarray]:
+    """Columns of a table of samples as numbers, in the units of the file.  Raises ValueError for
+    another table, and for one without a displacement or a load."""
+    columns = {name: np.array(one) for name, one in table.numbers().items()}
     if not columns.keys() & set(COLUMNS):
         raise ValueError(f"no displacement and no load; allowed: some of {', '.join(COLUMNS)}")
     if not table.lines:
         raise ValueError("no line follows the heading; allowed: one for each sample")
-    return table, columns
+    return columns
 
 
 def read_period(
     file: NamedFile, content: bytes, need_units: bool = False
 ) -> tuple[Table, dict[str, np.ndarray]]:
-    """Read a file with equally spaced samples, as read_samples does.  Raises ValueError also if the
-    times are not equally spaced."""
+    """Read a file with equally spaced samples: the table, and its columns as numbers in the units
+    of the file.  Raises ValueError if the content has another format, or if the times are not
+    equally spaced."""
     if file.grid != GRID or file.pitch:
         raise ValueError("allowed after the path: decimal=comma or encoding=cp1252")
     form: dict = {"decimal": DECIMALS[file.decimal], "encoding": file.encoding}
-    table, columns = read_samples(content, need_units=need_units, **form)
+    table = read_table(content, FORM, need_units=need_units, **form)
+    columns = columns_of(table)
     row = uneven_row(columns["time"], EVEN_TIMES) if "time" in columns else None
     if row is not None:
         where = table.lines[row]

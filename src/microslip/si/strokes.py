@@ -17,11 +17,11 @@ from typing import Any
 
 import numpy as np
 
-from microslip.foundation.csv_table import check_format, parsed_file
+from microslip.foundation.csv_table import table_of
 from microslip.foundation.errors import InputError
 from microslip.foundation.named_files import NamedFile, parse, read_object
 from microslip.foundation.units import read
-from microslip.scene.files import COLUMNS, UNITS, read_period, read_samples
+from microslip.scene.files import COLUMNS, FORM, UNITS, columns_of, read_period
 from microslip.scene.samples import NORMAL, PLANE, Sampled
 
 USUAL_ROWS, MOST_ROWS = 2_000, 10_000
@@ -40,25 +40,22 @@ class Stroke:
         Name of the motion, with a digest of the file.
     columns : dict of str to np.ndarray, shape (rows,)
         Columns with names from UNITS.  Displacements are relative to their mean over the period.
-    frequency : float or None
-        Frequency from the column `time`, Hz.
+    frequency, mean_load : float or None
+        Frequency from the column `time`, Hz, and mean of the load, N; None without such a column.
+    reach, pace : tuple of float
+        Largest tangential displacement from the mean, m, and largest rotation, rad; and their
+        largest speeds, divided by the angular frequency.
+    hint : str
+        Hint for a period with many rows; empty for other periods.
     """
 
     name: str
     columns: dict[str, np.ndarray]
     frequency: float | None
-
-    @property
-    def hint(self) -> str:
-        """Hint for a period with many rows; empty for other periods."""
-        rows = len(next(iter(self.columns.values())))
-        text = f"one period of {rows} rows, which can take minutes; {FOLD}"
-        return text if rows > USUAL_ROWS else ""
-
-    @property
-    def mean_load(self) -> float | None:
-        """Mean of the load, N; None without a load."""
-        return float(self.columns["load"].mean()) if "load" in self.columns else None
+    mean_load: float | None
+    reach: tuple[float, float]
+    pace: tuple[float, float]
+    hint: str
 
     def deviations(self, contact: Any) -> dict[str, np.ndarray]:
         """The columns in the units of `microslip.Sampled`, without the mean load or indentation,
@@ -70,27 +67,6 @@ class Stroke:
         """The motion for microslip.solve, with deviations divided by `size`."""
         deviations = self.deviations(contact).items()
         return Sampled.of_columns({n: one / size + (n in NORMAL) for n, one in deviations})
-
-    @property
-    def reach(self) -> tuple[float, float]:
-        """Largest tangential displacement from the mean, m, and largest rotation, rad."""
-        forward, lateral, angle = self._plane
-        return float(np.hypot(forward, lateral).max()), float(np.abs(angle).max())
-
-    @property
-    def pace(self) -> tuple[float, float]:
-        """Largest tangential speed, m, and largest angular speed, rad, both divided by the angular
-        frequency."""
-        order = 1j * np.arange(self._plane.shape[1] // 2 + 1)
-        rates = np.fft.irfft(order * np.fft.rfft(self._plane), self._plane.shape[1])
-        forward, lateral, angle = rates
-        return float(np.hypot(forward, lateral).max()), float(np.abs(angle).max())
-
-    @property
-    def _plane(self) -> np.ndarray:
-        """Forward and lateral displacement and angle, (3, rows)."""
-        zero = np.zeros_like(next(iter(self.columns.values())))
-        return np.stack([self.columns.get(name, zero) for name in PLANE])
 
 
 def scales(contact: Any, columns: dict[str, np.ndarray]) -> dict[str, float]:
@@ -122,16 +98,24 @@ def factors(units: Mapping[str, str | None]) -> dict[str, float]:
 @lru_cache(8)
 def _of_content(file: NamedFile, content: bytes) -> Stroke:
     table, columns = read_period(file, content, need_units=True)
-    if len(table.lines) > MOST_ROWS:
-        allowed = f"allowed is one period of at most {MOST_ROWS} rows; {FOLD}"
-        raise ValueError(f"{len(table.lines)} rows; {allowed}")
-    columns = {name: columns[name] * factor for name, factor in factors(table.units).items()}
+    rows = len(table.lines)
+    if rows > MOST_ROWS:
+        raise ValueError(f"{rows} rows; allowed is one period of at most {MOST_ROWS} rows; {FOLD}")
+    units = factors(table.units)
+    columns = {name: one * units[name] for name, one in columns.items()}
     time, frequency = columns.pop("time", None), None
     if time is not None:
-        frequency = (len(time) - 1) / (len(time) * float(time[-1] - time[0]))
+        frequency = (rows - 1) / (rows * float(time[-1] - time[0]))
     Sampled.of_columns(columns)  # raises InputError
-    columns = {n: one - one.mean() if n in PLANE else one for n, one in columns.items()}
-    return Stroke(file.name, {n: columns[n] for n in COLUMNS if n in columns}, frequency)
+    load = float(columns["load"].mean()) if "load" in columns else None
+    columns = {
+        n: columns[n] - (columns[n].mean() if n in PLANE else 0.0) for n in COLUMNS if n in columns
+    }
+    plane = np.stack([columns.get(name, np.zeros(rows)) for name in PLANE])
+    rates = np.fft.irfft(1j * np.arange(rows // 2 + 1) * np.fft.rfft(plane), rows)
+    sizes = [(float(np.hypot(x, y).max()), float(np.abs(z).max())) for x, y, z in (plane, rates)]
+    hint = f"one period of {rows} rows, which can take minutes; {FOLD}" * (rows > USUAL_ROWS)
+    return Stroke(file.name, columns, frequency, load, sizes[0], sizes[1], hint)
 
 
 def read_stroke(name: str) -> Stroke:
@@ -141,23 +125,19 @@ def read_stroke(name: str) -> Stroke:
     return read_object(file, "motion", _of_content)
 
 
-def read_record(
-    path: str, *, decimal: str = ".", encoding: str = "utf-8"
-) -> tuple[np.ndarray, dict[str, np.ndarray], dict[str, str]]:
+def read_record(path: str, **form: str) -> tuple[np.ndarray, dict[str, np.ndarray], dict[str, str]]:
     """Read a record for `microslip.fold`: the times in s, the columns, and their units.
 
-    The columns are in the units of the file.  `microslip.fold` checks the times.  Raises InputError
-    if the file cannot be read, or has no time.
+    The columns are in the units of the file.  form: decimal mark and encoding of the file.
+    `microslip.fold` checks the times.  Raises InputError if the file cannot be read, or has no
+    time.
     """
-    form = {"decimal": decimal, "encoding": encoding}
-    check_format(**form)
-
-    def parse(content: bytes) -> tuple[dict[str, np.ndarray], dict[str, str]]:
-        table, columns = read_samples(content, need_units=True, **form)
+    table = table_of("record", path, FORM, need_units=True, **form)
+    try:
+        columns = columns_of(table)
         if "time" not in columns:
             raise ValueError("no column time; allowed is one, as in time [s]")
-        columns["time"] *= factors(table.units)["time"]
-        return columns, {name: unit or "" for name, unit in table.units.items()} | {"time": "s"}
-
-    columns, units = parsed_file("record", path, parse)
-    return columns.pop("time"), columns, units
+        time = columns.pop("time") * factors(table.units)["time"]
+    except ValueError as error:
+        raise InputError("record", path, str(error)) from None
+    return time, columns, {n: unit or "" for n, unit in table.units.items()} | {"time": "s"}
