@@ -58,6 +58,7 @@ FINER = 32
 of a sine is too small by at most 5e-6 of its amplitude."""
 CONSTANT = 1e-12
 """Largest variation of a constant column, divided by its largest value: rounding errors."""
+NOT_CONSTANT = "constant; allowed is an oscillation"
 TREND, SLOWEST = 3, 3
 """Degree of the polynomial that is subtracted before the search for the frequency, and smallest
 number of periods per record in this search."""
@@ -138,11 +139,9 @@ def fold(
     from scipy.interpolate import CubicSpline  # only here: it takes a while to load
 
     rows = count("rows", rows, 2 * FEWEST_SAMPLES, most=MOST_ROWS, even=True)
-    typed = frequency is not None
-    hz = real("frequency", frequency, 0.0) if typed else 0.0
     step, names, values = _checked(time, columns)
-    longest = (len(values) - 1) * step
-    hz = hz if typed else _strongest(values) / (len(values) * step)
+    longest, typed = (len(values) - 1) * step, frequency is not None
+    hz = real("frequency", frequency, 0.0) if typed else _strongest(values) / (len(values) * step)
     spline = CubicSpline(step * np.arange(len(values)), values - values.mean(axis=0))
     integral = spline.antiderivative()
 
@@ -167,26 +166,30 @@ def fold(
     share = power[:, order] / np.maximum(power.mean(axis=(0, 1)), 1e-300)
     sizes = [float(np.median(one)) for one in np.array_split(np.sqrt(share.sum(axis=-1)), PARTS)]
     steady = min(sizes) / np.mean(sizes)
-    if steady < STEADY:
-        problem = f"in part {np.argmin(sizes) + 1} of {PARTS} of the record of {longest:.6g} s, "
-        problem += f"the oscillation is only {100.0 * steady:.2g} % of its mean"
-        allowed = "allowed is a steady oscillation; cut off the rest"
-        raise _of_record(longest, f"not periodic throughout: {problem}; {allowed}")
+    part = f"in part {np.argmin(sizes) + 1} of {PARTS} of the record of {longest:.6g} s"
+    allowed = (
+        f"{100.0 * steady:.2g} % of its mean; allowed is a steady oscillation; cut off the rest"
+    )
+    problem = f"not periodic throughout: {part}, the oscillation is only {allowed}"
+    _refuse(steady < STEADY, "time", longest, problem)
     peaks = np.array([_peak_to_peak(one) for one in mean.T])
     ratios = peaks / np.maximum(2.0 * scatter.max(axis=0), 1e-300)
     best = int(np.argmax(ratios))
-    if ratios[best] <= SIGNIFICANT:  # before the drift, since the phases of noise look like one
-        problem = f"peak to peak at {hz:.6g} Hz, only {ratios[best]:.2g} times its standard error"
-        allowed = f"allowed is at least {SIGNIFICANT:g} times; use a longer record, or give the "
-        allowed += "correct approximate frequency of the motion"
-        raise InputError(names[best], float(f"{peaks[best]:.3g}"), f"{problem}; {allowed}")
+    problem = (
+        f"peak to peak at {hz:.6g} Hz, only {ratios[best]:.2g} times its standard error; allowed "
+    )
+    problem += f"is at least {SIGNIFICANT:g} times; use a longer record, or give the correct "
+    problem += "approximate frequency of the motion"
+    # before the drift, since the phases of noise look like one
+    _refuse(ratios[best] <= SIGNIFICANT, names[best], peaks[best], problem, 3)
     loss = 0.5 * (2.0 * np.pi * np.arange(parts.shape[1])) ** 2 * variance
-    if loss[order] > LARGEST_LOSS:
-        change = math.sqrt(variance) / (PHASE_OF_A_DRIFT * longest)
-        most = change * math.sqrt(LARGEST_LOSS / loss[order])
-        problem = f"the frequency changes by about {change:.2g} Hz during the record of "
-        allowed = f"allowed are {most:.2g} Hz at this length; cut the record into shorter ones"
-        raise _of_record(longest, f"{problem}{longest:.6g} s; {allowed}")
+    change = math.sqrt(variance) / (PHASE_OF_A_DRIFT * longest)
+    most = change * math.sqrt(LARGEST_LOSS / max(loss[order], 1e-300))
+    problem = (
+        f"the frequency changes by about {change:.2g} Hz during the record of {longest:.6g} s; "
+    )
+    problem += f"allowed are {most:.2g} Hz at this length; cut the record into shorter ones"
+    _refuse(loss[order] > LARGEST_LOSS, "time", longest, problem)
     lost = np.fft.irfft(-np.expm1(-loss)[:, None] * parts.mean(axis=0), rows, axis=0) * rows
     mean += values.mean(axis=0) * [name in NORMAL for name in names]
     first, last = drift(np.array([0.5 / hz, longest - 0.5 / hz]))
@@ -201,26 +204,26 @@ def fold(
     )
 
 
-def _of_record(longest: float, problem: str) -> InputError:
-    return InputError("time", float(f"{longest:.6g}"), problem)
+def _refuse(wrong: object, argument: str, value: Any, allowed: str, digits: int = 6) -> None:
+    """Raise InputError if `wrong` is true.  A float is rounded to the digits."""
+    if wrong:
+        value = float(f"{value:.{digits}g}") if isinstance(value, float) else value
+        raise InputError(argument, value, allowed)
 
 
 def _check_periods(frequency: float, longest: float, step: float, typed: bool) -> None:
     """Raise InputError if the record has too few periods, or too few samples in a period."""
     periods, samples = frequency * longest, 1.0 / max(frequency * step, 1e-300)
-    if periods < FEWEST_PERIODS:
-        problem = f"the record of {longest:.6g} s has {periods:.6g} periods"
-        problem += f"; allowed are at least {FEWEST_PERIODS}"
-    elif samples < FEWEST_PER_PERIOD:
+    problem = f"the record of {longest:.6g} s has {periods:.6g} periods"
+    problem += f"; allowed are at least {FEWEST_PERIODS}"
+    if periods >= FEWEST_PERIODS:
         problem = f"a period has {samples:.3g} samples in steps of {step:.6g} s"
         problem += f"; allowed are at least {FEWEST_PER_PERIOD}"
-    else:
-        return
-    if typed:
-        raise InputError("frequency", float(f"{frequency:.6g}"), problem)
+    wrong = periods < FEWEST_PERIODS or samples < FEWEST_PER_PERIOD
+    _refuse(typed and wrong, "frequency", frequency, problem)
     hint = "if this is not the frequency of the motion, give its approximate frequency"
     where = f"at {frequency:.6g} Hz, the strongest component"
-    raise _of_record(longest, f"{where}, {problem}; {hint}")
+    _refuse(wrong, "time", longest, f"{where}, {problem}; {hint}")
 
 
 def _phases(parts: np.ndarray) -> tuple[float, float, float, int]:
@@ -231,8 +234,7 @@ def _phases(parts: np.ndarray) -> tuple[float, float, float, int]:
     share = power / np.maximum(power.sum(axis=0), 1e-300)
     column = int(np.argmax(share[1:].max(axis=0)))
     order = int(np.argmax(share[1:, column])) + 1
-    if not power[order, column] > 0.0:
-        raise InputError("columns", 0.0, "constant; allowed is an oscillation")
+    _refuse(not power[order, column] > 0.0, "columns", 0.0, NOT_CONSTANT)
     turns = np.unwrap(np.angle(parts[:, order, column])) / (2.0 * np.pi * order)
     place = np.arange(len(turns)) - 0.5 * (len(turns) - 1)
     slope, spread = float(place @ turns / (place @ place)), float(place @ place)
@@ -243,37 +245,28 @@ def _phases(parts: np.ndarray) -> tuple[float, float, float, int]:
 
 def _checked(time: Any, columns: Mapping[str, Any]) -> tuple[float, list[str], np.ndarray]:
     """The time step, the names of the columns, and their values, (samples, columns)."""
-
-    def refuse(wrong: object, argument: str, value: object, allowed: str) -> None:
-        if wrong:
-            raise InputError(argument, value, allowed)
-
-    known = ", ".join(COLUMNS)
-    mapping = hasattr(columns, "keys")
-    refuse(not mapping, "columns", columns, f"allowed is a mapping with {known}")
-    unknown = [name for name in columns if name not in COLUMNS]
-    refuse(unknown, "columns", unknown and unknown[0], f"unknown; allowed are {known}")
-    allowed = f"allowed is one column or more; allowed are {known}"
-    refuse(not len(columns), "columns", None, allowed)
+    known, fewest = ", ".join(COLUMNS), FEWEST_PER_PERIOD * FEWEST_PERIODS
+    _refuse(not hasattr(columns, "keys"), "columns", columns, f"allowed is a mapping with {known}")
+    unknown = next((name for name in columns if name not in COLUMNS), None)
+    _refuse(unknown is not None, "columns", unknown, f"unknown; allowed are {known}")
+    _refuse(not len(columns), "columns", None, f"allowed is one column or more of {known}")
     both = set(NORMAL) <= set(columns)
-    refuse(both, "indentation", "with a load", "allowed is one of the two")
+    _refuse(both, "indentation", "with a load", "allowed is one of the two")
     arrays: dict[str, np.ndarray] = {}
-    fewest = FEWEST_PER_PERIOD * FEWEST_PERIODS
-    short = f"the record is too short; allowed are at least {fewest} samples"
     for name, value in {"time": time, **columns}.items():
         try:
             array = arrays[name] = np.array(value, float)
         except (TypeError, ValueError):
             raise InputError(name, value, "allowed is an array of numbers") from None
-        refuse(array.ndim != 1, name, value, "allowed is an array of one dimension")
+        _refuse(array.ndim != 1, name, value, "allowed is an array of one dimension")
         length = len(arrays["time"])
         allowed = f"allowed are as many numbers as times: {length}"
-        refuse(len(array) != length, name, array.shape, allowed)
-        refuse(length < fewest, "time", array.shape, short)
-        refuse(not np.isfinite(array).all(), name, math.nan, "allowed are finite numbers")
-        mean = float(f"{array.mean():.6g}")
-        negative = name in NORMAL and mean <= 0.0
-        refuse(negative, name, mean, "the mean; allowed is a mean above 0")
+        _refuse(len(array) != length, name, array.shape, allowed)
+        short = f"the record is too short; allowed are at least {fewest} samples"
+        _refuse(length < fewest, "time", array.shape, short)
+        _refuse(not np.isfinite(array).all(), name, math.nan, "allowed are finite numbers")
+        negative = name in NORMAL and array.mean() <= 0.0
+        _refuse(negative, name, array.mean(), "the mean; allowed is a mean above 0")
     time = arrays.pop("time")
     for name, array in arrays.items():
         _check_marks(name, array)
@@ -284,21 +277,17 @@ def _check_marks(name: str, values: np.ndarray) -> None:
     """Raise InputError for a value that is repeated exactly, and whose distance from all other
     values exceeds their range."""
     levels, counts = np.unique(values, return_counts=True)
-    if len(levels) < FEWEST_LEVELS:
-        return
-    for end, other in ((0, 1), (-1, -2)):
-        if counts[end] > 1 and abs(levels[end] - levels[other]) > levels[-2] - levels[1]:
-            problem = f"stands in {counts[end]} rows, far outside of all others, from "
-            problem += f"{levels[other]:.6g} on"
-            allowed = "allowed are measured values; such a value often marks a missing sample"
-            raise InputError(name, float(levels[end]), f"{problem}; {allowed}")
+    for end, other in ((0, 1), (-1, -2)) if len(levels) >= FEWEST_LEVELS else ():
+        far = abs(levels[end] - levels[other]) > levels[-2] - levels[1]
+        problem = f"stands in {counts[end]} rows, far outside of all others, from "
+        problem += f"{levels[other]:.6g} on; allowed are measured values; such a value often marks "
+        _refuse(far and counts[end] > 1, name, levels[end], f"{problem}a missing sample", 17)
 
 
 def _step(time: np.ndarray) -> float:
     """The time step.  Raises InputError if the steps differ by more than rounding."""
-    if not time[-1] > time[0]:
-        problem = f"the last time, and the first is {time[0]:.9g} s; allowed are increasing times"
-        raise InputError("time", float(time[-1]), problem)
+    problem = f"the last time, and the first is {time[0]:.9g} s; allowed are increasing times"
+    _refuse(not time[-1] > time[0], "time", time[-1], problem, 17)
     index = np.arange(len(time))
     step, start = np.polyfit(index, time - time[0], 1)
     rest = np.abs(time - time[0] - start - step * index)
@@ -311,10 +300,10 @@ def _step(time: np.ndarray) -> float:
     if half <= 0.5 * step:  # a missing sample shifts some times by at least half a step
         most = min(most, (0.5 - EVEN) * step)
     row = int(np.argmax(rest))
-    if rest[row] > most:
-        allowed = "allowed are equal steps, and times rounded to their last digit"
-        problem = f"not equally spaced, in row {row} (the first is 0); {allowed}"
-        raise InputError("time", float(time[row]), problem)
+    problem = (
+        f"not equally spaced, in row {row} (the first is 0); allowed are equal steps, and times "
+    )
+    _refuse(rest[row] > most, "time", time[row], f"{problem}rounded to their last digit", 17)
     return float(step)
 
 
@@ -324,8 +313,7 @@ def _strongest(values: np.ndarray) -> float:
     trend = np.polynomial.polynomial.polyvander(x, TREND)
     rest = values - trend @ np.linalg.lstsq(trend, values, rcond=None)[0]
     moves = np.abs(rest).max(axis=0) > CONSTANT * np.abs(values).max(axis=0)
-    if not moves.any():
-        raise InputError("columns", 0.0, "constant; allowed is an oscillation")
+    _refuse(not moves.any(), "columns", 0.0, NOT_CONSTANT)
     window = np.hanning(len(values))[:, None]
     spectrum = np.abs(np.fft.rfft(rest[:, moves] * window, axis=0)) ** 2
     height = np.sqrt((spectrum / spectrum.sum(axis=0)).sum(axis=1))
