@@ -217,7 +217,7 @@ def fit(
         result = microslip.fit(motion, measured, **arguments)
     for text in result.left_out:
         complain(f"microslip fit: {with_options(text)}; left out")
-    complete = len(result.told) == 2 and not result.left_out
+    complete = not (result.reason or result.left_out)
     values = result.to_dict()
     return Answer(values, str(result), complete, dataset=result.to_xarray, figure="fit")
 
