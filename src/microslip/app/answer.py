@@ -12,6 +12,7 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 from microslip.foundation import extras
+from microslip.foundation.canonical import plain
 from microslip.foundation.errors import CacheError, InputError
 from microslip.foundation.files import writing_beside
 
@@ -71,8 +72,6 @@ class Answer(NamedTuple):
     def print(self, as_json: bool) -> None:
         text = self.text
         if as_json:
-            from microslip.sweeps.evaluate import plain
-
             text = json.dumps(plain(self.plain))
         if text:
             print(text)

@@ -10,7 +10,8 @@ from typing import Any
 
 from microslip.app.plan import Plan
 from microslip.config import load
-from microslip.sweeps import batch, content, evaluate
+from microslip.sweeps import batch, content
+from microslip.sweeps.request import is_settled
 
 log = logging.getLogger("microslip")
 
@@ -64,7 +65,7 @@ def _make_dataset(plan: Plan, name: str, files: dict[str, Path], inputs: list[Pa
 
     def records() -> Iterator[dict]:
         for record in batch.records_in(inputs):
-            if not evaluate.is_final(record["result"]):
+            if not is_settled(record["result"]):
                 failed.append(record)
             yield record
 

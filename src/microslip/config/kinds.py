@@ -1,7 +1,5 @@
 """Kinds of figures."""
 
-from __future__ import annotations
-
 from typing import Any, NamedTuple
 
 

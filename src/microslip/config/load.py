@@ -2,10 +2,10 @@
 
 import os
 import re
-from collections.abc import Collection, Iterable
+from collections.abc import Callable, Collection, Iterable
 from itertools import product
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeVar
 
 import yaml
 from pydantic import ValidationError
@@ -14,6 +14,8 @@ from microslip.config.settings import Configuration, Refusal, Sweep
 from microslip.foundation import named_files, spec
 from microslip.foundation.errors import InputError, shown
 from microslip.foundation.files import content_of
+
+T = TypeVar("T")
 
 MOST_BYTES = 1_000_000
 """Largest size of a configuration in bytes.  PyYAML reads about 100 kB per second."""
@@ -134,31 +136,25 @@ def reread(config: dict, paths: Iterable[str | os.PathLike]) -> dict:
 
     config: configuration as Snakemake has merged it from these files and from --config.
     """
+    from snakemake.utils import update_config
+
     old: dict = {}
     new: dict = {}
     for path in paths:
         with open(path, encoding="utf-8-sig") as file:
-            _update(old, yaml.safe_load(file))
-        _update(new, read_yaml(path))
+            update_config(old, yaml.safe_load(file))
+        update_config(new, read_yaml(path))
     return _replaced(config, old, new)
 
 
-def _update(mapping: dict, other: dict) -> None:
-    for key, value in other.items():
-        if isinstance(value, dict) and isinstance(mapping.get(key), dict):
-            _update(mapping[key], value)
-        else:
-            mapping[key] = value
-
-
 def _replaced(value: Any, old: Any, new: Any) -> Any:
-    if value == old:
+    """Return a new value in place of an equal old one, also in mappings.  An ellipsis is no
+    value."""
+    if value == old and new is not ...:
         return new
-    if not (isinstance(value, dict) and isinstance(old, dict) and isinstance(new, dict)):
+    if not all(isinstance(one, dict) for one in (value, old, new)):
         return value
-    return {
-        k: _replaced(v, old[k], new[k]) if k in old and k in new else v for k, v in value.items()
-    }
+    return {k: _replaced(v, old.get(k, ...), new.get(k, ...)) for k, v in value.items()}
 
 
 # Configurations
@@ -204,14 +200,12 @@ def from_mapping(
         configuration = Configuration.model_validate(mapping)
     except ValidationError as error:
         raise ConfigError(f"{source}: {_line(error)}") from None
-    sweeps = dict(configuration.sweeps)
-    for name, sweep in sweeps.items():
-        try:
-            files = {role: _file_in(getattr(sweep, role), role, folders) for role in ROLES}
-        except InputError as error:
-            raise _refused(error, source, name) from None
-        names = {role: file.name for role, file in files.items() if file is not None}
-        sweeps[name] = sweep.model_copy(update=names)
+
+    def with_names(sweep: Sweep) -> Sweep:
+        files = {role: _file_in(getattr(sweep, role), role, folders) for role in ROLES}
+        return sweep.model_copy(update={role: file.name for role, file in files.items() if file})
+
+    sweeps = _called(with_names, configuration.sweeps, source)
     return configuration.model_copy(update={"sweeps": sweeps})
 
 
@@ -239,12 +233,9 @@ def refuse_unsolvable(
 
     names: names of the sweeps to check; the default is all sweeps.
     """
-    for name, sweep in configuration.sweeps.items():
-        if names is None or name in names:
-            try:
-                _refuse_corners(sweep)
-            except InputError as error:  # arguments of the solver and keys have the same names
-                raise _refused(error, source, name) from None
+    sweeps = configuration.sweeps.items()
+    chosen = {name: sweep for name, sweep in sweeps if names is None or name in names}
+    _called(_refuse_corners, chosen, source)
 
 
 def _refuse_corners(sweep: Sweep) -> None:
@@ -271,10 +262,18 @@ def _file_in(name: Any, role: str, folders: Iterable) -> named_files.NamedFile |
     return named_files.read(file, role, folders)[0]
 
 
-def _refused(error: InputError, source: str, name: str) -> ConfigError:
-    """Error for an argument that the solver refuses."""
-    value = "missing;" if error.value is None else f"{shown(error.value)}:"
-    return ConfigError(f"{source}: sweeps.{name}.{error.argument}: {value} {error.allowed}")
+def _called(function: Callable[[Sweep], T], sweeps: dict[str, Sweep], source: str) -> dict[str, T]:
+    """Results of a function for each sweep.  An InputError becomes a ConfigError with the key,
+    because arguments of the solver and keys have the same names."""
+    results = {}
+    for name, sweep in sweeps.items():
+        try:
+            results[name] = function(sweep)
+        except InputError as error:
+            value = "missing;" if error.value is None else f"{shown(error.value)}:"
+            line = f"{source}: sweeps.{name}.{error.argument}: {value} {error.allowed}"
+            raise ConfigError(line) from None
+    return results
 
 
 def _line(error: ValidationError) -> str:

@@ -8,7 +8,7 @@ import re
 from collections.abc import Callable, Collection, Iterable
 from dataclasses import dataclass
 from itertools import pairwise, repeat
-from typing import Annotated, Any, Self
+from typing import Annotated, Any
 
 from pydantic import BaseModel, ConfigDict, Field, model_validator
 from pydantic_core import CoreSchema, core_schema
@@ -40,15 +40,8 @@ AXES = ("mass", "damping", "stiffness", "poisson", "amplitude", "velocity", "for
 """Axes of a sweep, in the order of dataset dimensions."""
 STUDIES = ("accuracy", "stability", "claims")
 """Keys of the studies, which are the names of their datasets."""
-RULES: tuple[str, ...] = (
-    "all",
-    "make_products",
-    "solve_batch",
-    "solve_map",
-    "make_dataset",
-    "draw_figure",
-)
-RULES += ("make_page", "link_file")
+SOLVING = ("all", "solve_batch", "solve_map")
+MAKING = ("make_products", "make_dataset", "draw_figure", "make_page", "link_file")
 """Names of the rules of the workflow, which datasets and figures must not have."""
 EXPONENT = re.compile(r"[-+]?[0-9]+(\.[0-9]*)?[eE][-+]?[0-9]+")
 """Numbers that YAML 1.1 reads as texts, such as 1e-3."""
@@ -221,7 +214,8 @@ def _spaced(item: dict) -> list[float]:
     refuse(not is_triple, f"{problem} [first, last, count]", key)
     end = _number(0.0, LARGEST["velocity"], above=is_log)
     first, last, count = _each((end, end, _number(2, 1e5, 1)), ends, key)
-    refuse(last <= first, f"{problem} last above first", key)
+    too_wide = is_log and math.isinf(last / first)
+    refuse(last <= first or too_wide, f"{problem} last above first", key)
     shares = (i / (count - 1) for i in range(count))
     if is_log:
         values = (first * math.exp(math.log(last / first) * share) for share in shares)
@@ -267,9 +261,6 @@ class Settings(BaseModel):
 
     model_config = ConfigDict(frozen=True, use_attribute_docstrings=True)
 
-    def refuse_mismatch(self) -> None:
-        """Raise Refusal if settings contradict each other."""
-
     @model_validator(mode="before")
     @classmethod
     def _refuse_keys(cls, values: Any) -> Any:
@@ -284,17 +275,13 @@ class Settings(BaseModel):
             refuse(name not in values, f"missing; required: {', '.join(required)}", f".{name}")
         return values
 
-    @model_validator(mode="after")
-    def _refuse_mismatch(self) -> Self:
-        self.refuse_mismatch()
-        return self
-
 
 # Sweeps
 
 
-def _tolerance_of(error: float | None) -> float:
+def _tolerance(given: dict[str, Any]) -> float:
     """Default tolerance of the points, which depends on the error of a certified map."""
+    error = given.get("error")
     return 1e-3 if error is None else min(float(number(SHARE_OF_POINTS * error)), LOOSEST_POINTS)
 
 
@@ -334,7 +321,7 @@ class Sweep(Settings):
     """Largest absolute error of mu_macro anywhere between the ends of the axes of a certified
     map."""
     tolerance: Annotated[float | None, _or_null(_number(1e-6, 0.1))] = Field(
-        default_factory=lambda given: _tolerance_of(given.get("error"))
+        default_factory=_tolerance
     )
     """Largest accepted absolute error of mu_macro. With null, cells and steps are prescribed, and a
     point has converged if its runs have reached the periodic state. The default for a certified map
@@ -370,7 +357,7 @@ class Sweep(Settings):
         """True if there are at least two amplitudes and two velocities above 0."""
         return len(self.amplitude) > 1 and sum(v > 0 for v in self.velocity) > 1
 
-    def refuse_mismatch(self) -> None:
+    def model_post_init(self, context: Any, /) -> None:
         """Raise Refusal if settings contradict each other, as far as no solver is needed."""
         free = [name for name in ("cells", "steps") if getattr(self, name) is None]
         free = [name for name in free if self.amplitude or name != "steps"]
@@ -430,7 +417,7 @@ class Figure(Settings):
         study = KINDS[self.kind].study
         return (study,) if study else self.sweep
 
-    def refuse_mismatch(self) -> None:
+    def model_post_init(self, context: Any, /) -> None:
         """Raise Refusal if settings contradict each other."""
         kind = KINDS[self.kind]
         usable = ["kind", *([] if kind.study else ["sweep"]), *kind.run]
@@ -444,13 +431,13 @@ class Figure(Settings):
 
 # Studies
 
+_OSCILLATIONS = ("transverse", "longitudinal", "bore", "zigzag")
+
 
 class StudyPoint(Settings):
     """A point at which methods are compared."""
 
-    motion: Annotated[
-        str, _one_of("transverse", "longitudinal", "bore", "continuous-bore", "zigzag")
-    ]
+    motion: Annotated[str, _one_of(*_OSCILLATIONS, "continuous-bore")]
     """Name of the motion."""
     velocity: Positive
     """Forward velocity in the unit of the motion."""
@@ -461,7 +448,7 @@ class StudyPoint(Settings):
     title: Title = None
     """Title of the panel. The default is the name of the point."""
 
-    def refuse_mismatch(self) -> None:
+    def model_post_init(self, context: Any, /) -> None:
         """Raise Refusal if settings contradict each other."""
         steady, given = self.motion == "continuous-bore", self.amplitude is not None
         refuse(steady and given, f"is not allowed; {self.motion} has no amplitude", ".amplitude")
@@ -481,7 +468,7 @@ class _Grid(Settings):
         """Amplitudes by motion."""
         return {"transverse": self.amplitude_transverse, "bore": self.amplitude_bore}
 
-    def refuse_mismatch(self) -> None:
+    def model_post_init(self, context: Any, /) -> None:
         """Raise Refusal if settings contradict each other."""
         for motion, amplitudes in self.amplitude.items():
             key = f".velocity x amplitude_{motion}"
@@ -494,9 +481,9 @@ class ModelMap(_Grid):
     tolerance: Annotated[tuple[float, ...], _axis(1e-6, 0.1)] = (1e-3, 1e-2)
     """Absolute tolerances of mu_macro. Each one has a map."""
 
-    def refuse_mismatch(self) -> None:
+    def model_post_init(self, context: Any, /) -> None:
         """Raise Refusal if settings contradict each other."""
-        super().refuse_mismatch()
+        super().model_post_init(context)
         for name in _Grid.model_fields:
             problem = f"{[*getattr(self, name)]} is not allowed; allowed: two numbers or more"
             refuse(len(getattr(self, name)) < 2, problem, f".{name}")
@@ -523,7 +510,7 @@ class Block(Settings):
     """Cases at which all methods run: a point of which one quantity is varied. Exactly one key is a
     list of several numbers."""
 
-    motion: Annotated[str, _one_of("transverse", "longitudinal", "bore", "zigzag")]
+    motion: Annotated[str, _one_of(*_OSCILLATIONS)]
     """Name of the motion."""
     velocity: PositiveAxis
     """Forward velocity in the unit of the motion."""
@@ -560,7 +547,7 @@ class Block(Settings):
         words = [f"{symbols[n]} {v:g}" for n, v in values.items() if v or n != "poisson"]
         return ", ".join([self.motion, *words])
 
-    def refuse_mismatch(self) -> None:
+    def model_post_init(self, context: Any, /) -> None:
         """Raise Refusal if settings contradict each other."""
         several = f"{self.quantity or 'no key'} has several numbers"
         known = self.quantity in Block.model_fields
@@ -587,9 +574,9 @@ class Claims(_Grid):
     """Number of rings, and number of angular points on half the disc, in the runs whose tractions
     are evaluated. A run with half this number gives the error estimate."""
 
-    def refuse_mismatch(self) -> None:
+    def model_post_init(self, context: Any, /) -> None:
         """Raise Refusal if settings contradict each other."""
-        super().refuse_mismatch()
+        super().model_post_init(context)
         for motion, largest in STATIC_AMPLITUDES.items():
             values = self.amplitude[motion]
             allowed = f"at least one number up to {largest:g}, where there is static friction"
@@ -626,9 +613,9 @@ class Configuration(Settings):
         """Sweeps and studies by the name of their dataset."""
         return self.sweeps | self.studies
 
-    def refuse_mismatch(self) -> None:
+    def model_post_init(self, context: Any, /) -> None:
         """Raise Refusal if settings contradict each other."""
-        taken = {*RULES, *STUDIES}
+        taken = {*STUDIES, *SOLVING, *MAKING}
         for key, names in (("sweeps", self.sweeps), ("figures", self.figures)):
             for name in names:
                 problem = "another result or rule has this name; allowed: a new one"

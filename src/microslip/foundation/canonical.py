@@ -6,6 +6,7 @@ The module imports only the standard library, since every start of the workflow 
 import hashlib
 import json
 import math
+from typing import Any
 
 
 def number(value: float) -> str:
@@ -24,6 +25,17 @@ def number(value: float) -> str:
         mantissa, _, exponent = text.partition("e")
         return f"{mantissa.removesuffix('.0')}e{int(exponent)}"
     return text.removesuffix(".0")
+
+
+def plain(value: object) -> Any:
+    """Convert NumPy values, also in dicts and lists, to values for JSON; NaN becomes None."""
+    if isinstance(value, dict):
+        return {str(name): plain(item) for name, item in value.items()}
+    if isinstance(value, list | tuple):
+        return [plain(item) for item in value]
+    if hasattr(value, "tolist"):
+        return plain(value.tolist())
+    return None if isinstance(value, float) and not math.isfinite(value) else value
 
 
 def canonical_json(value: object) -> str:

@@ -24,8 +24,7 @@ from microslip.config.settings import STATIC_AMPLITUDES
 from microslip.studies import requests as forms
 from microslip.studies.answers import MOTIONS, Answers, Row, number
 from microslip.studies.requests import Point, exact_model
-from microslip.sweeps.evaluate import request_of
-from microslip.sweeps.request import STARTS
+from microslip.sweeps.request import STARTS, request_of
 from microslip.theory import paper
 
 if TYPE_CHECKING:

@@ -21,7 +21,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple, Union
 
 from microslip.foundation.machine import cpu_model
 from microslip.periodic.methods import SHIPPED, declared, missing, split
-from microslip.sweeps.evaluate import request_of
+from microslip.sweeps.request import request_of
 
 if TYPE_CHECKING:
     from microslip.config.settings import StudyPoint

@@ -11,7 +11,6 @@ A record has the keys key, request, result and versions.
 
 from __future__ import annotations
 
-import functools
 import hashlib
 import importlib.metadata
 import json
@@ -22,14 +21,15 @@ import sys
 import time
 import uuid
 from collections.abc import Callable, Iterable, Iterator, Sequence
-from contextlib import suppress
+from contextlib import ExitStack, suppress
+from functools import cache, partial
+from itertools import chain
 from pathlib import Path
 
 from microslip.foundation import files, source_digest
 from microslip.foundation.canonical import canonical_json
 from microslip.foundation.errors import CacheError, SolverError
-from microslip.sweeps import evaluate
-from microslip.sweeps.request import key_of, label, row_of
+from microslip.sweeps.request import is_settled, key_of, label, row_of
 
 log = logging.getLogger(__name__)
 
@@ -48,49 +48,40 @@ class SourcesEdited(CacheError):
     """The code on disk differs from the running code, so that a result could come from either."""
 
     def __init__(self, file: str):
-        super().__init__(
-            f"{file} was edited while its code was running, so that the result is not stored; "
-            "run again: finished points are stored"
-        )
+        problem = f"{file} was edited while its code was running, and its result is not stored"
+        super().__init__(f"{problem}; run again: finished points are stored")
 
 
 # Files
 
 
-def write(path: str | Path, records: Sequence[dict], final: bool = True) -> None:
-    """Write the records of a batch to a file in one atomic step.
-
-    final: False if a record is not final (see evaluate.is_final).  Raises CacheError if the file
-    cannot be written.
-    """
+def write(path: str | Path, records: Sequence[dict]) -> None:
+    """Write the records of a batch to a file in one atomic step.  Raises CacheError if the file
+    cannot be written."""
+    final = all(is_settled(record["result"]) for record in records)
     rows = sorted({row_of(record["request"]) for record in records})
     lines = [canonical_json({"rows": rows}), *map(canonical_json, records)]
     content = "".join(f"{line}\n" for line in lines).encode()
-    checksum = hashlib.sha256(content).hexdigest().encode()
-    files.write_atomically(Path(path), content + checksum + (b"\n" if final else NOT_FINAL))
+    files.write_atomically(Path(path), content + _checksum(content, final))
 
 
 def read(path: str | Path) -> list[dict]:
     """Read the records of a batch file in their order.  Raises CacheError if the file is missing or
     damaged."""
-    lines, _ = _checked(path)
-    if not lines:
-        raise CacheError(f"{path} is damaged; run again: finished points are kept")
-    return [json.loads(line) for line in lines[1:]]
+    content, _ = _checked(path)
+    return [json.loads(line) for line in content.splitlines()[1:]]
 
 
 def is_final(path: str | Path) -> bool:
     """True if a batch file is undamaged and all its records are final."""
     with suppress(CacheError):
-        lines, final = _checked(path)
-        return final and bool(lines)
+        return _checked(path)[1]
     return False
 
 
 def records_in(paths: Iterable[str | Path]) -> Iterator[dict]:
     """Iterate over the records in batch files.  Raises CacheError for a damaged file."""
-    for path in paths:
-        yield from read(path)
+    return chain.from_iterable(map(read, paths))
 
 
 def lookup(records: Iterable[dict]) -> Callable[[dict], dict]:
@@ -99,22 +90,27 @@ def lookup(records: Iterable[dict]) -> Callable[[dict], dict]:
     return lambda request: by_key[key_of(request)]
 
 
-def _checked(path: str | Path) -> tuple[list[bytes], bool]:
-    """Return the lines of a file without the checksum, and whether the records are final.
+def _checksum(content: bytes, final: bool) -> bytes:
+    return hashlib.sha256(content).hexdigest().encode() + (b"\n" if final else NOT_FINAL)
 
-    There are no lines if the file is damaged.
+
+def _checked(path: str | Path) -> tuple[bytes, bool]:
+    """Return the content of a file without the checksum, and whether the records are final.
+
+    Raises CacheError if the file is missing or damaged.
     """
     try:
         content = Path(path).read_bytes()
     except OSError as error:
         raise CacheError(files.advice("read", path, error)) from error
     end, final = content.rfind(b"\n", 0, -1) + 1, not content.endswith(NOT_FINAL)
-    checksum = hashlib.sha256(content[:end]).hexdigest().encode() + (b"\n" if final else NOT_FINAL)
-    return (content[:end].splitlines() if content[end:] == checksum else []), final
+    if content[end:] != _checksum(content[:end], final) or not end:
+        raise CacheError(f"{path} is damaged; run again: finished points are kept")
+    return content[:end], final
 
 
-class Job:
-    """A job that writes a batch file: a context manager.
+class Job(ExitStack):
+    """A job that writes a batch file: a context manager, which closes the journal.
 
     It takes records from other batch files and journals in the folder.  It appends each computed
     record to a journal of its own, which stays until its records are in a batch file.
@@ -131,21 +127,16 @@ class Job:
 
     def __init__(self, path: str | Path):
         """path: file of the batch.  Raises CacheError if its folder cannot be written."""
+        super().__init__()
         self.path = Path(path)
         files.refuse_unwritable(self.path.parent)
         self.records: dict[str, dict] = {}
         self.seconds: list[float] = []
-        self._rows = {file: _rows_in(file) for file in sorted(self.path.parent.glob("*.jsonl"))}
-        self._journals = {file: self._add(_lines_of(file)) for file in self._glob_journals()}
+        self._read: set[Path] = set()
+        for file in self._glob("*.journal"):
+            self._add(_lines_of(file))
         self._journal: int | None = None
         self._flushed = 0.0
-
-    def __enter__(self) -> Job:
-        return self
-
-    def __exit__(self, *_: object) -> None:
-        if self._journal is not None:
-            os.close(self._journal)
 
     def solve(self, requests: Sequence[dict], compute: Compute | None = None) -> list[dict]:
         """Return the records of requests, in their order.  Only missing records are computed.
@@ -157,10 +148,10 @@ class Job:
         keys = [key_of(request) for request in requests]
         missing = dict(zip(keys, requests, strict=True))  # two requests can be equal
         missing = {key: request for key, request in missing.items() if key not in self.records}
-        for record, took in (compute or _one_by_one)(list(missing.values())):
+        for record, took in (compute or partial(map, computed))(list(missing.values())):
             self.records[record["key"]] = record
             self.seconds.append(took)
-            if evaluate.is_final(record["result"]):
+            if is_settled(record["result"]):
                 self._append(record)
         return [self.records[key] for key in keys]
 
@@ -178,31 +169,35 @@ class Job:
         if all(result.get("crashed") for result in results):
             first = f"{label(records[0]['request'])}: {results[0]['reason']}"
             raise SolverError(f"every point of this batch failed ({len(records)}), first {first}")
-        write(self.path, records, all(map(evaluate.is_final, results)))
+        write(self.path, records)
         keys = {record["key"] for record in records}
-        for file in self._glob_journals():
-            if keys.issuperset(self._journals.get(file) or self._add(_lines_of(file))):
+        for file in self._glob("*.journal"):
+            if keys.issuperset(self._add(_lines_of(file))):
                 with suppress(OSError):
                     file.unlink()
         statistics = {"points": len(records), "computed": len(self.seconds)}
         return statistics | {"seconds": sum(self.seconds)}
 
-    def _glob_journals(self) -> list[Path]:
-        return sorted(self.path.parent.glob("*.journal"))
+    def _glob(self, pattern: str) -> list[Path]:
+        return sorted(self.path.parent.glob(pattern))
 
     def _find(self, requests: Iterable[dict]) -> None:
-        """Read the batch files that share a row with the requests."""
+        """Read the batch files that share a row with the requests.  The rows are in the first line
+        of a file."""
         rows = {row_of(request) for request in requests}
-        for file in [file for file, other in self._rows.items() if not rows.isdisjoint(other)]:
-            del self._rows[file]
+        for file in set(self._glob("*.jsonl")) - self._read:
             try:
+                with open(file, "rb") as lines:
+                    if rows.isdisjoint(json.loads(lines.readline())["rows"]):
+                        continue
                 self._add(read(file))
-            except CacheError as error:
-                log.warning("%s", error)
+            except (CacheError, OSError, ValueError, KeyError, TypeError):
+                log.warning("%s is damaged: its points are computed again", file)
+            self._read.add(file)
 
     def _add(self, records: Iterable[dict]) -> set[str]:
         """Add the final ones of these records, and return their keys."""
-        final = {r["key"]: r for r in records if evaluate.is_final(r["result"])}
+        final = {r["key"]: r for r in records if is_settled(r["result"])}
         self.records.update(final)
         return set(final)
 
@@ -212,22 +207,13 @@ class Job:
         try:
             if self._journal is None:
                 self._journal = os.open(path, os.O_WRONLY | os.O_CREAT | os.O_APPEND, 0o666)
+                self.callback(os.close, self._journal)
             os.write(self._journal, f"{canonical_json(record)}\n".encode())
             if time.monotonic() - self._flushed > BETWEEN_FLUSHES:
                 os.fsync(self._journal)
                 self._flushed = time.monotonic()
         except OSError as error:
             raise CacheError(files.advice("write", path, error)) from error
-
-
-def _rows_in(file: Path) -> frozenset[str]:
-    """Names of the rows in the first line of a batch file; empty if the file is damaged."""
-    try:
-        with open(file, "rb") as lines:
-            return frozenset(json.loads(lines.readline())["rows"])
-    except (OSError, ValueError, KeyError, TypeError):
-        log.warning("%s is damaged: its points are computed again", file)
-        return frozenset()
 
 
 def _lines_of(journal: Path) -> Iterator[dict]:
@@ -247,7 +233,10 @@ def computed(request: dict) -> tuple[dict, float]:
     Raises SourcesEdited if code that was imported during the computation differs from the code that
     names the result.
     """
-    loaded, started = len(sys.modules), time.process_time()
+    loaded = len(sys.modules)
+    from microslip.sweeps import evaluate  # late, since it imports the solver
+
+    started = time.process_time()
     result = evaluate.computed(request)
     seconds = time.process_time() - started
     if len(sys.modules) != loaded and source_digest.is_edited():
@@ -255,10 +244,6 @@ def computed(request: dict) -> tuple[dict, float]:
     # Times are omitted so that equal requests have equal records, except in measurements of time.
     key = key_of(request)
     return {"key": key, "request": request, "result": result, "versions": versions()}, seconds
-
-
-def _one_by_one(requests: Sequence[dict]) -> Iterator[tuple[dict, float]]:
-    return map(computed, requests)
 
 
 def solve(requests: Sequence[dict], path: str | Path) -> dict:
@@ -270,7 +255,7 @@ def solve(requests: Sequence[dict], path: str | Path) -> dict:
         return job.finish(job.solve(requests))
 
 
-@functools.cache
+@cache
 def versions() -> dict[str, str]:
     """Versions of Python and of the numerical libraries, by name."""
     libraries = {name: importlib.metadata.version(name) for name in ("numpy", "scipy", "numba")}

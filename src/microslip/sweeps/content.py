@@ -9,9 +9,9 @@ from __future__ import annotations
 import filecmp
 import os
 import shutil
-from collections.abc import Iterator
 from pathlib import Path
 
+from microslip.foundation.files import writing_beside
 from microslip.sweeps import batch
 
 GAPS = ".gaps"
@@ -48,19 +48,14 @@ def link(file: Path, plain: Path) -> None:
     elif plain.exists():
         if filecmp.cmp(file, plain):
             return
-        if not any(filecmp.cmp(copy, plain) for copy in _copied(file, plain)):
+        copies = file.parent.glob(f"{plain.stem}.*{plain.suffix}")
+        if not any(filecmp.cmp(copy, plain) for copy in copies):
             os.replace(plain, plain.with_name(f"{plain.name}.replaced"))
-    plain.parent.mkdir(parents=True, exist_ok=True)
-    beside = plain.with_name(f".{plain.name}.{os.getpid()}.part")
-    try:
-        beside.symlink_to(target)
-    except (OSError, NotImplementedError):
-        shutil.copy2(file, beside)
-    os.replace(beside, plain)
-
-
-def _copied(file: Path, plain: Path) -> Iterator[Path]:
-    return file.parent.glob(f"{plain.stem}.*{plain.suffix}")
+    with writing_beside(plain) as beside:
+        try:
+            beside.symlink_to(target)
+        except (OSError, NotImplementedError):
+            shutil.copy2(file, beside)
 
 
 def remove_others(path: Path) -> None:

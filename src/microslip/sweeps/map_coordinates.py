@@ -71,32 +71,6 @@ CLUSTERS = {
 """Scales of relative positions, by whether nodes are clustered at the lower and the upper end."""
 
 
-class Band(NamedTuple):
-    """A part of a map with one scale along each axis.
-
-    Attributes
-    ----------
-    x, y : float
-        Smallest scaled velocity and amplitude.  The band is 1 wide along each direction.
-    velocity, amplitude : Scale
-        Scale of the velocity, and scale of the amplitude between the ends of the band.
-    speeds : callable
-        Function of the amplitude that returns the smallest and the largest velocity.
-    ends : tuple of float
-        Smallest and largest amplitude.
-    patches : int
-        Number of patches along the velocity.
-    """
-
-    x: float
-    y: float
-    velocity: Scale
-    amplitude: Scale
-    speeds: Callable[[Any], tuple]
-    ends: tuple[float, float]
-    patches: int = 1
-
-
 class MapCoordinates(NamedTuple):
     """Range and patches of a map.  All values are dimensionless.
 
@@ -130,14 +104,13 @@ class MapCoordinates(NamedTuple):
     @property
     def patches(self) -> list[Box]:
         """Boxes in scaled coordinates that cover the map, slow velocities first."""
-        boxes = []
-        for band in self._bands:
-            for ends_of_x in pairwise(np.linspace(band.x, band.x + 1.0, band.patches + 1).tolist()):
-                ends = {"velocity": ends_of_x, "amplitude": (band.y, band.y + 1.0)}
-                ends["poisson"] = (0.0, 1.0)
-                begin, end = zip(*(ends[name] for name in self.directions), strict=True)
-                boxes.append((begin, end))
-        return sorted(boxes)
+        boxes = [((0.0, float(y)), (1.0, y + 1.0)) for y in range(len(self._rows))]
+        if self._cut:
+            ends = np.linspace(FAST, FAST + 1.0, FAST_PATCHES + 1).tolist()
+            boxes += [((low, 0.0), (high, 1.0)) for low, high in pairwise(ends)]
+        first = 0 if self.velocity else 1
+        low, high = ((0.0,), (1.0,)) if self.poisson else ((), ())
+        return [(begin[first:] + low, end[first:] + high) for begin, end in boxes]
 
     @classmethod
     def from_json(cls, text: str) -> MapCoordinates:
@@ -157,71 +130,64 @@ class MapCoordinates(NamedTuple):
         """
         at = dict(zip(self.directions, map(np.asarray, places), strict=True))
         a = np.clip(at["amplitude"], *self.amplitude)
-        slowest, fastest = self.velocity or (0.0, 0.0)
-        v = np.clip(at["velocity"], slowest, fastest) if self.velocity else np.zeros_like(a)
-        x, y = np.empty_like(a), np.empty_like(a)
-        for band in self._bands:
-            low, high = (np.broadcast_to(end, a.shape) for end in band.speeds(a))
-            here = (a >= band.ends[0]) & (a <= band.ends[1]) & (v >= low) & (v <= high)
-            y[here] = band.y + band.amplitude.forward(a[here])
-            if self.velocity:
-                speeds = band.velocity.between((low[here], high[here]))
-                x[here] = band.x + speeds.forward(v[here])
-        scaled = {"velocity": x, "amplitude": y}
+        at["amplitude"] = y = np.empty_like(a)
+        for row, (ends, scale) in enumerate(self._rows):
+            here = (a >= ends[0]) & (a <= ends[1])
+            y[here] = row + scale.forward(a[here])
+        if self.velocity:
+            v = np.clip(at["velocity"], self.velocity[0], self.velocity[1])
+            at["velocity"] = x = self._speeds(False, a).forward(v)
+            if cut := self._cut:
+                fast = v > cut(a)
+                x[fast] = FAST + self._speeds(True, a[fast]).forward(v[fast])
+                y[fast] = EVEN.between(self.amplitude).forward(a[fast])
         if self.poisson:
-            scaled["poisson"] = LINEAR.between(self.poisson).forward(at["poisson"])
-        return np.stack([scaled[name] for name in self.directions], axis=-1)
+            at["poisson"] = LINEAR.between(self.poisson).forward(at["poisson"])
+        return np.stack([at[name] for name in self.directions], axis=-1)
 
     def place(self, node: tuple[float, ...]) -> tuple[float, ...]:
         """Return the values of velocity, amplitude and Poisson's ratio at scaled coordinates,
         rounded to DIGITS digits."""
         at = dict(zip(self.directions, node, strict=True))
         x, y = at.get("velocity", 0.0), at["amplitude"]
-        bands = [band for band in self._bands if (band.x == FAST) == (x >= FAST)]
-        band = bands[min(int(y), len(bands) - 1)]
-        at["amplitude"] = band.amplitude.back(y - band.y)
+        fast, rows = x >= FAST, self._rows
+        row = 0 if fast else min(int(y), len(rows) - 1)
+        scale = EVEN.between(self.amplitude) if fast else rows[row][1]
+        at["amplitude"] = scale.back(y - row)
         if self.velocity:
-            speeds = band.velocity.between(band.speeds(at["amplitude"]))
-            at["velocity"] = speeds.back(x - band.x)
+            at["velocity"] = self._speeds(fast, at["amplitude"]).back(x - FAST * fast)
         if self.poisson:
             at["poisson"] = LINEAR.between(self.poisson).back(at["poisson"])
         return tuple(float(f"{at[name]:.{DIGITS}g}") for name in self.directions)
 
     @property
-    def _bands(self) -> list[Band]:
-        """Bands of the map: first the band above the velocity of the kink, if a kink exists, then a
-        band for each range of amplitudes.  A point at the border of two bands belongs to the later
-        one."""
+    def _rows(self) -> list[tuple[tuple[float, float], Scale]]:
+        """Ends and scale of the amplitudes between two kinks, for velocities below that of the
+        kink.  An amplitude at a kink belongs to the later row."""
         low, high = self.amplitude
         borders = (low, *(a for a in self.kinks.amplitudes if low < a < high), high)
-        slowest, fastest = self.velocity or (0.0, 0.0)
-        fast: list[Band] = []
-        scale = LOG
-        if self._is_cut:
-            even = EVEN.between(self.amplitude)
-            above = FAST, 0.0, LOG, even, lambda a: (self._cut_at(a), fastest), self.amplitude
-            fast, scale = [Band(*above, FAST_PATCHES)], SLOW
-
-        def speeds(amplitude: Any) -> tuple:
-            return slowest, self._cut_at(amplitude) if self._is_cut else fastest
-
-        return fast + [
-            Band(0.0, float(y), scale, self._row_scale(ends), speeds, ends)
-            for y, ends in enumerate(pairwise(borders))
-        ]
+        return [(ends, self._row_scale(ends)) for ends in pairwise(borders)]
 
     @property
-    def _is_cut(self) -> bool:
+    def _cut(self) -> Callable | None:
+        """Function of the amplitude that returns the velocity of the kink, clear of the ends of the
+        range; None if no kink divides the map."""
         if not (self.velocity and self.kinks.velocity):
-            return False
-        slow, fast = self.velocity
+            return None
+        low, high = CLEAR * self.velocity[0], self.velocity[1] / CLEAR
         at_ends = kink_velocity(self.kinks, np.array(self.amplitude))
-        inside = bool(at_ends.max() > CLEAR * slow and at_ends.min() < fast / CLEAR)
-        return inside and fast > CLEAR**2 * slow
+        if not (low < high and at_ends.max() > low and at_ends.min() < high):
+            return None
+        return lambda amplitude: np.clip(kink_velocity(self.kinks, amplitude), low, high)
 
-    def _cut_at(self, amplitude: np.ndarray | float) -> np.ndarray:
-        slow, fast = self.velocity
-        return np.clip(kink_velocity(self.kinks, amplitude), CLEAR * slow, fast / CLEAR)
+    def _speeds(self, fast: bool, amplitude: Any) -> Scale:
+        """Scale of the velocity at an amplitude, above or below the velocity of the kink."""
+        if not (cut := self._cut):
+            return LOG.between(self.velocity)
+        slowest, fastest = self.velocity
+        if fast:
+            return LOG.between((cut(amplitude), fastest))
+        return SLOW.between((slowest, cut(amplitude)))
 
     def _row_scale(self, ends: tuple[float, float]) -> Scale:
         """Scale of the amplitudes between two borders.

@@ -172,9 +172,8 @@ def refine(sweep: Sweep, ask: Callable[[list[dict]], Iterable[dict]]) -> tuple[A
         requests = [_request(sweep, coordinates, node) for node in nodes]
         for node, record in zip(nodes, ask(requests), strict=True):
             result = record["result"]
-            is_good = result.get("converged", False)
-            value = (result["mu_macro"], result["mu_macro_error"]) if is_good else None
-            answers[node] = value or (np.nan, np.inf)
+            value = result.get("mu_macro", np.nan), result.get("mu_macro_error", np.inf)
+            answers[node] = value if result.get("converged") else (np.nan, np.inf)
     return answers, state
 
 

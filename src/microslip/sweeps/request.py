@@ -10,12 +10,11 @@ import re
 from collections.abc import Sequence
 from functools import cache
 from itertools import pairwise, product
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 from microslip.config.quantities import DRIVES
 from microslip.foundation import source_digest
 from microslip.foundation.canonical import canonical_json, fingerprint, number, sha256
-from microslip.sweeps.evaluate import request_of
 
 if TYPE_CHECKING:
     from microslip.config.settings import Configuration, Sweep
@@ -25,6 +24,8 @@ FORMAT = 1
 solver."""
 STARTS = ("stress-free", "full-rotation", "full-slip")
 """Initial states in Figure 5."""
+REALS = {"velocity", "amplitude", "poisson", "tolerance", "travel", *DRIVES}
+"""Keys of requests whose values are numbers written as texts."""
 CONTENT_NAME = 16
 """Number of hexadecimal digits of a hash in the name of a file."""
 
@@ -65,6 +66,18 @@ class Batch(NamedTuple):
         return folder_of(self.rows[0].get("motion", "none"))
 
 
+def request_of(kind: str, **arguments: Any) -> dict:
+    """Return a request with the arguments of the function that computes it. Numbers become
+    canonical texts."""
+    texts = {name: number(v) for name, v in arguments.items() if name in REALS and v is not None}
+    return {"kind": kind} | arguments | texts
+
+
+def is_settled(result: dict) -> bool:
+    """False if the solver failed or reached its time limit.  Such a point is computed again."""
+    return not result.get("crashed") and result.get("exhausted") != "time"
+
+
 def folder_of(motion: str) -> str:
     """Name of the folder for batches of a motion: the motion or its file, without parameters."""
     return re.sub(r"[^\w-]", "_", motion.partition(":")[0].removesuffix(".py"))
@@ -90,17 +103,10 @@ def _canonical_names(motion: str, pressure: str) -> tuple[str, str]:
 def settings_of(sweep: Sweep) -> dict:
     """Entries that the requests of all points of a sweep share."""
     motion, pressure = solver_names(sweep)
-    common = {
-        "kind": "point" if sweep.method is None else "probe",
-        "motion": motion,
-        "model": sweep.model,
-        "tolerance": None if sweep.tolerance is None else number(sweep.tolerance),
-        "cells": sweep.cells,
-        "steps": sweep.steps,
-    }
-    if pressure != "hertz":
-        common["pressure"] = pressure
-    return common | ({} if sweep.method is None else {"method": sweep.method})
+    how = {name: getattr(sweep, name) for name in ("model", "tolerance", "cells", "steps")}
+    how |= {} if pressure == "hertz" else {"pressure": pressure}
+    how |= {} if sweep.method is None else {"method": sweep.method}
+    return request_of("point" if sweep.method is None else "probe", motion=motion, **how)
 
 
 def points_of(sweep: Sweep) -> Batch:
@@ -110,13 +116,10 @@ def points_of(sweep: Sweep) -> Batch:
     force, changes fastest and is the axis of the batch.
     """
     axes = {name: [*map(number, values)] for name, values in sweep.axes.items()}
-    common = {"amplitude": None, "velocity": None} | settings_of(sweep)
-    *names, last = axes
-    places = product(*(axes[name] for name in names))
-    rows = [common | dict(zip(names, place, strict=True)) for place in places]
-    for row in rows:
-        row.pop(last, None)
-    return Batch(rows, last, axes[last])
+    last, along = axes.popitem()
+    common = dict.fromkeys({"amplitude", "velocity"} - {last}) | settings_of(sweep)
+    rows = [common | dict(zip(axes, place, strict=True)) for place in product(*axes.values())]
+    return Batch(rows, last, along)
 
 
 def runs_of(configuration: Configuration, name: str) -> list[dict]:
@@ -127,12 +130,12 @@ def runs_of(configuration: Configuration, name: str) -> list[dict]:
     requests = []
     for figure in configuration.figures.values():
         if figure.run and figure.sweep == (name,):
-            motion = solver_names(configuration.sweeps[name])[0]
-            starts = {"history": STARTS[:1], "transients": STARTS}.get(figure.kind)
-            kind = "field" if starts is None else "history"
-            for start in starts or [None]:
-                place = {"motion": motion} | ({} if start is None else {"start": start})
-                requests.append(request_of(kind, **place, **figure.run))
+            run = {"motion": solver_names(configuration.sweeps[name])[0]} | figure.run
+            starts = STARTS if figure.kind == "transients" else STARTS[:1]
+            if figure.kind == "field":
+                requests.append(request_of("field", **run))
+            else:
+                requests += [request_of("history", start=start, **run) for start in starts]
     return requests
 
 

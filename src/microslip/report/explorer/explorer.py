@@ -12,7 +12,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from microslip.config.settings import Configuration, Figure
-from microslip.sweeps.evaluate import request_of
+from microslip.sweeps.request import request_of
 
 SCRIPTS = "data charts disc sweeps contact form link page"
 ASSETS = ("page.html", "style.css", *(f"{name}.js" for name in SCRIPTS.split()))

@@ -25,7 +25,7 @@ from plotly.offline import get_plotlyjs
 
 from microslip.config.quantities import MU_MACRO
 from microslip.datasets.catalogue import ClosedForm
-from microslip.foundation.canonical import number
+from microslip.foundation.canonical import number, plain
 from microslip.foundation.files import write_atomically
 from microslip.report.explorer import contact_form
 from microslip.report.explorer.explorer import ASSETS
@@ -33,7 +33,6 @@ from microslip.report.figures import drawing
 from microslip.report.figures import style as look
 from microslip.report.figures.curves import closed_forms
 from microslip.report.figures.panels import at_each_poisson, limit
-from microslip.sweeps.evaluate import plain
 from microslip.sweeps.period_codec import SHARES, text_of, unpacked_half, values_of
 
 FOLDER = Path(__file__).parent
