@@ -161,6 +161,9 @@ def table_of(argument: str, source: Any, names: Mapping[str, str | None], **form
             raise InputError(argument, name, "is there twice; allowed: once")
         table.units[name] = unit
         table.cells[name] = [None if _is_missing(one) else one for one in values]
+    if len(counts := {*map(len, table.cells.values())}) > 1:
+        allowed = f"columns of {' and '.join(map(str, sorted(counts)))} values; allowed are "
+        raise InputError(argument, list(table.cells), f"{allowed}columns of one length")
     return table
 
 

@@ -25,6 +25,9 @@ from functools import cache
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+from scipy.interpolate import CubicSpline, RectBivariateSpline
+from scipy.optimize import minimize_scalar
+from scipy.stats import chi2, f
 
 from microslip.answer.point import solve
 from microslip.foundation.arguments import LARGEST
@@ -58,6 +61,9 @@ UNITS = {name: one.unit or "" for name, one in COLUMNS.items()}
 """SI units of the allowed columns."""
 PARAMETERS = {"mu": "", "u_lim": "m", "shear_modulus": "Pa"}
 """SI units of the parameters."""
+LISTS = "understood", "warnings", "left_out"
+"""Texts of a fit that are joined in a dataset."""
+PARTS = "value", "low", "high"
 OPEN = "open"
 """Text of an end that the rows do not determine."""
 EMPTY = "empty; allowed: a number in every row; leave out the row, or fill the cell"
@@ -146,15 +152,14 @@ class Fit:
         kind = {"friction": "the friction force", "mu": "the coefficient of friction"}
         rows = f"{len(self.rows['measured'])}, of {kind[self.quantity]}"
         lines += [line("rows", f"{rows}; mean load {prefixed_text(self.load_N, 'N')}"), ""]
-        shares = {"mu": self.mu_model_share}
         for name, unit in PARAMETERS.items():
-            ends = (getattr(self, column(name, unit, part)) for part in ("value", "low", "high"))
-            value, low, high = (_digits(end, unit, 4) for end in ends)
-            if value != OPEN:
-                lines.append(line(_title(name), f"{value}, from {low} to {high}"))
+            ends = (_digits(getattr(self, column(name, unit, part)), unit, 4) for part in PARTS)
+            value, low, high = ends
+            lines += [line(_title(name), f"{value}, from {low} to {high}")] * (value != OPEN)
+        shares = {"mu": self.mu_model_share}
         if not self.reason:
-            name = "u_lim" if self.shear_modulus_Pa is None else "shear modulus"
-            shares[name] = self.scale_model_share
+            scale = "u_lim" if self.shear_modulus_Pa is None else "shear modulus"
+            shares[scale] = self.scale_model_share
         model = ", ".join(f"of {n} {_digits(100.0 * x, '', 2)} %" for n, x in shares.items())
         level = f"{100.0 * self.confidence:g} %, plus the model error: {model}"
         lines.append(line("intervals", level))
@@ -179,13 +184,13 @@ class Fit:
         numbers no dimension.  Texts are attributes."""
         import xarray as xr
 
-        texts = {"understood": "; ".join(f"{n}: {x}" for n, x in self.understood.items())}
-        variables: dict[str, tuple] = {}
-        for name, x in vars(self).items():
-            if isinstance(x, str | tuple):
-                texts[name] = x if isinstance(x, str) else "; ".join(x)
-            elif not isinstance(x, dict):
-                variables[name] = (), np.nan if x is None else x
+        values = vars(self) | {"understood": (f"{n}: {x}" for n, x in self.understood.items())}
+        values = {n: "; ".join(x) if n in LISTS else x for n, x in values.items()}
+        texts = {n: x for n, x in values.items() if isinstance(x, str)}
+        numbers = {n: x for n, x in values.items() if not isinstance(x, str | dict)}
+        variables: dict[str, tuple] = {
+            n: ((), np.nan if x is None else x) for n, x in numbers.items()
+        }
         variables |= {name: ("row", x) for name, x in self.rows.items()}
         variables |= {f"curve_{name}": ("curve_point", x) for name, x in self.curve.items()}
         friction = dict.fromkeys(("measured", "fitted", "d_error"), UNITS[self.quantity] or "1")
@@ -318,7 +323,6 @@ def _read_rows(
     unknown = [repr(one) for one in names if one not in UNITS] or [""]
     what, other = ("friction", "mu") if "friction" in names else ("mu", "friction")
     refuse(unknown[0], f"a column {unknown[0]}; allowed are some of {', '.join(UNITS)}")
-    refuse(len({*map(len, columns.values())}) > 1, "columns of several lengths; allowed is one")
     refuse(what not in names, "has neither friction nor mu; allowed is one of them")
     refuse(other in names, "has both friction and mu; allowed is one of them")
     refuse(f"{other}_error" in names, f"has {other}_error without {other}")
@@ -429,7 +433,6 @@ def _of_solver(rows: Rows, motion: str, poisson: float, tolerance: float) -> Fri
     if len(rows["measured"]) > MOST_SOLVED:
         allowed = f"rows; allowed are at most {MOST_SOLVED}, or any number with a map"
         raise InputError("measured", len(rows["measured"]), allowed)
-    from scipy.interpolate import RectBivariateSpline
 
     @cache
     def point(velocity: float, amplitude: float, **settings: Any) -> tuple[float, float]:
@@ -497,9 +500,6 @@ class Profile:
     """
 
     def __init__(self, rows: Rows, weight: np.ndarray, friction: Friction):
-        from scipy.interpolate import CubicSpline
-        from scipy.optimize import minimize_scalar
-
         measured, known = rows["measured"], np.isfinite(rows["measured_error"])
         self.sigma = np.where(known, rows["measured_error"], np.abs(measured).max())
         self.y, self.weight = measured / self.sigma, weight / self.sigma
@@ -531,21 +531,14 @@ class Profile:
     def squares(self, x: Any) -> Any:
         return self.mu(x)[1]
 
-    def ends(self, allowed: float) -> list[float]:
+    def ends(self, allowed: float) -> tuple[float, float]:
         """Ends of the interval around the best x in which the sum of squares is at most `allowed`.
         An end is infinite if the interval reaches the end of the table."""
-        from scipy.optimize import brentq
-
-        ends = []
-        for side in (-1.0, 1.0):
-            beyond = self.x[side * (self.x - self.best) > 0.0][:: int(side)]
-            path = np.concatenate([[self.best], beyond])
-            above = np.flatnonzero(self.squares(path) > allowed)
-            ends.append(side * math.inf)
-            if len(above):
-                pair = path[above[0] - 1], path[above[0]]
-                ends[-1] = brentq(lambda one: self.squares(one) - allowed, *pair, xtol=1e-7)
-        return ends
+        near = self.best + (self.x[-1] - self.x[0]) * np.linspace(-1.0, 1.0, NODES) ** 7
+        grid = np.unique(np.clip([self.x, near], self.x[0], self.x[-1]))
+        roots = CubicSpline(grid, self.squares(grid) - allowed).roots(extrapolate=False)
+        low, high = roots[roots < self.best], roots[roots > self.best]
+        return max(low, default=-math.inf), min(high, default=math.inf)
 
     def second(self, allowed: float) -> float | None:
         """x of a minimum of at most `allowed` that differs from the best by more than a factor of
@@ -560,14 +553,10 @@ def _fitted(
     about: dict[str, Any], rows: Rows, friction: Friction, bodies: dict[str, Any], level: float
 ) -> Fit:
     """The fit at a confidence level."""
-    from scipy.stats import chi2, f
-
     load = float(rows["row_load_N"].mean())
     weight = rows["row_load_N"] ** (about["quantity"] == "friction")
-    profile, known = (
-        Profile(rows, weight, friction),
-        bool(np.isfinite(rows["measured_error"]).all()),
-    )
+    known = bool(np.isfinite(rows["measured_error"]).all())
+    profile = Profile(rows, weight, friction)
     at, free, macro = profile.best, len(weight) - 2, profile.macro(profile.best)
     mu, squares, _ = map(float, profile.mu(at))
     off = mu * profile.weight * profile.errors
@@ -596,15 +585,14 @@ def _fitted(
         share = float(np.abs(a * shifts[0] + b * shifts[1]) @ off)
         logs = [a * math.log(mu) + b * at + c, region.min() - share, region.max() + share]
         opens = [not determined, *np.isinf(ends)[:: 1 if b >= 0.0 else -1]]
-        for part, end, is_open in zip(("value", "low", "high"), logs, opens, strict=True):
+        for part, end, is_open in zip(PARTS, logs, opens, strict=True):
             values[column(name, si, part)] = None if b and is_open else math.exp(min(end, 700.0))
         values["scale_model_share" if b else "mu_model_share"] = math.expm1(share)
     size, chance, reason, doubts = math.exp(logs[0]), None, "", []
     if not determined:
-        which = f"any {_title(name)}"
-        for part, word in (("high", "below"), ("low", "above")):
-            if (end := values[column(name, si, part)]) is not None:
-                which = f"any {_title(name)} {word} {end:.3g} {si}"
+        keys = {"below": column(name, si, "high"), "above": column(name, si, "low")}
+        sides = [f" {n} {values[x]:.3g} {si}" for n, x in keys.items() if values[x] is not None]
+        which = f"any {_title(name)}{''.join(sides)}"
         reason = f"the rows determine mu alone: {which} fits them as well"
     if known and free and (chance := float(chi2.sf(squares, free))) < UNLIKELY:
         problem = f"the residuals are larger than the errors of the rows allow (p = {chance:.1g})"

@@ -173,15 +173,11 @@ def read_cases(
     for name in table.columns:
         if name in shared and shared[name] is not None:
             raise InputError(name, shared[name], "not allowed: the table has it")
-    counts = sorted({len(values) for values in table.columns.values()})
-    if len(counts) > 1:
-        lengths = " and ".join(map(str, counts))
-        allowed = f"columns of {lengths} values; allowed are columns of one length"
-        raise InputError("cases", list(table.columns), allowed)
-    if not 0 < counts[0] <= MOST_CASES:
-        raise InputError("cases", counts[0], f"allowed are 1 to {MOST_CASES} cases")
-    names = [f"line {line}" for line in table.lines] or [f"case {k}" for k in range(counts[0])]
-    starts = {"line": table.lines} if table.lines else {"case": list(range(counts[0]))}
+    count = len(next(iter(table.cells.values())))
+    if not 0 < count <= MOST_CASES:
+        raise InputError("cases", count, f"allowed are 1 to {MOST_CASES} cases")
+    names = [f"line {line}" for line in table.lines] or [f"case {k}" for k in range(count)]
+    starts = {"line": table.lines} if table.lines else {"case": list(range(count))}
     labels = {name: [x or "" for x in texts] for name, texts in table.labels.items()}
     return Cases(motion, table.columns, dict(shared), names, starts | labels, table.errors)
 
