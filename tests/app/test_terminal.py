@@ -131,14 +131,11 @@ ANSWER = "$M point continuous-bore --velocity 1"
 
 # A line of bash, its exit code (of the first command of a pipe), and its standard error.
 ENDINGS = [
-    ("sleep 0.1 | $M --help | true", 141, ""),
-    pytest.param(f"PYTHONUNBUFFERED=1 {ANSWER} --json | true", 141, "", marks=pytest.mark.long),
+    (f"PYTHONUNBUFFERED=1 {ANSWER} --json | true", 141, ""),
     (f"{ANSWER} > /dev/full", 74, FULL),
     (f"{ANSWER} >&-", 74, CLOSED),
     (f"{ANSWER} --nu 7 >&-", 2, f"{BAD}'7': allowed is a finite number of at least 0"),
     (f"{ANSWER} <&- >&- 2>&-", 74, ""),
-    (f"{ANSWER} --nu 7 2> /dev/full", 2, ""),
-    (f"LC_ALL=C {ANSWER} --nu \N{MINUS SIGN}1", 2, BAD),
     (f"PYTHONIOENCODING=ascii {ANSWER} --nu \N{ARABIC-INDIC DIGIT THREE}", 2, rf"{BAD}'\u0663'"),
     (f"{ANSWER} --nu $'1\\e[31m'", 2, rf"{BAD}'1\x1b[31m': allowed is a number"),
 ]
@@ -147,7 +144,7 @@ ENDINGS = [
 @pytest.mark.slow
 @pytest.mark.parametrize(("line", "code", "message"), ENDINGS)
 def test_a_stream_that_is_closed_or_full_is_one_line_at_most(line, code, message):
-    process = shell(f"{line}; exit ${{PIPESTATUS[{int(line.startswith('sleep'))}]}}")
+    process = shell(f"{line}; exit ${{PIPESTATUS[0]}}")
     assert (process.returncode, process.stdout) == (code, "")
     assert process.stderr.startswith(message) and process.stderr.count("\n") == bool(message)
 

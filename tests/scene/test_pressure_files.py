@@ -290,6 +290,7 @@ BAD = [
     (HEAD + "0,0,1\n0,NaN,1\n", "", "line 3: lateral is nan; allowed: a finite number"),
     (HEAD + "0,0,1\n0,1,1\n1,0,1\n1,1,1\n3,0,1\n3,1,1\n", "", "forward = '1, 3': not even"),
     (HEAD + "0,0,1\n0,1,1\n", "", "forward = '0': not evenly spaced; allowed: two coordinates"),
+    (HEAD + "0,0,1\n0,1e20,2\n1,0,3\n1,1e20,4\n", "", "allowed are steps in one unit"),
     ("forward [mm],lateral,pressure\n0,0,1\n", "", "forward alone has a unit"),
     ("forward [mm],lateral [1],pressure\n0,0,1\n", "", "forward alone has a unit"),
     ("forward [mm],lateral [s],pressure\n0,0,1\n", "", "lateral [s] is no known unit"),

@@ -186,8 +186,12 @@ def test_what_ran_out_of_time_is_computed_again(monkeypatch, solver, tmp_path, b
     assert batch.solve(points(), tmp_path / "b.jsonl")["computed"] == computed
 
 
-def test_a_folder_that_cannot_be_written_to_is_one_line_before_any_computation(solver, tmp_path):
+def test_a_folder_that_cannot_be_written_to_is_one_line_before_any_computation(
+    solver, tmp_path, monkeypatch
+):
     (tmp_path / "file").touch()
-    with pytest.raises(CacheError, match="cannot write to .*file/inside"):
-        batch.solve(points(), tmp_path / "file" / "inside" / "batch.jsonl")
+    monkeypatch.setattr("os.fsync", Mock(side_effect=OSError(errno.ENOSPC, "full")))
+    for folder, reason in (("file/inside", "Not a directory"), ("new", "full")):
+        with pytest.raises(CacheError, match=f"cannot write to .*{folder}: {reason}; make room"):
+            batch.solve(points(), tmp_path / folder / "batch.jsonl")
     assert not solver.calls

@@ -87,31 +87,22 @@ def _make_dataset(plan: Plan, name: str, files: dict[str, Path], inputs: list[Pa
 def _make_figure(plan: Plan, name: str, files: dict[str, Path], inputs: list[Path]) -> None:
     from microslip.report.figures import drawing
 
-    figure = plan.configuration.figures[name]
-    datasets = {
-        one: drawing.loaded(path) for one, path in zip(figure.datasets, inputs, strict=False)
-    }
-    if figure.kind == "explorer":
-        _make_explorer(plan, name, files[".html"], datasets, inputs[len(datasets) :])
+    configuration, figure = plan.configuration, plan.configuration.figures[name]
+    datasets = dict(zip(figure.datasets, map(drawing.loaded, inputs), strict=False))
+    if figure.kind != "explorer":
+        drawn = drawing.draw(figure.kind, datasets)
+        for path in files.values():
+            drawing.save(drawn, path)
         return
-    drawn = drawing.draw(figure.kind, datasets)
-    for path in files.values():
-        drawing.save(drawn, path)
-
-
-def _make_explorer(
-    plan: Plan, name: str, path: Path, datasets: dict[str, Any], batches: list[Path]
-) -> None:
     from microslip.report.explorer import explorer, page
 
-    configuration, figure = plan.configuration, plan.configuration.figures[name]
-    answer = batch.lookup(batch.records_in(batches))
+    answer = batch.lookup(batch.records_in(inputs[len(datasets) :]))
     maps = explorer.maps_of(configuration, figure)
     periods = {
         one: [answer(r) for r in explorer.period_requests(configuration, *maps, name=one)]
         for one in maps
     }
     certified = [datasets.pop(one) for one in explorer.certified_of(configuration, figure)]
-    page.write(path, datasets, periods, certified)
+    page.write(files[".html"], datasets, periods, certified)
     for line in explorer.report(periods):
         log.info(line)

@@ -72,7 +72,10 @@ def _run(arguments: list[str]) -> int:
         if hint := extras.missing("snakemake"):
             raise ConfigError(hint)
         os.getcwd()
-        words = ["--snakefile", str(source_digest.workflow_file("Snakefile")), *_named(arguments)]
+        file = configurations().get(next(iter(arguments), ""))
+        if file is not None and "--configfile" not in arguments:
+            arguments = [*arguments[1:], "--configfile", os.path.relpath(file)]
+        words = ["--snakefile", str(source_digest.workflow_file("Snakefile")), *arguments]
         if "SNAKEMAKE_PROFILE" not in os.environ and not any(map(SETS_CORES.match, arguments)):
             words = ["--cores", "all", *words]
         _check(words)
@@ -95,14 +98,6 @@ def configurations() -> dict[str, Path]:
     """Configurations in the folder config of the package and of the current folder, by name."""
     folders = source_digest.workflow_file("config/config.yaml").parent, Path("config")
     return {file.stem: file for folder in folders for file in sorted(folder.glob("*.yaml"))}
-
-
-def _named(arguments: list[str]) -> list[str]:
-    """Replace the name of a configuration in front by the option --configfile."""
-    file = configurations().get(next(iter(arguments), ""))
-    if file is None or "--configfile" in arguments:
-        return arguments
-    return [*arguments[1:], "--configfile", os.path.relpath(file)]
 
 
 def _spare_cache() -> None:

@@ -217,7 +217,7 @@ def _number(text: str, si: str, units: bool) -> tuple[float, bool]:
     if not text or re.match(r"[+-]?(inf|nan)", text, re.I):
         raise ValueError("it is not finite" if text else "the text is empty")
     if match is None:
-        raise ValueError(f"stopped at {text!r}, where a number was expected{_digits_hint(text)}")
+        raise ValueError(f"stopped at {text!r}, where a number was expected{_hint('', text)}")
     digits, rest = match[0], text[match.end() :].strip()
     is_zero = not re.search("[1-9]", "".join(filter(None, match.groups()[:3])))
     if math.isinf(float(digits)) or len(match[4] or "") > 18:
@@ -232,7 +232,7 @@ def _number(text: str, si: str, units: bool) -> tuple[float, bool]:
     if not rest:
         raise ValueError(f"{digits} is a number without a unit")
     if not (rest[0].isalpha() or rest[0] == "°") or not (si or units):
-        raise ValueError(f"read {digits} and stopped at {rest!r}{_stop_hint(digits, rest)}")
+        raise ValueError(f"read {digits} and stopped at {rest!r}{_hint(digits, rest)}")
     try:
         unit, target = unit_of(rest), unit_of(si)
     except ValueError as error:
@@ -248,16 +248,12 @@ def _number(text: str, si: str, units: bool) -> tuple[float, bool]:
     return value, kind is None or kind.fullmatch(rest) is not None
 
 
-def _stop_hint(digits: str, rest: str) -> str:
-    """The likely meaning of the text at which reading stopped."""
-    if fraction := re.fullmatch(r"/\s*([1-9]\d*)\s*(.*)", rest, re.S):
+def _hint(digits: str, rest: str) -> str:
+    """The likely meaning of the text at which reading stopped, after the digits of a number."""
+    if digits and (fraction := re.fullmatch(r"/\s*([1-9]\d*)\s*(.*)", rest, re.S)):
         value = float(Fraction(Decimal(digits)) / int(fraction[1]))
         return f" (did you mean {f'{value!r} {fraction[2]}'.strip()!r}?)"
-    if "," in rest:
+    if digits and "," in rest:
         return ", since decimals follow a point and thousands have no separator"
-    return _digits_hint(rest)
-
-
-def _digits_hint(text: str) -> str:
-    other = re.match(r"(?![0-9])\d", text.lstrip("+-."))
+    other = re.match(r"(?![0-9])\d", rest.lstrip("+-."))
     return ", since numbers have the digits 0 to 9" if other else ""

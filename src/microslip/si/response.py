@@ -16,7 +16,6 @@ from typing import Any
 
 import numpy as np
 
-from microslip.answer.along import iwan, response
 from microslip.answer.answer import Answer
 from microslip.foundation.csv_table import LABELS, source_name, table_of
 from microslip.foundation.errors import InputError, shown
@@ -104,6 +103,8 @@ def predict_response(
     """
     real = only_contact(contact)
     columns = read_path(path, decimal=decimal, encoding=encoding)
+    from microslip.answer.along import response  # late: refusals do not need the solver
+
     units = scales(real, columns)
     body: Any = {"pressure": real.pressure, "poisson": real.poisson}
     try:
@@ -191,6 +192,8 @@ def predict_iwan(
         If an argument is invalid.  The message names it.
     """
     real = only_contact(contact)
+    from microslip.answer.along import iwan  # late: refusals do not need the solver
+
     try:
         model = iwan(real.pressure, poisson=real.poisson, elements=elements, tolerance=tolerance)
     except InputError as error:
