@@ -1,6 +1,7 @@
 """Motions and pressures in Python files, by path."""
 
 import json
+import sys
 
 import numpy as np
 import pytest
@@ -98,7 +99,7 @@ def test_files_of_the_same_name_in_two_folders_do_not_disturb_each_other(mine, t
     for name, text in (("helper", "FACTOR = 0.25\n"), ("side_ways", MOTION)):
         (tmp_path / "other" / f"{name}.py").write_text(text)
     shares = [motion_named(f"{n}/side_ways.py").waves["lateral"].share for n in ("mine", "other")]
-    assert shares == [1.0, 0.25]
+    assert shares == [1.0, 0.25] and "helper" not in sys.modules
     assert not (mine / "__pycache__").exists()
 
 

@@ -162,11 +162,9 @@ class Results:
             self.stems[name], is_there = self._chosen("data", product.stem, endings)
             if is_there and complete.issuperset(product.inputs):
                 complete.add(name)
-        for name, product in plan.products.items():
-            if not whole and name in complete:
-                continue
-            datasets = [f"data/{self.stems[dataset]}.nc" for dataset in product.inputs]
-            self.missing[name] = datasets + self.batch_files(name)
+            if whole or name not in complete:
+                datasets = [f"data/{self.stems[dataset]}.nc" for dataset in product.inputs]
+                self.missing[name] = datasets + self.batch_files(name)
 
     def files(self, name: str) -> list[str]:
         """Paths of the files of a product."""
@@ -233,8 +231,7 @@ class Results:
     def _chosen(self, folder: str, stem: str, endings: tuple[str, ...]) -> tuple[str, bool]:
         """Return the name of files that are whole, or a name that is free; and whether they are
         whole."""
-        others = self._listed(folder)
-        number = others.get(stem, {})
+        number = self._listed(folder).get(stem, {})
         for variant in sorted(number):
             if content.GAPS not in number[variant] and number[variant].issuperset(endings):
                 paths = [self.folder / folder / f"{variant}{ending}" for ending in endings]
