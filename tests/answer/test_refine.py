@@ -99,6 +99,17 @@ def test_levels_are_added_until_the_error_is_within_the_tolerance():
     assert fake.guesses == [None, *(fake.runs[k] for k in finest)]
 
 
+def test_levels_at_which_differences_increase_are_followed_by_one_with_known_coarser_levels():
+    def run(resolution, guess):
+        wrong = {4: 0.0, 8: 1e-2, 16: 1e-1}.get(resolution.cells, 1.0 / resolution.cells**2)
+        asked.append(resolution.cells)
+        return Run({"friction": 0.4 + wrong}, 1e-6, 1e-6, 1)
+
+    asked = []
+    assert refine(run, LADDER, 1e-3).converged
+    assert asked[:4] == [4, 8, 16, 32]  # 24 would need the levels 6 and 12
+
+
 def test_distances_and_residuals_are_weighted_as_the_runs_enter_the_value():
     """The weight of a run is the change of the value by a change of the run."""
     fake = FakeRun(0.3)

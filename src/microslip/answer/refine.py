@@ -20,6 +20,9 @@ two levels, which second order leads to expect.  This is the grid convergence in
 Fluids Eng. 116, 1994) with both pairs of levels.  Two cases show that the last two levels agree by
 chance: the differences change sign, or the observed order is far above 2.  Then the last level is
 not better than the one before, and D is the difference of the first two levels.
+
+If the differences increase, n/4 is too coarse for the leading term, and a slightly finer level
+probably is, too.  The next n is then one whose coarser levels are already known.
 """
 
 from __future__ import annotations
@@ -136,10 +139,10 @@ def refine(
         unknown.
     """
     runs: dict[tuple[int, int], Run] = {}
-    goal, answer = tolerance, None
+    goal, answer, order = tolerance, None, math.nan
     try:
         for level in ladder.levels(tolerance):
-            if level < ladder.levels(goal)[0]:
+            if level < ladder.levels(goal)[0] or order < 0.0 and (0, level // 2) not in runs:
                 continue
             places = [(0, level // 4), (0, level // 2), *((k, level) for k in range(len(problems)))]
             for number, at in places:
