@@ -6,8 +6,9 @@ from itertools import pairwise
 import pytest
 from stubs import explorer_stub as stub
 
-from microslip.report.explorer.explorer import MAPS
-from microslip.report.explorer.page import write
+from microslip.report.explorer.page import build
+from microslip.report.explorer.page import page as page_of
+from microslip.report.motions import MOTIONS
 
 CHROMIUM = next(filter(None, map(shutil.which, ("chromium", "chromium-browser"))), None)
 pytestmark = [
@@ -19,50 +20,39 @@ FLAGS += ["--disable-component-update", "--disable-sync"]
 
 
 @pytest.fixture(scope="module")
-def made(tmp_path_factory):
-    """The path of the page, and its datasets and periods."""
-    folder = tmp_path_factory.mktemp("explorer")
-    datasets, records = stub.computed(folder)
-    write(folder / "explorer.html", datasets, records)
-    return folder / "explorer.html", datasets, records
-
-
-@pytest.fixture(scope="module")
 def browser(tmp_path_factory):
     reason = "playwright is not installed: pip install -e '.[dev]'"
     api = pytest.importorskip("playwright.sync_api", reason=reason)
     with api.sync_playwright() as playwright:
-        context = playwright.chromium.launch_persistent_context(
-            tmp_path_factory.mktemp("profile"),
-            executable_path=CHROMIUM,
-            args=FLAGS,
-            viewport={"width": 1280, "height": 800},
-        )
+        profile = tmp_path_factory.mktemp("profile")
+        options = {"executable_path": CHROMIUM, "args": FLAGS}
+        context = playwright.chromium.launch_persistent_context(profile, **options)
         context.set_offline(True)
         yield context
         context.close()
 
 
 @pytest.fixture(scope="module")
-def opened(made, browser):
-    """The open page, its console messages, and its network requests."""
+def address(tmp_path_factory):
+    """Address of the page."""
+    path = tmp_path_factory.mktemp("explorer") / "explorer.html"
+    path.write_text(page_of(build(*stub.made_up(path.parent))), encoding="utf-8")
+    return path.as_uri()
+
+
+@pytest.fixture
+def page(address, browser):
+    """The open page. A test must cause no console message and no network request."""
     page, messages, requests = browser.new_page(), [], []
     page.on("console", lambda message: messages.append(message.text))
     page.on("pageerror", lambda error: messages.append(str(error)))
     page.on("request", lambda request: requests.append(request.url))
-    page.goto(made[0].as_uri())
-    page.locator("body[data-ready]").wait_for()
-    return page, messages, requests
-
-
-@pytest.fixture
-def page(made, opened):
-    """The open page. A test must cause no console message and no network request."""
-    page, messages, requests = opened
     page.set_viewport_size({"width": 1280, "height": 800})
+    page.goto(address)
+    page.locator("body[data-ready]").wait_for()
     yield page
-    assert messages == []
-    assert requests == [made[0].as_uri()]
+    page.close()
+    assert messages == [] and set(requests) == {address}
 
 
 def click_on_map(page, velocity, amplitude):
@@ -86,7 +76,7 @@ def click_on_map(page, velocity, amplitude):
 
 @pytest.mark.long
 def test_a_click_selects_a_point_and_the_page_fits_the_screen(page):
-    for name in MAPS:
+    for name in MOTIONS:
         page.locator("#sweeps").select_option(name)
         click_on_map(page, 0.1, 0.6)
         assert "velocity 0.1, amplitude 0.6" in page.inner_text("#certificate")
@@ -120,14 +110,12 @@ def test_sliders_move_by_keyboard_and_the_animation_plays(page):
 
 
 @pytest.fixture
-def phone(made, browser):
+def phone(page):
     """The page on a screen of 400 x 800 pixels."""
-    page = browser.new_page()
     page.set_viewport_size({"width": 400, "height": 800})
-    page.goto(made[0].as_uri())
+    page.reload()
     page.locator("body[data-ready]").wait_for()
-    yield page
-    page.close()
+    return page
 
 
 CHARTS = ("map", "along-velocity", "along-amplitude", "disc", "history", "loop")

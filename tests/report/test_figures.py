@@ -7,7 +7,6 @@ import pytest
 import xarray as xr
 from matplotlib.lines import Line2D
 from matplotlib.patches import Rectangle
-from stubs import drives_stub, fit_stub
 from stubs import figures_stub as stub
 from stubs.figures_stub import artists, words
 
@@ -99,7 +98,9 @@ def test_points_that_are_not_converged_are_hatched_and_hollow():
     assert "81 of 81" in words(draw("map", bad))
 
 
-@pytest.mark.parametrize(("poisson", "label"), [(0.0, "exact limit"), (0.3, r"limit at $\nu = 0$")])
+@pytest.mark.parametrize(
+    ("poisson", "label"), [(0.0, "exact limit"), (0.3, "exact limit for ν = 0")]
+)
 def test_the_transverse_limit_is_called_exact_only_where_it_is(poisson, label):
     (line,) = artists(
         draw("map", stub.fake_transverse().assign_coords(poisson=poisson)), "mu_static"
@@ -127,15 +128,15 @@ def test_lines_show_the_limit_and_markers_the_smallest_velocity():
 @pytest.mark.parametrize(("poisson", "points"), [(0.0, 50), (0.3, 7)])
 def test_a_limit_from_theory_is_drawn_on_its_finer_axis_where_it_holds(poisson, points):
     fine = np.linspace(0, 1.2, 50)
-    curve = ("amplitude_curve", np.maximum(1 - fine, 0))
-    data = stub.static("a", mu_static=("amplitude", np.zeros(7)), mu_static_curve=curve)
-    data = data.assign_coords(amplitude_curve=fine, poisson=poisson)
+    data = stub.static("a").assign_coords(amplitude_curve=fine, poisson=poisson)
+    data["mu_static"] = "amplitude", np.zeros(7)
+    data["mu_static_curve"] = "amplitude_curve", np.maximum(1 - fine, 0)
     (line,) = ordinates(draw("curves", data), "limit")
     assert len(line) == points
 
 
 def test_the_points_of_all_drives_are_drawn_over_velocity_and_over_mass():
-    datasets = drives_stub.pulled()
+    datasets = stub.pulled()
     datasets["drive_body"].attrs["drive"] = "mass, stiffness"
     left, right = drawing.draw("curves", datasets).axes
     velocity, force, soft, stiff = artists(left, "computed")
@@ -149,13 +150,13 @@ def test_the_points_of_all_drives_are_drawn_over_velocity_and_over_mass():
 
 
 def test_a_contact_at_rest_under_every_force_is_counted():
-    dataset = drives_stub.pulled()["drive_force"]
+    dataset = stub.pulled()["drive_force"]
     figure = draw("curves", dataset.assign(velocity=0.0 * dataset["velocity"]))
     assert "(9 at rest: not drawn)" in words(figure)
 
 
 def test_maps_of_drift_show_threshold_rest_and_the_rigid_contact():
-    datasets = [drives_stub.drift("transverse"), drives_stub.drift("bore")]
+    datasets = [stub.drift("transverse"), stub.drift("bore")]
     datasets[1]["converged"][2, 3] = 0
     figure = draw("map", *datasets)
     for axes, dataset in zip(artists(figure, "map"), datasets, strict=True):
@@ -176,26 +177,8 @@ def test_maps_of_drift_show_threshold_rest_and_the_rigid_contact():
 # Figures of commands
 
 
-def predictions():
-    """Invented predictions over a speed and a load, one of them not converged."""
-    speed, load = np.array([0.001, 0.01, 0.1]), np.array([5.0, 10.0])
-    mu = np.add.outer(0.01 * np.arange(2), 0.1 * np.arange(1, 4))
-    variables = {"mu_apparent": mu, "friction_force_N": mu * load[:, None]}
-    variables |= {"mu_apparent_error": 0.01 * mu, "converged": mu != 0.2}
-    variables["friction_force_error_N"] = 0.01 * variables["friction_force_N"]
-    variables["force_N"] = np.full(mu.shape, np.nan)
-    dims = ("load_N", "speed_m_s")
-    return xr.Dataset(
-        {name: (dims, values) for name, values in variables.items()},
-        {
-            "speed_m_s": ("speed_m_s", speed, {"units": "m/s", "long_name": "speed"}),
-            "load_N": ("load_N", load, {"units": "N", "long_name": "load"}),
-        },
-    )
-
-
 def test_predictions_have_the_values_of_the_dataset():
-    dataset = predictions()
+    dataset = stub.predictions()
     upper, lower = draw("curve", dataset).axes
     assert lower.get_xlabel() == "speed (mm/s)" and lower.get_xscale() == "log"
     assert "friction force (N)" in lower.get_ylabel() and "dimensionless" in upper.get_ylabel()
@@ -223,7 +206,7 @@ def test_under_a_force_the_speed_is_drawn():
 
 
 def test_a_fit_shows_its_rows_its_model_and_residuals():
-    dataset = fit_stub.fitted()
+    dataset = stub.fitted()
     upper, lower = draw("fit", dataset).axes
     assert len(artists(upper, "fitted")) == 2 and lower.get_xscale() == "log"
     drawn = np.concatenate([line.get_xydata() for line in artists(upper, "fitted")])

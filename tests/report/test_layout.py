@@ -12,60 +12,15 @@ from matplotlib.axes import Axes
 from matplotlib.backends.backend_pdf import PdfFile
 from matplotlib.legend import Legend
 from matplotlib.text import Text
-from stubs import certified_stub, fit_stub
 from stubs import figures_stub as stub
 
-from microslip.config.kinds import KINDS
-from microslip.report.figures import drawing, panels
+from microslip.report.figures import drawing
 from microslip.report.figures import style as look
 
 pytestmark = pytest.mark.slow  # drawing takes one to two seconds
 
 
-def arguments() -> dict[str, tuple[str, dict]]:
-    """Arguments of `draw` for every figure, by a name of the case."""
-    paper = {"transverse": stub.fake_transverse(12), "bore": stub.fake_bore(12)}
-    ratios = {name: stub.at_ratios(dataset, 0.0, 0.5) for name, dataset in paper.items()}
-    for dataset in ratios.values():
-        stub.labelled(dataset, "y0 / u_lim")
-    few = stub.fake_transverse(7)
-    few["converged"][2, 2] = 0
-    static = certified_stub.bore(velocity=[0], poisson=[0.1, 0.4])
-    pulled = stub.pulled()
-    drifts = [pulled.pop(f"drift_{motion}") for motion in ("transverse", "bore")]
-    datasets = stub.studies() | {"continuous_bore": stub.fake_continuous_bore()}
-    figures = {kind: (kind, [datasets[of.study]]) for kind, of in KINDS.items() if of.study} | {
-        kind: (kind, [datasets["continuous_bore"]]) for kind in ("field", "curves", "transients")
-    }
-    figures |= {
-        "history": ("history", [paper["transverse"]]),
-        "Figure 2": ("map", [paper["transverse"]]),
-        "Figure 6": ("map", [paper["bore"]]),
-        "two maps": ("map", paper.values()),
-        "poisson": ("map", ratios.values()),
-        "a map at two ratios": ("map", [ratios["bore"]]),
-        "coarse": ("map", [stub.at_ratios(few, 0.0, 0.2, 0.4)]),
-        "coarse motion": ("map", [stub.at_ratios(stub.holed(), 0.0, 0.3)]),
-        "coarse motions": ("map", [stub.holed(), *stub.motions(2).values()]),
-        "drift": ("map", drifts),
-        "drives": ("curves", pulled.values()),
-        "fit": ("fit", [fit_stub.fitted()]),
-        "certified": ("map", [certified_stub.bore()]),
-        "deep": ("map", [certified_stub.bore(poisson=[0.1, 0.4])]),
-        "certified and not": ("map", [certified_stub.bore(), paper["bore"]]),
-        "certified static": ("curves", [static]),
-        **{f"{n} maps": ("map", stub.motions(n).values()) for n in (1, 5, 12)},
-        "lines": ("curves", [stub.static("a"), stub.static("b")]),
-    }
-    return {
-        name: (kind, {f"d{k}": one for k, one in enumerate(shown)})
-        for name, (kind, shown) in figures.items()
-    }
-
-
-FIGURES = arguments()
-
-
+FIGURES = stub.every_figure()
 SOME = ("history", "transients", "drives", "certified static", "lines", "coarse", "coarse motion")
 """Figures that are drawn in every run."""
 each = pytest.mark.parametrize(
@@ -73,12 +28,17 @@ each = pytest.mark.parametrize(
 )
 
 
+def draw(name):
+    kind, datasets = FIGURES[name]
+    return drawing.draw(kind, dict(enumerate(datasets)))
+
+
 @cache
 def drawn(name):
     """A figure, which is drawn once and without a warning."""
     with warnings.catch_warnings():
         warnings.simplefilter("error")
-        figure = drawing.draw(*FIGURES[name])
+        figure = draw(name)
     figure.draw_without_rendering()  # places the titles
     return figure
 
@@ -87,7 +47,7 @@ def drawn(name):
 def test_its_files_are_complete_and_reproducible(name, tmp_path, monkeypatch):
     """Two drawings have the same pixels. The PDF is complete and has no date."""
     monkeypatch.setattr(PdfFile, "writeFonts", lambda f: f.writeObject(f.fontObject, {}))
-    figures = drawn(name), drawing.draw(*FIGURES[name])
+    figures = drawn(name), draw(name)
     pictures = [drawing.save(f, tmp_path / f"{k}.png").read_bytes() for k, f in enumerate(figures)]
     assert pictures[0] == pictures[1]
     page = drawing.save(figures[1], tmp_path / "page.pdf").read_bytes()
@@ -115,8 +75,7 @@ def test_it_fits_a_page_and_no_texts_or_legends_overlap(name):
     assert np.all(edges[:2] > -0.02) and np.all(edges[2:] < size + 0.02)
     absent = set().union(*map(out_of_view, figure.findobj(Axes)))
     shown = [t for t in figure.findobj(Text) if t.get_visible() and t.get_text().strip()]
-    # The sizes of two models coincide in the made-up dataset.
-    shown = [text for text in shown if text not in absent and text.get_gid() != "size"]
+    shown = [text for text in shown if text not in absent]
     assert min(text.get_fontsize() for text in shown) >= 7.0
     boxes = [text.get_window_extent() for text in shown]
     low, high = (np.array([getattr(box, end) for box in boxes]) for end in ("min", "max"))
@@ -152,7 +111,7 @@ def test_labels_of_a_logarithmic_axis_do_not_collide(low, high, width):
     with look.style():
         figure = look.new_figure(width, 1.5)
         axes = figure.subplots()
-        panels.logarithmic(axes, (low, high))
+        look.logarithmic(axes, (low, high))
         figure.draw_without_rendering()
         shown = [
             tick.label1.get_window_extent()

@@ -92,9 +92,8 @@ def test_text_of_a_dataset_is_escaped(data):
 
 
 @pytest.mark.parametrize("study", ["claims", "stability"])
-def test_a_page_is_written_as_html(study, data, tmp_path):
+def test_a_page_is_html(study, data):
     dataset = data if study == "claims" else studies()[study]
-    pages.write(tmp_path / "page.html", dataset, ["a <line>"])
-    text = (tmp_path / "page.html").read_text(encoding="utf-8")
-    assert text.startswith("<!DOCTYPE html>") and text == pages.page(dataset, ["a <line>"])
+    text = pages.page(dataset, ["a <line>"])
+    assert text.startswith("<!DOCTYPE html>")
     assert "a &lt;line&gt;" in text and ('<h2 id="runs"' in text) == (study == "claims")

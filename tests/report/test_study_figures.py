@@ -47,7 +47,7 @@ def test_every_trial_and_the_front_are_drawn_and_no_failure_is_hidden(kind, cost
         (front,) = artists(axes, "front")
         assert front.get_xdata().size == (trials[f"front_{cost}"].values != 0).sum()
         assert np.all(np.diff(front.get_ydata()) <= 0)
-        (crosses,) = artists(axes, "not converged")
+        (crosses,) = artists(axes, "bad")
         assert crosses.get_xdata().size == (~finite | (trials["converged"].values == 0)).sum()
         assert (crosses.get_ydata() > np.nanmax(errors)).sum() == (~finite).sum()
         lines = [line for line in axes.get_lines() if line.get_gid() and len(line.get_xdata())]
@@ -81,47 +81,40 @@ def test_a_profile_shows_the_share_of_points_within_a_ratio_of_the_best(made):
     assert ": never" in words(figure)
 
 
-def cheapest(names: np.ndarray, amplitude: np.ndarray):
-    """The first panel of a map of the cheapest models, shape (amplitudes, velocities), and its
-    figure."""
-    velocity = np.geomspace(1e-3, 10, names.shape[1])
+def cheapest(names, velocity, amplitude):
+    """A map of the cheapest models, shape (amplitudes, velocities)."""
     data = {"map_tolerance": ("map_tolerance", [1e-2])}
     for motion in ("transverse", "bore"):
         dims = ("map_tolerance", f"{motion}_amplitude", f"{motion}_velocity")
         data |= {f"{motion}_cheapest": (dims, names[None]), dims[1]: (dims[1], amplitude)}
         data[dims[2]] = dims[2], velocity
-    figure = drawing.draw("model_map", {"accuracy": xr.Dataset(data)})
-    return figure.axes[0], figure
+    return drawing.draw("model_map", {"accuracy": xr.Dataset(data)})
 
 
 def test_the_map_colours_and_names_every_region_of_the_cheapest_model():
-    names, amplitude = np.full((9, 13), "polar", "<U9"), np.geomspace(0.1, 5, 9)
+    velocity, amplitude = np.geomspace(1e-3, 10, 13), np.geomspace(0.1, 5, 9)
+    names = np.full((9, 13), "polar", "<U9")
     names[2:4, 1:3] = names[6:8, 9:12] = names[0, 12] = "mdr"
     names[8, 0] = ""
-    axes, figure = cheapest(names, amplitude)
-    (legend,) = figure.findobj(Legend)
+    figure = cheapest(names, velocity, amplitude)
+    axes, (legend,) = figure.axes[0], figure.findobj(Legend)
     handles = zip(legend.get_texts(), legend.legend_handles, strict=True)
     colours = {text.get_text().split()[-1]: to_hex(one.get_facecolor()) for text, one in handles}
-
-    def cells_at(places):
-        """Indices of the cells that contain places."""
-        column, row = axes.transData.transform(places).T
-        (left, right), (low, high) = axes.bbox.intervalx, axes.bbox.intervaly
-        column, row = 13 * (column - left) / (right - left), 9 * (row - low) / (high - low)
-        return sorted(zip(row.astype(int), column.astype(int), strict=True))
-
     for name in ("polar", "mdr"):
-        cells = artists(axes, f"cheapest {name}")
-        assert {to_hex(cell.get_facecolor()) for cell in cells} == {colours[name]}
-        middles = [np.exp(np.log(cell.get_corners()).mean(axis=0)) for cell in cells]
-        assert cells_at(middles) == [*map(tuple, np.argwhere(names == name))]
+        for cell, (i, j) in zip(
+            artists(axes, f"cheapest {name}"), np.argwhere(names == name), strict=True
+        ):
+            (low, high), point = cell.get_corners()[[0, 2]], (velocity[j], amplitude[i])
+            assert np.all(low < point) and np.all(point < high)
+            assert to_hex(cell.get_facecolor()) == colours[name]
     assert axes.get_yscale() == "log" and len(artists(axes, "none")) == 1
     regions = artists(axes, "region")
     assert sorted(text.get_text() for text in regions) == ["Md", "Md", "Md", "Po"]
     for text in regions:
-        ((i, j),) = cells_at([text.get_position()])
+        x, y = text.get_position()
+        i, j = np.argmin(np.abs(amplitude - y)), np.argmin(np.abs(velocity - x))
         assert names[i, j][:2].capitalize() == text.get_text()
-    axes, _ = cheapest(names[:1, :1], np.array([0.5]))
+    axes = cheapest(names[:1, :1], velocity[:1], np.array([0.5])).axes[0]
     assert axes.get_yscale() == "linear" and len(artists(axes, "region")) == 1
 
 
@@ -130,27 +123,26 @@ def test_the_atlas_shows_every_outcome(made):
     data["outcome"][:] = np.arange(data["outcome"].size).reshape(data["outcome"].shape) % 5
     data["outcome"].loc[{"method": "midpoint"}] = 0  # the method applies to no case
     figure = drawing.draw("stability_atlas", {"stability": data})
-    (axes,) = figure.axes
-    methods = [label.get_text() for label in axes.get_xticklabels()]
+    methods = [label.get_text() for label in figure.axes[0].get_xticklabels()]
     assert methods[0] == "shipped" and "midpoint" not in methods
-    rows = axes.get_yticks()
-    labels = [label.get_text() for label in axes.get_yticklabels()]
-    assert labels == list(data["case_label"].values)
     # As a dict, because sel has another keyword `method`.
-    expected = data["outcome"].sel({"method": methods}).transpose("case", "method").values
-    signs = {text.get_position(): text.get_text() for text in axes.texts}
-    for (row, column), code in np.ndenumerate(expected):
-        sign = studies.OUTCOMES[code][2] if code else None
-        assert signs.get((column + 0.5, rows[row])) == sign
-    for code, fill in ((code, one[1]) for code, one in studies.OUTCOMES.items()):
-        squares = artists(axes, f"outcome {code}")
-        assert {to_hex(one.get_facecolor()) for one in squares} == {fill.lower()}
-        at = sorted((one.get_y() + 0.5, one.get_x()) for one in squares)
-        assert at == sorted((rows[i], j) for i, j in np.argwhere(expected == code))
-    notes = {" ".join(text.get_text().split()) for text in axes.texts}
-    labels = data["axis_label"].values
-    headings = {f"({chr(97 + k)}) {label}" for k, label in enumerate(labels)}
-    assert {*headings, *data["axis_note"].values} <= notes
-    (legend,) = figure.legends
-    names = [text.get_text().partition(":")[0] for text in legend.get_texts()]
+    data = data.sel({"method": methods})
+    for axes, name, label, note in zip(
+        figure.axes, *(data[n].values for n in ("axis", "axis_label", "axis_note")), strict=True
+    ):
+        own = data.isel(case=data["case_axis"].values == name)
+        expected = own["outcome"].transpose("case", "method").values
+        assert [one.get_text() for one in axes.get_yticklabels()] == list(own["case_label"].values)
+        signs = {text.get_position(): text.get_text() for text in axes.texts}
+        for (row, column), code in np.ndenumerate(expected):
+            sign = studies.OUTCOMES[code][2] if code else None
+            assert signs.get((column + 0.5, row + 0.5)) == sign
+        for code, (_, fill, *_) in studies.OUTCOMES.items():
+            squares = artists(axes, f"outcome {code}")
+            assert all(to_hex(one.get_facecolor()) == fill.lower() for one in squares)
+            at = sorted((one.get_y(), one.get_x()) for one in squares)
+            assert at == [*map(tuple, np.argwhere(expected == code))]
+        assert label in axes.get_title(loc="left")
+        assert note in [" ".join(text.get_text().split()) for text in axes.texts]
+    names = [text.get_text().split(":")[0].split()[-1] for text in figure.legends[0].get_texts()]
     assert names == ["converged", "slow", "wrong", "diverged", "blank"]

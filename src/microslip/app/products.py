@@ -10,6 +10,7 @@ from typing import Any
 
 from microslip.app.plan import Plan
 from microslip.config import load
+from microslip.foundation.files import write_atomically
 from microslip.sweeps import batch, content
 from microslip.sweeps.request import is_settled
 
@@ -79,7 +80,7 @@ def _make_dataset(plan: Plan, name: str, files: dict[str, Path], inputs: list[Pa
     netcdf.write(files[".nc"], root, groups)
     shown = netcdf.whole(files[".nc"]) if builder is registry else root
     lines = list(builder.report(shown, name))
-    pages.write(files[".html"], shown, lines)
+    write_atomically(files[".html"], pages.page(shown, lines).encode())
     for line in lines:
         log.info(line)
 
@@ -102,7 +103,10 @@ def _make_figure(plan: Plan, name: str, files: dict[str, Path], inputs: list[Pat
         one: [answer(r) for r in explorer.period_requests(configuration, *maps, name=one)]
         for one in maps
     }
-    certified = [datasets.pop(one) for one in explorer.certified_of(configuration, figure)]
-    page.write(files[".html"], datasets, periods, certified)
+    certified = [
+        datasets.pop(one) for one in figure.sweep if configuration.sweeps[one].is_certified
+    ]
+    text = page.page(page.build(datasets, periods, certified))
+    write_atomically(files[".html"], text.encode())
     for line in explorer.report(periods):
         log.info(line)

@@ -7,7 +7,6 @@ made from the dataset and the template claims.html. Every page is one self-conta
 from __future__ import annotations
 
 import json
-import os
 from collections.abc import Iterator, Sequence
 from html import escape
 from pathlib import Path
@@ -19,11 +18,10 @@ import xarray as xr
 import yaml
 
 from microslip.datasets.catalogue import FORMS
-from microslip.foundation.files import write_atomically
+from microslip.report.motions import MOTIONS
 from microslip.studies.static_limits import FORMULAS
 from microslip.studies.verdicts import OUTCOMES, WORDS
 
-MOTIONS = {"transverse": "Transverse oscillation", "bore": "Oscillating bore"}
 RANGES = (
     *("mu_macro", "mu_macro_error", "mu_torque", "dissipated_energy", "dissipated_energy_error"),
     *("reference_error", "seconds"),
@@ -32,16 +30,11 @@ RANGES = (
 MOST_LINES = 40
 
 
-def write(path: str | os.PathLike, dataset: xr.Dataset, lines: list[str]) -> None:
-    """Write the page of a dataset to a file. lines: log of the collection of the dataset.
-
-    Raises CacheError if the file cannot be written.
-    """
-    write_atomically(Path(path), page(dataset, lines).encode())
-
-
 def page(dataset: xr.Dataset, lines: list[str]) -> str:
-    """Return the HTML of the page. It depends on the arguments only."""
+    """Return the HTML of the page of a dataset. It depends on the arguments only.
+
+    lines: log of the collection of the dataset.
+    """
     if "verdict" in dataset:
         return claims_page(dataset, lines)
     # Snakemake's report displays HTML inline.
@@ -94,8 +87,6 @@ def claims_page(dataset: xr.Dataset, lines: list[str]) -> str:
         claim.runs = list({check.run.row: check.run for check in shown}.values())
         claims.append(claim)
     return environment.from_string(text).render(
-        title=dataset.attrs.get("title", ""),
-        comment=dataset.attrs.get("comment", ""),
         words=WORDS,
         outcomes=OUTCOMES,
         claims=claims,
@@ -139,17 +130,10 @@ def _parts(dataset: xr.Dataset, runs: dict[str, SimpleNamespace]) -> list[Simple
         check.run, check.other_run = runs[check.run], runs.get(check.other_run)
     for part in parts:
         part.checks = [check for check in checks if check.part == part.name]
-        part.decisive = _decisive(part.checks)
+        decided = (check for check in part.checks if OUTCOMES[check.outcome] != "open")
+        # the check that fails most clearly, else the check that holds most narrowly
+        part.decisive = min(decided, key=lambda one: (-one.outcome, one.margin), default=None)
     return parts
-
-
-def _decisive(checks: list[SimpleNamespace]) -> SimpleNamespace | None:
-    """Return the check that fails most clearly, else the check that holds most narrowly."""
-    for outcome in ("fails", "holds"):
-        deciding = [check for check in checks if OUTCOMES[check.outcome] == outcome]
-        if deciding:
-            return min(deciding, key=lambda check: check.margin)
-    return None
 
 
 def _number(value: float, digits: int = 4) -> str:
@@ -178,4 +162,5 @@ def _static(dataset: xr.Dataset, motion: str) -> SimpleNamespace:
         for name, equation in names.items()
     ]
     rows = _records(dataset, f"{motion}_amplitude", f"{motion}_")
-    return SimpleNamespace(title=MOTIONS[motion], names=names, gaps=gaps, rows=rows)
+    title = MOTIONS[motion].title.capitalize()
+    return SimpleNamespace(title=title, names=names, gaps=gaps, rows=rows)

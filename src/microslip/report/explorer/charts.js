@@ -213,7 +213,7 @@ function drawForces(history, loop, period, mu, error, frame) {
     { ...force, x: period.other, y: period.forward, showlegend: false,
       hovertemplate: "%{x:.4f}, %{y:.4f}<extra></extra>" },
   ], layout({
-    xaxis: axis(period.map.labels[2], { range: [-1.06, 1.06], dtick: 0.5 }),
+    xaxis: axis(period.map.other_force, { range: [-1.06, 1.06], dtick: 0.5 }),
     yaxis: y,
   }), config());
 }

@@ -7,17 +7,16 @@ certified map, so that the page needs no formula of a map.
 
 from __future__ import annotations
 
-from typing import NamedTuple
-
 import numpy as np
 import xarray as xr
 from scipy.ndimage import maximum_filter
 
+from microslip.foundation.canonical import plain
 from microslip.foundation.number_text import PREFIXES
 from microslip.foundation.units import read
-from microslip.si import warnings
+from microslip.report.motions import MOTIONS
+from microslip.si import inputs, warnings
 from microslip.si.contact import LARGEST_RATIO
-from microslip.si.inputs import INPUTS
 from microslip.si.materials import MATERIALS
 from microslip.sweeps.period_codec import text_of
 from microslip.theory.hertz import D_half
@@ -28,62 +27,42 @@ LARGEST = 65535
 """Largest integer of two bytes."""
 OF_NUMBERS = "by E and ν"
 """Choice in the list of materials for entering Young's modulus and Poisson's ratio."""
-MOTIONS = {
-    "transverse": "transverse: oscillates across the sliding direction",
-    "bore": "bore: oscillates in spin about the contact normal",
-}
-"""Motions of the form, with descriptions."""
-
-
-class Field(NamedTuple):
-    """An input field for a quantity: its name on the page, the input in si.inputs.INPUTS, the units
-    that it offers (the first one is the default) and its default number."""
-
-    label: str
-    input: str
-    units: tuple[str, ...]
-    example: str
-
-
-_PRESSURES = ("GPa", "MPa", "kPa", "Pa", "psi")
+PRESSURES = ("GPa", "MPa", "kPa", "Pa", "psi")
 FIELDS = {
-    "radius": Field("radius of the sphere", "radius", ("mm", "um", "m", "inch"), "5"),
-    "load": Field("normal load", "load", ("N", "mN", "uN", "kN", "kgf", "lbf"), "10"),
-    "young": Field("E of the sphere", "young", _PRESSURES, "210"),
-    "nu": Field("ν of the sphere", "nu", ("",), "0.3"),
-    "counter_young": Field("E of the flat", "young", _PRESSURES, "210"),
-    "counter_nu": Field("ν of the flat", "nu", ("",), "0.3"),
-    "mu": Field("μ without vibration", "mu", ("",), "0.3"),
-    "speed": Field("forward speed", "speed", ("mm/s", "um/s", "m/s", "m/min", "km/h"), "10"),
-    "frequency": Field("frequency", "frequency", ("kHz", "Hz", "MHz", "rpm", "rad/s"), "20"),
-    "stroke": Field("amplitude (half stroke)", "amplitude", ("um", "nm", "mm", "m"), "0.3"),
-    "angle": Field("amplitude (half angle)", "rotation_amplitude", ("mrad", "deg", "rad"), "1"),
+    "radius": ("radius of the sphere", "radius", ("mm", "um", "m", "inch"), "5"),
+    "load": ("normal load", "load", ("N", "mN", "uN", "kN", "kgf", "lbf"), "10"),
+    "young": ("E of the sphere", "young", PRESSURES, "210"),
+    "nu": ("ν of the sphere", "nu", ("",), "0.3"),
+    "counter_young": ("E of the flat", "young", PRESSURES, "210"),
+    "counter_nu": ("ν of the flat", "nu", ("",), "0.3"),
+    "mu": ("μ without vibration", "mu", ("",), "0.3"),
+    "speed": ("forward speed", "speed", ("mm/s", "um/s", "m/s", "m/min", "km/h"), "10"),
+    "frequency": ("frequency", "frequency", ("kHz", "Hz", "MHz", "rpm", "rad/s"), "20"),
+    "stroke": ("amplitude (half stroke)", "amplitude", ("um", "nm", "mm", "m"), "0.3"),
+    "angle": ("amplitude (half angle)", "rotation_amplitude", ("mrad", "deg", "rad"), "1"),
 }
-"""Fields, keyed by their names in the scripts, in the order of the form."""
+"""Label of each field, its input in si.inputs, its units (the first one is the default), and its
+default number. The fields are in the order of the form."""
 
 
 def packed() -> dict:
     """Pack the data of the form as JSON values."""
     fields: dict[str, dict] = {}
     units: dict[str, float] = {}
-    for name, field in FIELDS.items():
-        known = INPUTS[field.input]
-        high = known.high if np.isfinite(known.high) else None
-        fields[name] = field._asdict() | {"low": known.low, "high": high, "zero": known.zero}
-        units |= {unit: read(f"1 {unit}", known.unit or "").si for unit in field.units}
+    for name, (label, one, names, example) in FIELDS.items():
+        known = inputs.INPUTS[one]
+        about = {"label": label, "units": names, "example": example, "high": plain(known.high)}
+        fields[name] = about | {"low": known.low, "zero": known.zero}
+        units |= {unit: read(f"1 {unit}", known.unit or "").si for unit in names}
     return {
-        "motions": MOTIONS,
+        "motions": {name: f"{name}: {inputs.MOTIONS[name].description}" for name in MOTIONS},
         "fields": fields,
         "units": units,
         "sides": {"material": ["young", "nu"], "counterbody": ["counter_young", "counter_nu"]},
         "amplitude_of": {"transverse": "stroke", "bore": "angle"},
         "chosen": {"material": "steel", "counterbody": "steel", "motion": "transverse"},
         "of_numbers": OF_NUMBERS,
-        "materials": {
-            name: {n: getattr(body, n) for n in ("poisson", "density", "hardness")}
-            | {"young": None if body.rigid else body.young}
-            for name, body in MATERIALS.items()
-        },
+        "materials": {name: plain(vars(body)) for name, body in MATERIALS.items()},
         "checks": [[rule._asdict() for rule in rules] for rules in warnings.CHECKS],
         "properties": warnings.PROPERTIES,
         "missing": warnings.MISSING,
@@ -92,7 +71,7 @@ def packed() -> dict:
             name.lower(): getattr(warnings, name)
             for name in ("ADHESION", "RANGE", "SHORT", "RUBBERY")
         },
-        "prefixes": PREFIXES,
+        "prefixes": list(PREFIXES.items()),
         "largest_share": LARGEST_RATIO,
         "half_stuck": D_half(),
     }

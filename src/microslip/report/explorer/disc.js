@@ -7,8 +7,8 @@ const CLOSEST = 0.14; // smallest distance between arrows on a ring, divided by 
 
 // The parts common to all frames: outlines of the cells, and positions and lengths of the arrows.
 function discOf(period) {
-  const { angles, cells } = period.map.periods;
-  const theta = sectorAngles(period.map);
+  const { angles, cells } = period;
+  const theta = sectorAngles(period);
   const inner = period.radius.slice(1).map((radius, i) => (radius + period.radius[i]) / 2);
   const rims = [0, ...inner, 1];
   const half = Math.PI / angles / 2;
@@ -33,12 +33,11 @@ function discOf(period) {
 }
 
 // Indices of the fewest cells in half the disc that dissipate half the energy.
-function hottestCells({ density, map }, rims) {
-  const { cells } = map.periods;
-  const energy = density.map((one, k) => one * (rims[(k % cells) + 1] ** 2 - rims[k % cells] ** 2));
+function hottestCells({ densities, cells }, rims) {
+  const energy = densities.map((one, k) => one * (rims[(k % cells) + 1] ** 2 - rims[k % cells] ** 2));
   const enough = energy.reduce((all, one) => all + one, 0) / 2;
   let sum = 0;
-  return density.map((one, k) => k).sort((a, b) => density[b] - density[a]).filter((k) => {
+  return densities.map((one, k) => k).sort((a, b) => densities[b] - densities[a]).filter((k) => {
     const needed = sum < enough;
     sum += energy[k];
     return needed;
@@ -47,7 +46,7 @@ function hottestCells({ density, map }, rims) {
 
 // Outlines of the hottest cells in both halves of the disc, as one line with gaps.
 function hottestLines({ outlines, hottest, period }) {
-  const half = period.density.length;
+  const half = period.densities.length;
   const every = hottest.flatMap((k) => [outlines[k], outlines[k + half]]);
   return [0, 1].map((axis) => every.flatMap((ring) => [...ring[axis], null]));
 }

@@ -12,34 +12,27 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from microslip.config.settings import Configuration, Figure
+from microslip.report.motions import MOTIONS
 from microslip.sweeps.request import request_of
 
 SCRIPTS = "data charts disc sweeps contact form link page"
 ASSETS = ("page.html", "style.css", *(f"{name}.js" for name in SCRIPTS.split()))
 """Files of the page, besides the data and plotly.js. The scripts run in this order."""
-MAPS = ("transverse", "bore")
-"""Motions for which periods are stored. The form for a real contact has the same motions."""
 CELLS, ANGLES, STEPS = 10, 12, 32
 """Resolution of a stored period: number of rings, points on half a ring, and steps. It is
 sufficient for a picture of 300 pixels."""
 PERIODS_PER_JOB = 150
 """Number of periods in one job. The job takes a few seconds."""
-MOST_PERIODS = 1250
-"""Maximum number of periods on a page of at most 15 MB. A period takes about 6 kB."""
-
-
-def certified_of(configuration: Configuration, figure: Figure) -> list[str]:
-    """Return the names of the certified maps of a page, for real contacts."""
-    return [name for name in figure.sweep if configuration.sweeps[name].is_certified]
+MOST_PERIODS = 1200
+"""Maximum number of periods on a page of at most 15 MB. A period takes about 7.2 kB."""
 
 
 def maps_of(configuration: Configuration, figure: Figure) -> list[str]:
     """Return the names of the sweeps of a page with stored periods."""
-    sweeps = {name: configuration.sweeps[name] for name in figure.sweep}
     return [
         name
-        for name, sweep in sweeps.items()
-        if sweep.motion in MAPS
+        for name in figure.sweep
+        if (sweep := configuration.sweeps[name]).motion in MOTIONS
         and sweep.pressure == "hertz"
         and sweep.spans_a_map
         and not (sweep.is_certified or sweep.drives)
@@ -77,7 +70,6 @@ def report(periods: dict) -> Iterator[str]:
         outcome = f"{len(unconverged)} not converged" if unconverged else "all converged"
         yield f"explorer: {name}: {len(records)} periods, {outcome}"
         for record in unconverged:
-            where = ", ".join(
-                f"{dim} {record['request'][dim]}" for dim in ("amplitude", "velocity")
-            )
-            yield f"  not converged: {where}: {record['result']['reason']}"
+            request, result = record["request"], record["result"]
+            where = f"amplitude {request['amplitude']}, velocity {request['velocity']}"
+            yield f"  not converged: {where}: {result['reason']}"

@@ -44,9 +44,9 @@ function selectOnLine(at) {
   paragraph("line-value", series.length === 1 ? `${name} ${valueOf(series[0])}` : `${name}, ${series.length} lines`);
   const rows = series.length === 1 ? [] : series.map((one) => [one.label || "computed", valueOf(one)]);
   rows.push(...limits.map((given) => [given.label, digits(given.values[at], 5)]));
-  for (const one of beside ?? []) {
+  for (const one of beside) {
     rows.push([one.label, valueOf(one)]);
-    if (one.theory) rows.push([one.theory.label, digits(one.theory.values[at], 5)]);
+    rows.push(...one.theory.map((given) => [given.label, digits(given.values[at], 5)]));
   }
   table("line-facts", rows);
   paragraph("line-note", `At ${plainText(x.label)} = ${digits(x.values[at])}, Poisson's ratio ${digits(shown.poisson)}.`);
@@ -71,7 +71,7 @@ function redraw() {
 function arrange() {
   const isMap = STATE.shown.kind === "map";
   // On a wide page with an open form or without periods, the cuts are on the right.
-  const beside = isMap && !ONE_COLUMN.matches && (STATE.asking || STATE.shown.periods.count === 0);
+  const beside = isMap && !ONE_COLUMN.matches && (STATE.asking || !withPeriods(STATE.shown).length);
   const right = STATE.asking ? "contact-view" : "point-view";
   element(beside ? right : "map-view").append(element("cuts"));
   element("map").classList.toggle("tall", beside); // plotly adds its own class to this element
@@ -88,8 +88,7 @@ function selectMap(map) {
   element("velocity").max = map.velocity.length - 1;
   offerLimits(map);
   // Select a point in the middle of the points with periods.
-  const stored = (map.periods.index ?? []).flatMap((row, i) =>
-    row.flatMap((k, j) => (k < 0 ? [] : [[i, j]])));
+  const stored = withPeriods(map);
   const rows = [...new Set(stored.map((place) => place[0]))];
   const row = rows.length ? rows[rows.length >> 2] : map.amplitude.length >> 1;
   const columns = stored.filter((place) => place[0] === row);
@@ -121,22 +120,24 @@ function select(row, column) {
     return;
   }
   const { mu_macro, mu_macro_error } = map.points;
-  STATE.frame = Math.min(STATE.frame, map.periods.frames);
-  element("phase").max = map.periods.frames;
+  STATE.frame = Math.min(STATE.frame, STATE.period.frames);
+  element("phase").max = STATE.period.frames;
   drawForces(element("history"), element("loop"), STATE.period, mu_macro[place[0]][place[1]],
     mu_macro_error[place[0]][place[1]], STATE.frame);
   drawDisc(element("disc"), STATE.disc, STATE.frame);
   tellPhase();
 }
 
+// The points of the map with a period: [row, column] of each.
+function withPeriods(map) {
+  return (map.periods ?? []).flatMap((line, i) =>
+    line.flatMap((stored, j) => (stored?.tractions ? [[i, j]] : [])));
+}
+
 // The nearest point of the map with a period: [row, column]; null without periods.
 function nearestPeriod(map, row, column) {
-  let found = null, least = Infinity;
-  (map.periods.index ?? []).forEach((line, i) => line.forEach((k, j) => {
-    const distance = Math.hypot(i - row, j - column);
-    if (k >= 0 && distance < least) [found, least] = [[i, j], distance];
-  }));
-  return found;
+  const distance = ([i, j]) => Math.hypot(i - row, j - column);
+  return withPeriods(map).sort((a, b) => distance(a) - distance(b))[0] ?? null;
 }
 
 function selectAndMark(row, column) {
@@ -191,7 +192,7 @@ function tell(drawn) {
   paragraph("spent", `${model}.${energy}`);
   paragraph("theory", limits.length ? `Theory here: ${limits.join("; ")}.` : "");
   if (!period) {
-    const missing = map.periods.index !== null && map.amplitude[row] > 0 && map.velocity[column] > 0;
+    const missing = map.periods !== null && map.amplitude[row] > 0 && map.velocity[column] > 0;
     paragraph("run", whyNone(map, row, column), missing);
     return;
   }
@@ -200,9 +201,8 @@ function tell(drawn) {
       `${digits(map.velocity[drawn[1]])}, amplitude ${digits(map.amplitude[drawn[0]])}.`);
     return;
   }
-  const p = map.periods;
-  const run = `Drawn below: one run of the polar model, ${p.cells} rings, ${2 * p.angles} angles, ` +
-    `${p.frames} steps; its mean is ${period.mean.toFixed(4)}.`;
+  const run = `Drawn below: one run of the polar model, ${period.cells} rings, ${2 * period.angles} angles, ` +
+    `${period.frames} steps; its mean is ${period.mu_macro.toFixed(4)}.`;
   paragraph("run", period.converged ? run : `${run} It did not converge: ${period.reason}`,
     !period.converged);
 }

@@ -1,13 +1,13 @@
 """Friction along one axis of sweeps: computed points with error estimates, and closed forms.
 
 The figure has a panel for each abscissa, and a line for each value of the other axes of a sweep. A
-sweep over forces is drawn at the mean velocities that the forces cause.
+sweep over forces is drawn at the mean velocities that the forces cause. Maps have panels of the
+same kind, which show their edges.
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from itertools import product
 from typing import NamedTuple
 
 import numpy as np
@@ -16,12 +16,10 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from microslip.config.quantities import FORCE_FORWARD, TORQUE
-from microslip.datasets.catalogue import FORMS, STATIC, ClosedForm
-from microslip.report.figures import panels
+from microslip.report import selection
 from microslip.report.figures import style as look
-from microslip.report.figures.panels import columns, limit, moving, resampled
+from microslip.report.selection import PLANE, closed_forms, columns, limit, moving
 
-PLANE = "velocity", "amplitude"
 FORCE_AND_TORQUE = f"force  {FORCE_FORWARD.math}\ntorque  {TORQUE.math}"
 JOINING = 0.5
 """Width in points of the lines that join markers."""
@@ -51,39 +49,29 @@ class Line(NamedTuple):
     limit: tuple[np.ndarray, np.ndarray, str] | None = None
 
 
-def closed_forms(dataset: xr.Dataset) -> list[ClosedForm]:
-    """Return the closed forms that a dataset contains. The closed forms of its motion come
-    first."""
-    own = FORMS.get(dataset.attrs.get("motion", "").partition(":")[0], {})
-    every = {name: form for forms in FORMS.values() for name, form in forms.items()}
-    return [form for name, form in (own | every | own).items() if name in dataset]
-
-
-def closed_form(axes: Axes, parts: Sequence[xr.Dataset], form: ClosedForm, **at: float) -> None:
-    """Draw a closed form from its variable in the first dataset. at: coordinates to select."""
-    at_0 = not form.any_poisson and any(part["poisson"] > 0 for part in parts)
-    label = r"limit at $\nu = 0$" if at_0 and form.name == STATIC else form.label
-    (color, ls), line = look.LIMITS[form.name], limit(parts[0], form.name)
-    line = line.sel({dim: value for dim, value in at.items() if dim in line.dims})
-    axes.plot(line[line.dims[0]], line, color=color, ls=ls, label=label, gid=form.name)
-
-
 def draw(*datasets: xr.Dataset) -> Figure:
     """Draw one or several sweeps along one axis."""
     shown = [_static_map(one) if "cell_error" in one else one.squeeze() for one in datasets]
     alone = len(shown) == 1
-    lines = [line for one in shown for line in _lines(one, not alone)]
-    abscissae = list(dict.fromkeys(line.x for line in lines))
+    every = [line for one in shown for line in _lines(one, not alone)]
+    abscissae = list(dict.fromkeys(line.x for line in every))
     figure = look.new_figure(*((look.SINGLE, 2.7) if alone else (look.DOUBLE, 3.3)))
-    grid = panels.grid(figure, len(abscissae), len(abscissae))
+    grid = look.grid(figure, len(abscissae), len(abscissae))
     for axes, abscissa in zip(grid, abscissae, strict=True):
-        _panel(axes, [line for line in lines if line.x == abscissa], shown)
+        lines = [line for line in every if line.x == abscissa]
+        _panel(axes, lines, alone)
+        _references(axes, lines[0].points, shown)
+        look.logarithmic_if_wide(axes, np.concatenate([one.points[one.x] for one in lines]))
+        still = [one for one in lines if one.limit is not None and one.x == "amplitude"]
+        if velocities := sorted({float(one.points["velocity"]) for one in still}):
+            at = ", ".join(f"${look.number(one)}$" for one in velocities)
+            axes.set_title(f"lines: limit for velocity to 0;\nmarkers: velocity {at}", loc="left")
         if len(grid) > 1:
-            panels.legend_above(axes, ncols=1)
+            look.legend_above(axes, ncols=1)
     if len(grid) == 1:
-        place = ("upper center", 2) if alone else ("right upper", 1)
+        where, ncols = ("upper center", 2) if alone else ("right upper", 1)
         handles = grid[0].get_legend_handles_labels()[0]
-        panels.legend_of_figure(figure, handles, place[0], ncols=place[1], handlelength=3.0)
+        look.legend_of_figure(figure, handles, where, ncols=ncols, handlelength=3.0)
     return figure
 
 
@@ -91,39 +79,36 @@ def _static_map(dataset: xr.Dataset) -> xr.Dataset:
     """Return the values of a certified map of static friction on a fine axis."""
     amplitude, ratios = dataset["amplitude"].values, np.unique(dataset["poisson"].values)
     fine = np.linspace(amplitude.min(), amplitude.max(), FINE)
-    return resampled(dataset, velocity=0.0, amplitude=fine, poisson=ratios)
+    return selection.resampled(dataset, velocity=0.0, amplitude=fine, poisson=ratios)
 
 
 def _lines(dataset: xr.Dataset, titled: bool) -> Iterator[Line]:
-    """Yield the lines of a sweep. The abscissa is the longest axis."""
+    """Yield the lines of a sweep."""
     over_force = "force" in dataset.dims
-    variables = ["velocity"] if over_force else ["mu_macro"]
-    variables += ["mu_torque"] if "mu_torque" in dataset else []
-    sizes = {str(dim): dataset.sizes[dim] for dim in dataset[variables[0]].dims}
-    dim = "force" if over_force else max(sizes, key=lambda one: sizes[one])
+    variable = "velocity" if over_force else "mu_macro"
     title, still = look.literal(dataset.attrs.get("title", "")) if titled else "", None
-    if dim in PLANE and "velocity" in sizes:
+    dim, parts = selection.lines(dataset, variable)
+    if dim in PLANE and "velocity" in dataset[variable].dims:
         if dim == "amplitude" and 0.0 in dataset["velocity"]:
             still = dataset.sel(velocity=0.0)
         dataset = moving(dataset)
         dataset = dataset.squeeze("velocity") if dataset.sizes["velocity"] == 1 else dataset
-    others = [str(one) for one in dataset[variables[0]].dims if one != dim]
-    for place in product(*(range(dataset.sizes[other]) for other in others)):
-        at = dict(zip(others, place, strict=True))
-        points = dataset.isel(at)
-        texts = [look.conditions([(look.symbol(points, one), float(points[one]))]) for one in at]
-        text = ", ".join(filter(None, [title, *texts]))
+        _, parts = selection.lines(dataset, variable, dim)
+    for at, points in parts:
+        where = look.conditions(dataset.attrs.get("motion", ""), at)
+        text = ", ".join(filter(None, [title, where])) or "computed"
         if over_force:
             moves = points.isel(force=points["velocity"].values > 0)
             # A contact at rest has no place on a logarithmic axis of velocities.
             if at_rest := points.sizes["force"] - moves.sizes["force"]:
-                text = f"{text or 'computed'} ({at_rest} at rest: not drawn)"
+                text = f"{text} ({at_rest} at rest: not drawn)"
             moves = moves.assign(force_error=xr.zeros_like(moves["force"]))
             yield Line(moves, "velocity", "force", text)
             continue
-        rest = still.isel(at, missing_dims="ignore") if still else None
-        for variable in variables:
-            yield Line(points, dim, variable, text, _limit(points, rest, dim, variable))
+        rest = still.sel({one: at[one] for one in at if one in still.dims}) if still else None
+        words = {"mu_macro": "force, ", "mu_torque": "torque, "}
+        for name, word in words.items() if "mu_torque" in dataset else [("mu_macro", "")]:
+            yield Line(points, dim, name, f"{word}{text}", _limit(points, rest, dim, name))
 
 
 def _limit(
@@ -131,65 +116,50 @@ def _limit(
 ) -> tuple[np.ndarray, np.ndarray, str] | None:
     """Return a closed form that is exact for these points, else the computed static limit."""
     for form in closed_forms(points):
-        exact = form.exact and (form.any_poisson or float(points["poisson"]) == 0.0)
         own = ("torque" in form.name) == ("torque" in variable)
         line = limit(points, form.name)
         on_axis = form.arguments[0] == dim and line.ndim == 1
-        if exact and own and on_axis and form.name != "mu_large_amplitude":
+        if form.exact and own and on_axis and form.name != "mu_large_amplitude":
             return line[line.dims[0]].values, line.values, form.label
     if still is None:
         return None
     return still[dim].values, still[variable].values, "limit for velocity to 0"
 
 
-def _panel(axes: Axes, lines: Sequence[Line], shown: Sequence[xr.Dataset]) -> None:
-    """Draw all lines with the same abscissa, and label the axes."""
-    alone = len(shown) == 1
-    both = alone and any(line.y == "mu_torque" for line in lines)
-    notes = set()
+def _panel(axes: Axes, lines: Sequence[Line], alone: bool, joined: bool = True) -> None:
+    """Draw lines with the same abscissa, and label the axes.
+
+    alone: True for lines of one dataset. joined: True to join points without a limit.
+    """
     for k, line in enumerate(lines):
-        is_torque = line.y == "mu_torque"
         color, marker, ls = look.LINES[k % len(look.LINES)]
-        if both:
-            color, ls = look.LIMITS["mu_torque_theory" if is_torque else "mu_forward_theory"]
-            marker = "s" if is_torque else "o"
-        label = line.title or "computed"
-        if both or is_torque:
-            label = f"{'torque' if is_torque else 'force'}, {label}"
-        label = look.wrapped(label, np.inf if alone else 1.6, 8.0)
-        if label.startswith("_"):  # which would hide it
-            label = f" {label}"
-        ink: look.Ink = {"color": color, "marker": marker, "ms": 3.6}
-        joining: look.Ink = {"lw": JOINING, "ls": "-"}
+        label = look.wrapped(line.title, np.inf if alone else 1.6, 8.0)
+        label = f" {label}" if label.startswith("_") else label  # which would hide it
+        # Later markers are smaller and in front, so that all markers at one place can be seen.
+        size = 3.6 if joined else 3.2 + min(1.3, 3.9 / len(lines)) * (len(lines) - 1 - k)
+        ink: look.Ink = {"color": color, "marker": marker, "ms": size}
+        joining: look.Ink = {"lw": JOINING, "ls": "-" if joined else "none", "label": label}
         if line.limit is not None:
             x, y, form = line.limit
-            joining = {"ls": "none"}
-            axes.plot(x, y, color=color, ls=ls, gid="limit", label=form if alone else "")
-            if not alone:  # one legend entry for the points and their limit
-                axes.plot([], [], ls=ls, label=label, **ink)
-                label = ""
-            notes |= {float(line.points["velocity"])} if line.x == "amplitude" else set()
+            # With several datasets, one legend entry is for the points and their limit.
+            own: look.Ink = {"color": color, "label": form} if alone else ink | {"label": label}
+            axes.plot(x, y, ls=ls, gid="limit", markevery=[], **own)
+            joining = {"ls": "none", "label": label if alone else ""}
         names = line.x, line.y, f"{line.y}_error", "converged"
-        panels.computed(axes, *columns(line.points, *names), label=label, **ink | joining)
-    _references(axes, lines, shown)
+        look.computed(axes, *columns(line.points, *names), clip_on=False, **ink | joining)
     quantities = [look.quantity(one.points, one.x) for one in lines]
     several = len({one.unit for one in quantities}) > 1
     text = f"{quantities[0].text}, in the units of each motion"
     axes.set_xlabel(text if several else look.axis(quantities[0]))
-    axes.set_ylabel(FORCE_AND_TORQUE if both else look.FRICTION)
-    panels.unit_range(axes)
+    torque = any(line.y == "mu_torque" for line in lines)
+    axes.set_ylabel(FORCE_AND_TORQUE if torque else look.FRICTION)
+    look.unit_range(axes)
     axes.margins(x=0.0 if alone else 0.02)
-    panels.logarithmic_if_wide(axes)
-    if notes:
-        at = ", ".join(f"${look.number(one)}$" for one in sorted(notes))
-        text = f"lines: limit for velocity to 0;\nmarkers: velocity {at}"
-        axes.set_title(text, loc="left", fontsize=look.HEADING)
 
 
-def _references(axes: Axes, lines: Sequence[Line], shown: Sequence[xr.Dataset]) -> None:
+def _references(axes: Axes, points: xr.Dataset, shown: Sequence[xr.Dataset]) -> None:
     """Draw friction at the velocity of a drive, from a sweep without a drive in the figure."""
-    points = lines[0].points
-    if "drive" not in points.attrs or "velocity" not in points.coords or points["velocity"].ndim:
+    if "drive" not in points.attrs or points.get("velocity", points["poisson"]).ndim:
         return
     for one in shown:
         same = all(one.attrs.get(n) == points.attrs.get(n) for n in ("motion", "pressure"))
@@ -198,3 +168,36 @@ def _references(axes: Axes, lines: Sequence[Line], shown: Sequence[xr.Dataset]) 
             if np.isclose(near["velocity"], points["velocity"]) and near["mu_macro"].ndim == 0:
                 text = look.literal(one.attrs.get("title", ""))
                 axes.axhline(float(near["mu_macro"]), color=look.BLACK, label=text, gid="reference")
+
+
+def cut(axes: Axes, parts: Sequence[xr.Dataset], dim: str, at: xr.DataArray) -> None:
+    """Draw friction along an edge of a map, with the closed forms for this edge.
+
+    parts: the map at each Poisson's ratio. dim: the axis along the edge. at: coordinate of the edge
+    on the other axis.
+    """
+    other, value = str(at.name), float(at)
+    forms = [
+        form
+        for form in closed_forms(parts[-1])
+        if dim in form.arguments and (dim == "velocity" or len(form.arguments) == 1)
+    ]
+    for form in forms:
+        (color, ls), values = look.LIMITS[form.name], limit(parts[0], form.name)
+        values = values.sel({other: value}) if other in values.dims else values
+        ink: look.Ink = {"color": color, "ls": ls, "label": form.label, "gid": form.name}
+        axes.plot(values[values.dims[0]], values, **ink)
+    motion, markers = parts[0].attrs.get("motion", ""), ""
+    edge = look.conditions(motion, {other: value})
+    if dim == "amplitude" and forms and value > 0:
+        limit_text = f"lines: limit for ${look.symbol(motion, other)} \\to 0$"
+        edge, markers = f"{edge},\n{limit_text}", " markers:"
+    lines = []
+    for part in parts:
+        points = (moving(part) if dim == "velocity" else part).sel({other: at})
+        title = f"computed, {look.ratio(part)}" if len(parts) > 1 else "computed"
+        lines.append(Line(points, dim, "mu_macro", title))
+    _panel(axes, lines, alone=True, joined=False)
+    look.legend_above(axes, f"{'left' if dim == 'amplitude' else 'top'} edge,{markers} {edge}")
+    if dim == "velocity":
+        look.logarithmic(axes, points[dim].values[[0, -1]])

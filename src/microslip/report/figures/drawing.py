@@ -90,13 +90,11 @@ def import_matplotlib() -> None:
     """
     if "matplotlib" in sys.modules:
         return
-    backend = os.environ.pop("MPLBACKEND", None)
-    try:
-        matplotlib = importlib.import_module("matplotlib")
-    finally:
-        if backend is not None:
-            os.environ["MPLBACKEND"] = backend
+    backend = os.environ.pop("MPLBACKEND", "")
+    import matplotlib
+
     if backend:
+        os.environ["MPLBACKEND"] = backend
         with suppress(ValueError):
             matplotlib.rcParams["backend"] = backend
 

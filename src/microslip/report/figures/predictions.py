@@ -7,9 +7,10 @@ import xarray as xr
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
-from microslip.report.figures import panels
+from microslip.foundation.number_text import prefixed_text
+from microslip.report import selection
 from microslip.report.figures import style as look
-from microslip.report.figures.panels import columns
+from microslip.report.selection import columns
 
 FRICTION = (
     ("mu_apparent", "mu_apparent_error", "coefficient of friction\n", ""),
@@ -42,43 +43,36 @@ def curve(dataset: xr.Dataset) -> Figure:
 
     For contacts under a force, draw the speed. Values that did not converge are hollow.
     """
-    abscissa, *others = sorted(dataset.dims, key=dataset.sizes.__getitem__, reverse=True)
-    about = {
-        name: (dataset[name].attrs["long_name"], _unit(dataset[name])) for name in dataset.dims
-    }
+    abscissa, lines = selection.lines(dataset, "converged")
+    attributes = {name: dataset[name].attrs for name in dataset.dims}
+    about = {n: (one["long_name"], one["units"].removeprefix("1")) for n, one in attributes.items()}
     size, unit = look.prefixed(dataset[abscissa].values, about[abscissa][1])
     forced = "force_N" in dataset and bool(dataset["force_N"].notnull().any())
     shown = DRIFT if forced else FRICTION
     figure = look.new_figure(look.SINGLE, 0.4 + 1.9 * len(shown))
-    axes = figure.subplots(len(shown), 1, sharex=True, squeeze=False)[:, 0]
-    for panel, (variable, error, label, si) in zip(axes, shown, strict=True):
+    grid = look.grid(figure, len(shown), 1, sharex=True)
+    for axes, (variable, error, label, si) in zip(grid, shown, strict=True):
         factor, prefixed = look.prefixed(dataset[variable].fillna(0.0).values, si)
-        lines = [dataset.isel({o: k}) for o in others for k in range(dataset.sizes[o])] or [dataset]
-        for line, (color, marker, ls) in zip(lines, look.LINES, strict=False):
+        for k, (at, line) in enumerate(lines):
+            color, marker, ls = look.LINES[k % len(look.LINES)]
             ink: look.Ink = {"color": color, "ls": ls, "marker": marker, "ms": 2.4, "lw": 1.0}
-            ink["label"] = "".join(_value(*about[o], float(line[o]), 4) for o in others)
+            ink["label"] = ", ".join(_value(*about[o], at[o]) for o in at)
             x, y, errors, converged = columns(line, abscissa, variable, error, "converged")
-            panels.computed(panel, x / size, y / factor, errors / factor, converged, **ink)
-        panel.set_ylabel(f"{label}({prefixed or 'dimensionless'})")
-        panel.set_ylim(bottom=0.0)
-        if others and panel is axes[0]:
-            panels.legend_above(panel)
+            look.computed(axes, x / size, y / factor, errors / factor, converged, **ink)
+        axes.set_ylabel(f"{label}({prefixed or 'dimensionless'})")
+        axes.set_ylim(bottom=0.0)
+        if len(lines) > 1 and axes is grid[0]:
+            look.legend_above(axes)
         elif len(shown) > 1:
-            panels.heading(panel)
-    panels.logarithmic_if_wide(axes[-1])
-    axes[-1].set_xlabel(f"{about[abscissa][0]} ({unit or 'dimensionless'})")
+            look.heading(axes)
+    look.logarithmic_if_wide(grid[-1], dataset[abscissa].values)
+    grid[-1].set_xlabel(f"{about[abscissa][0]} ({unit or 'dimensionless'})")
     return figure
 
 
-def _unit(axis: xr.DataArray) -> str:
-    """Return the SI unit of an axis, "" if it is dimensionless."""
-    return axis.attrs["units"].removeprefix("1")
-
-
-def _value(name: str, si: str, value: float, digits: int = 3) -> str:
+def _value(name: str, unit: str, value: float) -> str:
     """Format a value with its name and a prefixed unit, such as "load 10 N"."""
-    factor, unit = look.prefixed(value, si)
-    return f"{name} {value / factor:.{digits}g} {unit}".strip()
+    return f"{name} {prefixed_text(value, unit) if unit else f'{value:.4g}'}"
 
 
 def fit(dataset: xr.Dataset) -> Figure:
@@ -92,46 +86,39 @@ def fit(dataset: xr.Dataset) -> Figure:
     if dataset.attrs.get("motion") == "bore":
         about["amplitude_si"] = ("amplitude", "rad")
     counts = {name: len(np.unique(dataset[name])) for name in about}
-    along = max(counts, key=lambda name: counts[name])
-    others = [name for name in about if name != along]
+    along, *others = sorted(counts, key=lambda name: -counts[name])
     what, si = MEASURED[dataset.attrs["quantity"]]
     unit, prefixed = look.prefixed(dataset[along].values, about[along][1])
     factor, friction = look.prefixed(dataset["measured"].values, si)
     figure = look.new_figure(look.SINGLE, 4.0)
     upper, lower = figure.subplots(2, 1, sharex=True, height_ratios=(2.0, 1.0))
-    every = np.stack(columns(dataset, *others), axis=1)
-    kinds, which = np.unique(every, axis=0, return_inverse=True)
-    several = 1 < len(kinds) <= len(look.LINES)
-    which = which.ravel() if several else np.zeros(len(every), int)
-    for k, (color, marker, ls) in zip(np.unique(which), look.LINES, strict=False):
-        rows = dataset.isel(row=which == k)
-        texts = [_value(*about[n], float(rows[n][0])) for n in others if several and counts[n] > 1]
+    names = [*about, "measured", "measured_error", "fitted", "residual"]
+    groups = list(dataset[names].to_dataframe().groupby(others))
+    models = dataset[[f"curve_{name}" for name in (*about, "fitted", "fitted_error")]]
+    models = models.to_dataframe().rename(columns=lambda name: name.removeprefix("curve_"))
+    for k, (place, rows) in enumerate(groups):
+        color, marker, ls = look.LINES[k % len(look.LINES)]
+        at = zip(others, place, strict=True)
+        texts = [_value(*about[name], value) for name, value in at if counts[name] > 1]
+        label = ", ".join(texts) or "measured; line: model"
         ink: look.Ink = {"color": color, "marker": marker}
-        ink["label"] = ", ".join(texts) or "measured; line: model"
-        x, measured, error = columns(rows, along, "measured", "measured_error")
+        ink["label"] = label if len(groups) <= len(look.LINES) else ""
+        x, measured, error, fitted, residual = rows[[along, *names[len(about) :]]].to_numpy().T
         good = np.ones(x.size)
-        panels.computed(upper, x / unit, measured / factor, error / factor, good, **ink)
-        near = [
-            dataset[f"curve_{n}"].values == every[which == k][0, i] for i, n in enumerate(others)
-        ]
-        here = np.all(near, axis=0) & (several or len(kinds) == 1)
-        names = (f"curve_{name}" for name in (along, "fitted", "fitted_error"))
-        x, fitted, error = (values[here] for values in columns(dataset, *names))
-        line: look.Ink = {"color": color, "ls": ls, "lw": 1.0}
-        if not here.any():
-            x, fitted = columns(rows, along, "fitted")
-            line = {"color": color, "ls": "none", "marker": "_", "ms": 7.0, "mew": 1.0}
-        else:
-            low, high = (fitted - error) / factor, (fitted + error) / factor
+        look.computed(upper, x / unit, measured / factor, error / factor, good, **ink)
+        lower.plot(x / unit, residual, marker, color=color, ms=3.2, gid="residual")
+        line: look.Ink = {"color": color, "ls": "none", "marker": "_", "ms": 7.0, "mew": 1.0}
+        model = models[(models[others].to_numpy() == place).all(axis=1)]
+        if len(model):
+            x, fitted, error = model[[along, "fitted", "fitted_error"]].to_numpy().T
+            line = {"color": color, "ls": ls, "lw": 1.0}
             band: look.Ink = {"color": color, "alpha": 0.2, "lw": 0, "gid": "model-error"}
+            low, high = (fitted - error) / factor, (fitted + error) / factor
             upper.fill_between(x / unit, low, high, **band)
         upper.plot(x / unit, fitted / factor, gid="fitted", **line)
-        lower.plot(
-            rows[along] / unit, rows["residual"], marker, color=color, ms=3.2, gid="residual"
-        )
     lower.axhspan(-BAND, BAND, color=look.PALE, lw=0, zorder=0.4)
     lower.axhline(0.0, color=look.GREY, lw=0.7, zorder=0.5)
-    panels.logarithmic_if_wide(upper)
+    look.logarithmic_if_wide(upper, dataset[along].values)
     upper.set_ylabel(f"{what} ({friction or 'dimensionless'})")
     lower.set_ylabel("residual, standard\nerrors (dimensionless)")
     lower.set_xlabel(f"{about[along][0]} ({prefixed})")
@@ -139,8 +126,8 @@ def fit(dataset: xr.Dataset) -> Figure:
     if len(handles) > 1:
         handles.append(Line2D([], [], color=look.GREY, lw=1.0, label="lines: model"))
     note = look.wrapped(_parameters(dataset), look.SINGLE - 0.6, look.HEADING)
-    panels.legend_above(upper, note, handles=handles)
-    panels.heading(lower)
+    look.legend_above(upper, note, handles=handles)
+    look.heading(lower)
     return figure
 
 

@@ -7,16 +7,13 @@ import numpy as np
 import xarray as xr
 from matplotlib.colors import LinearSegmentedColormap
 from matplotlib.figure import Figure
-from matplotlib.patches import Circle
 from matplotlib.ticker import MultipleLocator
-from matplotlib.tri import Triangulation
 from scipy.interpolate import griddata
 
-from microslip.config.quantities import FORCE_FORWARD, FORCE_LATERAL, FORWARD, LATERAL
-from microslip.report.figures import panels
+from microslip.config.quantities import FORCE_FORWARD, FORCE_LATERAL, FORWARD
 from microslip.report.figures import style as look
 from microslip.report.figures.curves import FORCE_AND_TORQUE
-from microslip.report.figures.panels import columns
+from microslip.report.selection import columns
 
 MARGIN = 0.12
 """Space above and below a force, divided by its range."""
@@ -40,9 +37,8 @@ SHADES = LinearSegmentedColormap.from_list("bound", ["#FFFFFF", "#8CC8EE"])
 
 def _conditions(dataset: xr.Dataset, run: str, *names: str) -> str:
     """Format the conditions of a run. run: first word of its variables."""
-    return look.conditions(
-        (look.symbol(dataset, name), float(dataset[f"{run}_{name}"])) for name in names
-    )
+    values = {name: float(dataset[f"{run}_{name}"]) for name in names}
+    return look.conditions(dataset.attrs.get("motion", ""), values)
 
 
 def history(dataset: xr.Dataset) -> Figure:
@@ -52,23 +48,21 @@ def history(dataset: xr.Dataset) -> Figure:
     figure = look.new_figure(look.SINGLE, 3.2)
     upper, lower = figure.subplots(2, 1, sharex=True, height_ratios=(1.7, 1.0))
     upper.plot(periods, forward, color=look.BLUE, gid="forward")
+    lower.plot(periods, lateral, color=look.GREY, lw=1.0, gid="lateral")
     last = periods >= periods[-1] - 1.0 - 1e-9
     mean = np.trapezoid(forward[last], periods[last]) / np.ptp(periods[last])
     label = rf"mean of last period ${mean:.3f}$"
     upper.axhline(mean, color=look.VERMILLION, ls=look.DASHED, label=label, gid="mean")
-    lower.plot(periods, lateral, color=look.GREY, lw=1.0, gid="lateral")
-    low, high = min(0.0, forward.min()), forward.max()
-    upper.set_ylim(low - (MARGIN * (high - low) if low < 0 else 0.0), high + MARGIN * (high - low))
-    upper.set_ylabel(f"forward force\n{FORCE_FORWARD.math}")
-    lower.set(ylabel=f"lateral force\n{FORCE_LATERAL.math}")
-    lower.set(xlabel=r"phase in periods  $\omega t/(2\pi)$", xlim=(periods[0], periods[-1]))
-    lower.margins(y=MARGIN)
-    lower.xaxis.set_major_locator(MultipleLocator(max(1, round(np.ptp(periods) / 8))))
     for axes in (upper, lower):
+        axes.margins(x=0.0, y=MARGIN)
         axes.grid(axis="x", color=look.PALE, lw=0.5)
-        axes.set_axisbelow(True)
-    panels.legend_above(upper, _conditions(dataset, "history", "velocity", "amplitude"))
-    panels.heading(lower)
+    upper.set_ylim(bottom=min(0.0, upper.get_ylim()[0]))
+    upper.set_ylabel(f"forward force\n{FORCE_FORWARD.math}")
+    lower.set_ylabel(f"lateral force\n{FORCE_LATERAL.math}")
+    lower.set_xlabel(r"phase in periods  $\omega t/(2\pi)$")
+    lower.xaxis.set_major_locator(MultipleLocator(max(1, round(np.ptp(periods) / 8))))
+    look.legend_above(upper, _conditions(dataset, "history", "velocity", "amplitude"))
+    look.heading(lower)
     return figure
 
 
@@ -76,7 +70,7 @@ def transients(dataset: xr.Dataset) -> Figure:
     """Draw force and torque against the forward travel, with a panel for each initial state."""
     starts = [str(label) for label in dataset["start"].values]
     figure = look.new_figure(look.DOUBLE, 2.45)
-    grid = panels.grid(figure, len(starts), len(starts), sharex=True, sharey=True)
+    grid = look.grid(figure, len(starts), len(starts), sharex=True, sharey=True)
     for index, (axes, start) in enumerate(zip(grid, starts, strict=True)):
         at = dataset.isel(start=index)
         for what, equation, name, color, ls in QUANTITIES:
@@ -86,14 +80,13 @@ def transients(dataset: xr.Dataset) -> Figure:
             ink: look.Ink = {"color": color, "ls": look.DOTTED, "lw": 1.0, "zorder": 1.5}
             ink |= {"label": f"{what}, {equation}", "gid": f"{what}_theory"}
             axes.axhline(float(at[f"transient_{what}_theory"]), **ink)
-        panels.heading(axes, STARTS.get(start, look.literal(start)))
+        name = STARTS.get(start, look.literal(start))
+        look.heading(axes, f"{name}, {_conditions(dataset, 'transient', 'velocity')}", 2.0)
     grid[0].set(ylabel=FORCE_AND_TORQUE)
     grid[0].set_xlim(0.0, float(dataset["transient_displacement"].max()))
     grid[len(starts) // 2].set_xlabel(r"forward travel  $v_0 t/u_\mathrm{lim}$")
-    panels.unit_range(grid[0])
-    panels.legend_of_figure(figure, grid[0].get_legend_handles_labels()[0])
-    text = _conditions(dataset, "transient", "velocity")
-    grid[-1].text(0.97, 0.05, text, transform=grid[-1].transAxes, ha="right")
+    look.unit_range(grid[0])
+    look.legend_of_figure(figure, grid[0].get_legend_handles_labels()[0], "upper center", 4)
     return figure
 
 
@@ -106,18 +99,10 @@ def field(dataset: xr.Dataset) -> Figure:
     tractions = columns(dataset, "field_traction_lateral", "field_traction_forward")
     bound, centre = dataset["field_bound"].values, float(dataset["field_centre_lateral"])
     figure = look.new_figure(look.SINGLE, 3.95)
-    axes = figure.add_subplot(aspect="equal")
-    panels.rim(axes)
-    # The bound is constant between the outermost cells and the rim.
-    angle = np.linspace(0.0, 2.0 * np.pi, 180, endpoint=False)
-    rim = np.cos(angle), np.sin(angle)
-    bounds = np.append(bound, griddata((x, y), bound, rim, method="nearest"))
-    mesh = Triangulation(np.append(x, rim[0]), np.append(y, rim[1]))
-    shading: look.Ink = {"shading": "gouraud", "cmap": SHADES, "vmin": 0.0, "zorder": 0}
-    shade = axes.tripcolor(mesh, bounds, **shading)
-    shade.set_clip_path(Circle((0, 0), 1.0, transform=axes.transData))
+    axes = figure.add_subplot()
+    shade = look.disc(axes, x, y, bound, "linear", cmap=SHADES)
     label = r"friction bound  $\mu p\,a^2/(\mu F_z)$"
-    panels.colour_bar(shade, axes, label, orientation="horizontal", aspect=32)
+    look.colour_bar(shade, axes, label, orientation="horizontal", aspect=32)
     arrow: look.Ink = {"width": 0.006, "headwidth": 3.4, "headlength": 3.8, "headaxislength": 3.4}
     arrow |= {"angles": "xy", "scale_units": "xy", "minlength": 0.6, "pivot": "mid"}
     arrow |= {"scale": bound.max() / (0.8 * SPACING), "gid": "traction"}
@@ -126,8 +111,7 @@ def field(dataset: xr.Dataset) -> Figure:
     mark: look.Ink = {"mfc": "white", "mec": look.VERMILLION, "mew": 1.6, "zorder": 6}
     mark |= {"gid": "centre", "label": "instantaneous centre"}
     axes.plot([centre], [0.0], "o", ms=6.5, **mark)
-    axes.set(xlim=(min(-1.1, centre - 0.15), 1.1), ylim=(-1.1, 1.1))
-    axes.set(xlabel=look.axis(LATERAL), ylabel=look.axis(FORWARD))
+    axes.set(xlim=(min(-1.1, centre - 0.15), 1.1), ylim=(-1.1, 1.1), ylabel=look.axis(FORWARD))
     for axis in (axes.xaxis, axes.yaxis):
         axis.set_major_locator(MultipleLocator(0.5))
     text = _conditions(dataset, "field", "velocity")

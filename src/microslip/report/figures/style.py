@@ -1,9 +1,9 @@
-"""The style of all figures: sizes, fonts, colours, labels of quantities and numbers in labels."""
+"""The style of all figures: sizes, fonts, colours, texts, and parts of panels."""
 
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from contextlib import AbstractContextManager
 from html import unescape
 from string import ascii_lowercase
@@ -12,11 +12,19 @@ from typing import Any
 import matplotlib.style
 import numpy as np
 import xarray as xr
+from matplotlib import ticker
+from matplotlib.axes import Axes
+from matplotlib.axis import Axis
+from matplotlib.cm import ScalarMappable
+from matplotlib.colorbar import Colorbar
 from matplotlib.figure import Figure
+from matplotlib.patches import Circle, Rectangle
 from matplotlib.textpath import TextPath
-from matplotlib.ticker import EngFormatter
+from scipy.interpolate import griddata
 
-from microslip.config.quantities import AMPLITUDE, DRIVES, MU_MACRO, VELOCITY, Quantity
+from microslip.config.quantities import DRIVES, LATERAL, MU_MACRO, TABLE, Quantity
+from microslip.foundation import number_text
+from microslip.report.selection import is_wide
 
 Ink = dict[str, Any]
 """Keyword arguments of a matplotlib artist."""
@@ -30,8 +38,7 @@ GREEN, ORANGE, PURPLE = "#009E73", "#E69F00", "#CC79A7"
 GREY, PALE, SKY = "#6E6E6E", "#D4D4D4", "#56B4E9"
 
 COLOURMAP = "cividis"
-"""Colour map for values from 0 to 1, perceptually uniform and readable in grey. The module `scales`
-extends it to negative friction."""
+"""Colour map for values from 0 to 1, perceptually uniform and readable in grey."""
 
 # Line styles distinguish curves that are printed without colour.
 SOLID = "-"
@@ -39,16 +46,9 @@ DASHED = (0, (5.0, 2.0))
 DASHDOT = (0, (6.0, 1.6, 1.2, 1.6))
 DOTTED = (0, (1.0, 1.6))
 
-LINES = (
-    (BLACK, "o", SOLID),
-    (BLUE, "s", DASHED),
-    (VERMILLION, "^", DASHDOT),
-    (GREEN, "D", DOTTED),
-    (ORANGE, "v", SOLID),
-    (PURPLE, "P", DASHED),
-    (SKY, "X", DASHDOT),
-    (GREY, "*", DOTTED),
-)
+COLOURS = BLACK, BLUE, VERMILLION, GREEN, ORANGE, PURPLE, SKY, GREY
+STYLES = 2 * (SOLID, DASHED, DASHDOT, DOTTED)
+LINES = tuple(zip(COLOURS, "os^DvPX*", STYLES, strict=True))
 """Colour, marker and line style of each line in a panel, in the order of the lines."""
 
 LIMITS: dict[str, tuple[str, Any]] = {
@@ -64,15 +64,15 @@ LIMITS: dict[str, tuple[str, Any]] = {
 """Colour and line style of each closed form, by the name of its variable."""
 
 MODELS = {
-    "rigid": (BLACK, "h", "Ri"),
-    "slider": (ORANGE, "<", "Sl"),
-    "dahl": (PURPLE, ">", "Da"),
-    "mdr": (SKY, "^", "Md"),
-    "radial": (GREEN, "v", "Ra"),
-    "polar": (BLUE, "o", "Po"),
-    "cartesian": (VERMILLION, "s", "Ca"),
+    "rigid": (BLACK, "h"),
+    "slider": (ORANGE, "<"),
+    "dahl": (PURPLE, ">"),
+    "mdr": (SKY, "^"),
+    "radial": (GREEN, "v"),
+    "polar": (BLUE, "o"),
+    "cartesian": (VERMILLION, "s"),
 }
-"""Colour, marker and two-letter abbreviation of each contact model, coarsest first."""
+"""Colour and marker of each contact model, coarsest first."""
 
 SMALLEST, HEADING, LABEL = 7.0, 8.0, 8.5
 """Font sizes in points: the smallest size, the size of panel headings, and the size of axis
@@ -83,30 +83,22 @@ DPI = 300
 
 RC = {
     "figure.dpi": DPI,  # the layout is computed for the resolution of the PNG file
-    "savefig.dpi": "figure",
-    "font.family": "sans-serif",
-    "font.sans-serif": ["DejaVu Sans"],  # ships with matplotlib: the same on every machine
-    "mathtext.fontset": "dejavusans",
     "font.size": 8,
     "axes.labelsize": LABEL,
     "axes.titlesize": HEADING,
-    "legend.fontsize": 8,
+    "legend.title_fontsize": HEADING,
     "legend.frameon": False,
     "legend.handlelength": 2.2,
-    "legend.borderaxespad": 0.4,
     "legend.labelspacing": 0.35,
-    "axes.linewidth": 0.7,
     "lines.linewidth": 1.3,
+    "xtick.direction": "in",
+    "ytick.direction": "in",
     "xtick.top": True,
     "ytick.right": True,
     "hatch.linewidth": 0.6,
     "pdf.fonttype": 42,
-    "figure.constrained_layout.h_pad": 0.04,
-    "figure.constrained_layout.w_pad": 0.05,
 }
-for _axis in ("xtick", "ytick"):
-    RC |= {f"{_axis}.labelsize": 8, f"{_axis}.direction": "in"}
-    RC |= {f"{_axis}.major.width": 0.7, f"{_axis}.minor.width": 0.5}
+"""Settings that differ from those of matplotlib, whose font is the same on every machine."""
 
 # The label of an axis has words, a symbol and a unit. A symbol that is a ratio needs no unit. Other
 # dimensionless symbols have the label "(dimensionless)".
@@ -125,17 +117,17 @@ def new_figure(width: float, height: float) -> Figure:
 
 def quantity(dataset: xr.Dataset, dim: str) -> Quantity:
     """Return the description of an axis of a dataset. Axes of the paper have a symbol."""
-    tables = {"velocity": VELOCITY, "amplitude": AMPLITUDE}
-    one = tables[dim].get(dataset.attrs.get("motion", "")) if dim in tables else DRIVES.get(dim)
+    known = TABLE.get(dim, {}).get(dataset.attrs.get("motion", "")) or DRIVES.get(dim)
     name = "forward velocity" if dim == "velocity" else dim
     formula = dataset[dim].attrs.get("formula", "") if dim in dataset else ""
-    return one or Quantity(name, "", formula)
+    return known or Quantity(name, "", formula)
 
 
-def symbol(dataset: xr.Dataset, dim: str) -> str:
-    """Return the symbol of an axis of a dataset in LaTeX, or else its name."""
+def symbol(motion: str, dim: str) -> str:
+    """Return the symbol of an axis for a motion in LaTeX, or else its name."""
+    known = TABLE.get(dim, {}).get(motion) or DRIVES.get(dim)
     name = rf"\mathrm{{{dim}}}" if dim != "poisson" else r"\nu"
-    return quantity(dataset, dim).latex or name
+    return known.latex if known else name
 
 
 def axis(one: Quantity, short: bool = False) -> str:
@@ -151,10 +143,9 @@ def axis(one: Quantity, short: bool = False) -> str:
 
 def number(value: float) -> str:
     """Format a number as mathtext with three digits, and a power of ten if it is large or small."""
-    text = f"{value:.3g}"
-    if "e" not in text:
-        return text
-    mantissa, exponent = text.split("e")
+    mantissa, _, exponent = f"{value:.3g}".partition("e")
+    if not exponent:
+        return mantissa
     power = f"10^{{{int(exponent)}}}"
     return power if mantissa == "1" else rf"{mantissa}\times {power}"
 
@@ -165,26 +156,24 @@ def prefixed(values: np.ndarray | float, unit: str) -> tuple[float, str]:
     Without a unit, the factor is 1.
     """
     largest = float(np.max(np.abs(values), initial=0.0)) * (1.0 + 1e-9)
-    power = 3 * int(np.clip(np.floor(np.log10(largest) / 3), -3, 3)) if largest and unit else 0
-    return 10.0**power, EngFormatter.ENG_PREFIXES[power] + unit
+    name, size = number_text.prefixed(largest, unit)
+    return (size, name.replace("u", "\N{MICRO SIGN}", 1)) if unit else (1.0, "")
 
 
-def conditions(pairs: Iterable[tuple[str, float]]) -> str:
-    """Format the conditions of a panel as mathtext, such as "v = 0.1, A = 2".
-
-    pairs: LaTeX symbols and their values.
-    """
-    return ", ".join(f"${symbol} = {number(value)}$" for symbol, value in pairs)
+def conditions(motion: str, values: Mapping[str, float]) -> str:
+    """Format values of axes as mathtext, such as "v = 0.1, A = 2". NaN is omitted."""
+    finite = {dim: value for dim, value in values.items() if np.isfinite(value)}
+    return ", ".join(f"${symbol(motion, dim)} = {number(finite[dim])}$" for dim in finite)
 
 
 def ratio(dataset: xr.Dataset) -> str:
     """Format the Poisson's ratio of a dataset as mathtext."""
-    return conditions([(r"\nu", float(dataset["poisson"]))])
+    return conditions("", {"poisson": float(dataset["poisson"])})
 
 
-def model(name: str) -> tuple[str, str, str]:
-    """Return the colour, marker and abbreviation of a contact model. An unknown model is grey."""
-    return MODELS.get(name, (GREY, "p", name[:2].capitalize()))
+def model(name: str) -> tuple[str, str]:
+    """Return the colour and the marker of a contact model. An unknown model is grey."""
+    return MODELS.get(name, (GREY, "p"))
 
 
 def in_order(names: set[str]) -> list[str]:
@@ -225,12 +214,6 @@ def wrapped(text: str, room: float, size: float) -> str:
             else:
                 lines[-1] = longer
     return "\n".join(lines)
-
-
-def power_of_ten(value: float) -> str:
-    """Format a tolerance as mathtext, with 10^{-3} instead of 0.001."""
-    power = np.log10(value) if value > 0 else np.nan
-    return f"10^{{{power:.0f}}}" if np.isclose(power, np.round(power)) else number(value)
 
 
 def letter(index: int) -> str:
@@ -288,3 +271,164 @@ def _in_words(match: re.Match[str]) -> str:
     # A single letter can be a word, such as an article.
     plain = len(match[0]) == 1 or not _symbol(match)
     return match[0] if plain else f"${_symbol(match)}$"
+
+
+# Parts of panels
+
+VISIBLE_ERROR = 0.01
+"""Smallest error estimate that is drawn, relative to the largest value. The markers hide smaller
+error estimates."""
+PIXELS = 401
+"""Number of pixels along each side of a contact's image."""
+
+
+def grid(figure: Any, count: int, across: int, **shared: Any) -> list[Axes]:
+    """Return `count` new panels in rows of `across` panels. shared: arguments of `subplots`."""
+    axes = list(figure.subplots(-(-count // across), across, squeeze=False, **shared).flat)
+    for empty in axes[count:]:
+        empty.remove()
+    return axes[:count]
+
+
+def lettered(axes: Axes, note: str = "") -> str:
+    """Return the heading of a panel: the next letter of its figure, bold and in brackets, and an
+    optional note."""
+    figure: Any = axes.get_figure(root=True)
+    figure.letters = getattr(figure, "letters", -1) + 1
+    return rf"$\bf{{({letter(figure.letters)})}}$" + (rf"$\;$ {note}" if note else "")
+
+
+def heading(axes: Axes, note: str = "", room: float = np.inf) -> None:
+    """Write a letter and a note above a panel, in lines at most `room` inches wide."""
+    lines = lettered(axes, note).split("\n")
+    text = "\n".join(wrapped(line, room, HEADING) for line in lines)
+    axes.set_title(text, loc="left", y=1.0, pad=5)
+
+
+def legend_above(axes: Axes, note: str = "", **more: Any) -> None:
+    """Write a letter, a note and a legend above a panel. more: arguments of `legend`."""
+    place: Ink = {"loc": "lower left", "bbox_to_anchor": (0.0, 1.02), "alignment": "left"}
+    place |= {"handletextpad": 0.6, "columnspacing": 0.8, "borderaxespad": 0.0, "borderpad": 0.0}
+    # An empty legend has a title, too.
+    place |= {"handles": axes.get_legend_handles_labels()[0], "ncols": 2}
+    axes.legend(title=lettered(axes, note), **place | more)
+
+
+def legend_of_figure(figure: Any, handles: Iterable, where: str, ncols: int, **more: Any) -> None:
+    """Add one legend outside the panels."""
+    if entries := list(handles):
+        place = {"loc": f"outside {where}", "columnspacing": 1.6}
+        figure.legend(handles=entries, ncols=ncols, **place, **more)
+
+
+def colour_bar(shown: Any, panels: Axes | Sequence[Axes], label: str, **settings: Any) -> Colorbar:
+    """Add a colour bar beside one or several panels. shown: artist with colours in one of them."""
+    bar = shown.axes.figure.colorbar(shown, ax=panels, label=label, **settings)
+    bar.ax.tick_params(direction="out")
+    return bar
+
+
+def ticks_outside(axes: Axes) -> None:
+    """Move the ticks of a filled panel to its outside, at the bottom and the left."""
+    axes.tick_params(which="both", direction="out", top=False, right=False)
+
+
+def logarithmic_if_wide(axes: Axes, values: np.ndarray) -> None:
+    """Make the abscissa logarithmic if its values are positive and far apart."""
+    if is_wide(values):
+        logarithmic(axes)
+
+
+def logarithmic(axes: Axes, limits: Sequence[float] | np.ndarray | None = None) -> None:
+    """Make the abscissa of a panel logarithmic. limits: its first and last value."""
+    axes.set(xscale="log")
+    if limits is not None:
+        axes.set_xlim(*limits)
+    logarithmic_ticks(axes.xaxis)
+
+
+def logarithmic_ticks(axis: Axis) -> None:
+    """Label an axis at powers of ten, or at round numbers if it contains fewer than two powers."""
+    low, high = np.sort(axis.get_view_interval())
+    powers = np.floor(np.log10(high) + 1e-9) - np.ceil(np.log10(low) - 1e-9) + 1
+    axis.set_minor_formatter(ticker.NullFormatter())
+    if powers >= 2:
+        axis.set_major_locator(ticker.LogLocator(numticks=6 if powers <= 5 else None))
+        return
+    locator: ticker.Locator = ticker.MaxNLocator(3, steps=[1, 2, 5])
+    axis.set_major_locator(ticker.LogLocator(subs=(1, 2, 5)) if high > 8.0 * low else locator)
+    axis.set_major_formatter(ticker.FuncFormatter(lambda value, _: f"{value:.6g}"))
+
+
+def edges(points: np.ndarray, logarithmic: bool) -> np.ndarray:
+    """Return the edges, shape (n + 1,), of cells around n points.
+
+    The edges are half-way between neighbouring points. The first and the last point are in the
+    middle of their cells. points: ascending; logarithmic: True for geometric means, False for
+    arithmetic means.
+    """
+    if logarithmic:
+        return np.exp(edges(np.log(points), False))
+    between = (points[1:] + points[:-1]) / 2 if points.size > 1 else points + 0.5
+    return np.unique([2 * points[0] - between[0], *between, 2 * points[-1] - between[-1]])
+
+
+def cells(axes: Axes, x: np.ndarray, y: np.ndarray, which: np.ndarray, **ink: Any) -> None:
+    """Draw a rectangle for each cell that is True.
+
+    x, y: edges of the cells, shapes (n + 1,) and (m + 1,). which: shape (m, n).
+    """
+    for i, j in np.argwhere(which):
+        size = x[j + 1] - x[j], y[i + 1] - y[i]
+        axes.add_patch(Rectangle((x[j], y[i]), *size, **ink))
+
+
+def disc(
+    axes: Axes, x: np.ndarray, y: np.ndarray, values: np.ndarray, method: str, **ink: Any
+) -> ScalarMappable:
+    """Draw an image of the contact with its edge, a circle with radius 1.
+
+    x, y, values: lateral and forward positions of points, and their values. NaN is white. method:
+    method of scipy.interpolate.griddata.
+    """
+    line = np.linspace(-1.0, 1.0, PIXELS)
+    places = np.meshgrid(line, line)
+    image = griddata((x, y), values, tuple(places), method=method)
+    image[np.hypot(*places) >= 1.0] = np.nan
+    axes.add_patch(Circle((0, 0), 1.0, fill=False, lw=0.9))
+    axes.set(aspect="equal", xlabel=axis(LATERAL))
+    return axes.pcolormesh(line, line, image, vmin=0.0, rasterized=True, zorder=0, **ink)
+
+
+def unit_range(axes: Axes) -> None:
+    """Set the vertical range of a panel to 0 to 1, extended to all that is drawn."""
+    low, high = axes.dataLim.intervaly
+    low, high = np.floor(5 * min(low, 0.0)) / 5, np.ceil(5 * max(high, 1.0)) / 5
+    margin = 0.04 * (high - low)
+    axes.set_ylim(low - margin, high + margin)
+    axes.yaxis.set_major_locator(ticker.MultipleLocator(0.2))
+
+
+def computed(axes: Axes, x: np.ndarray, *points: np.ndarray, label: str = "", **ink: Any) -> None:
+    """Draw computed points with error bars. Unconverged points are hollow.
+
+    points: values, error estimates, and flags that are nonzero for converged points.
+    """
+    values, errors, converged = points[0], points[1], points[2] != 0
+    errors = np.where(np.isfinite(errors), errors, np.nan)
+    marks: Ink = {"color": BLACK, "ls": "none", "marker": "o", "ms": 3.2, "mew": 0.7}
+    marks |= {"zorder": 5, **ink}
+    bars: Ink = {"fmt": "none", "ecolor": marks["color"], "elinewidth": 0.7, "capsize": 1.8}
+    if np.nanmax(errors, initial=0.0) >= VISIBLE_ERROR * np.nanmax(np.abs(values), initial=1e-300):
+        axes.errorbar(x, values, yerr=errors, **bars).lines[2][0].set_gid("error")
+    axes.plot(x[converged], values[converged], gid="computed", label=label, **marks)
+    if not converged.all():
+        # A label that begins with "_" is not in the legend.
+        known = "not converged" in axes.get_legend_handles_labels()[1]
+        marks |= {"mfc": "white", "ls": "none", "label": "_" if known else "not converged"}
+        axes.plot(x[~converged], values[~converged], gid="unconverged", **marks)
+
+
+def after_layout(figure: Any, finish: Callable[[], None]) -> None:
+    """Register a function that is called after the layout. The function must not move panels."""
+    figure.finishing = [*getattr(figure, "finishing", ()), finish]
