@@ -238,7 +238,7 @@ MANY = {"speed": np.linspace(1e-3, 1.0, 201), "amplitude": [1e-7] * 201, "fricti
     ("table", "message"),
     [
         (ONE, "determine neither number: mu from"),
-        (FEW, "at least 3"),
+        (FEW, "2 rows; allowed are at least 3"),
         (FEW | {"friction_error": [0.1] * 2}, "of one condition"),
         (MANY, "with a map"),
         ({"friction": None}, "neither friction nor mu"),

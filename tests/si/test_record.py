@@ -76,24 +76,22 @@ def test_a_record_becomes_friction_in_two_commands(tmp_path, capsys):
     time, lateral = record()
     lines = (f"{t:.6f},{x:.5f}" for t, x in zip(time, 0.3 * lateral, strict=True))
     (tmp_path / "record.csv").write_text("\n".join(["Time [s],Lateral [um]", *lines]) + "\n")
-    stroke = str(tmp_path / "stroke.csv")
-    assert main(["fold", str(tmp_path / "record.csv"), "--output", stroke, "--json"]) == 0
-    answer = json.loads(capsys.readouterr().out)
-    assert abs(answer["frequency_Hz"] - FREQUENCY) <= 4.0 * answer["frequency_error_Hz"]
-    phase = np.linspace(0.0, 2.0 * np.pi, 10001)
-    lateral = answer["columns"]["lateral"]
-    off = abs(lateral["peak_to_peak"] - 0.3 * np.ptp(motion(phase)))
-    assert off <= 2.0 * lateral["peak_to_peak_error"]
-    contact = ["--mu", "0.3", "--load", "10 N", "--radius", "5 mm", "--material", "steel"]
-    words = ["predict", f"file:{stroke}", *contact, "--speed", "20 um/s", "--json"]
-    assert main([*words, "--tolerance", "0.01"]) == 0
-    measured = json.loads(capsys.readouterr().out)
     exact = 0.3e-6 * motion(np.linspace(0.0, 2.0 * np.pi, 64, endpoint=False))
-    rows = "\n".join(map(repr, map(float, exact)))
-    (tmp_path / "exact.csv").write_text(f"lateral [m]\n{rows}\n")
-    words[1] = f"file:{tmp_path / 'exact.csv'}"
-    assert main([*words, "--tolerance", "0.01", "--frequency", f"{FREQUENCY} Hz"]) == 0
-    truth = json.loads(capsys.readouterr().out)
+    (tmp_path / "exact.csv").write_text("\n".join(["lateral [m]", *map(str, exact)]) + "\n")
+
+    def run(*words):
+        assert main([*map(str, words), "--json"]) == 0
+        return json.loads(capsys.readouterr().out)
+
+    answer = run("fold", tmp_path / "record.csv", "--output", tmp_path / "stroke.csv")
+    assert abs(answer["frequency_Hz"] - FREQUENCY) <= 4.0 * answer["frequency_error_Hz"]
+    lateral = answer["columns"]["lateral"]
+    off = lateral["peak_to_peak"] - 0.3 * np.ptp(motion(np.linspace(0.0, 2.0 * np.pi, 10001)))
+    assert abs(off) <= 2.0 * lateral["peak_to_peak_error"]
+    contact = "--mu 0.3 --load 10N --radius 5mm --material steel --speed 20um/s --tolerance 0.01"
+    frequency = ["--frequency", f"{FREQUENCY} Hz"]
+    measured = run("predict", f"file:{tmp_path / 'stroke.csv'}", *contact.split())
+    truth = run("predict", f"file:{tmp_path / 'exact.csv'}", *contact.split(), *frequency)
     left = measured["mu_macro_error"] + truth["mu_macro_error"]
     assert abs(measured["mu_macro"] - truth["mu_macro"]) <= left
 
@@ -112,10 +110,7 @@ def test_a_record_becomes_friction_in_two_commands(tmp_path, capsys):
         ({"time": np.arange(1000.0)[::-1]}, "allowed are increasing times"),
         ({"time": [0.0], "columns": {"lateral": [1.0]}}, "the record is too short"),
         ({"columns": {"load": np.sin(0.3 * np.arange(1000.0)) - 2.0}}, "allowed is a mean above 0"),
-        (
-            {"columns": dict.fromkeys(("load", "indentation"), np.arange(1000.0))},
-            "allowed is one of the two",
-        ),
+        ({"columns": {"load": np.ones(1000), "indentation": np.ones(1000)}}, "one of the two"),
     ],
 )
 def test_bad_records_are_refused_in_one_line(change, problem):
@@ -148,12 +143,10 @@ def test_a_large_drift_of_the_frequency_is_refused():
 
 
 @pytest.mark.parametrize("frequency", [None, 40.0])
-@pytest.mark.parametrize("seed", range(2))
-def test_noise_is_refused(frequency, seed):
-    time = np.arange(2000) / 1000.0
-    noise = np.random.default_rng(seed).standard_normal(2000)
-    with pytest.raises(InputError, match="times its standard error|samples in steps"):
-        microslip.fold(time, {"lateral": noise}, frequency=frequency)
+def test_noise_is_refused(frequency):
+    noise = np.random.default_rng(0).standard_normal(2000)
+    with pytest.raises(InputError, match="times its standard error|periods of .* samples;"):
+        microslip.fold(np.arange(2000) / 1000.0, {"lateral": noise}, frequency=frequency)
 
 
 @pytest.mark.parametrize("periods", [1, 3.9])
@@ -171,20 +164,18 @@ def sine(seconds=0.5):
     return time, np.sin(2.0 * np.pi * FREQUENCY * time) + noise
 
 
-@pytest.mark.parametrize("offset, decimals", [(0.0, 4), (10.0, 4), (0.0, 5), (1.0, 3)])
-def test_times_within_half_a_unit_of_the_last_digit_are_equally_spaced(offset, decimals):
+@pytest.mark.parametrize(
+    ("offset", "form"), [(0.0, ".4f"), (10.0, ".4f"), (1.0, ".3f"), (10.0, ".6g")]
+)
+def test_times_within_half_a_unit_of_the_last_digit_are_equally_spaced(offset, form):
     """The step, and so the frequency, is known to about the last digit over the duration."""
     time, lateral = sine()
-    result = microslip.fold(np.round(offset + time, decimals), {"lateral": lateral})
-    error = result.frequency_error + FREQUENCY * 10.0**-decimals / time[-1]
+    rounded = np.array([float(format(offset + one, form)) for one in time])
+    result = microslip.fold(rounded, {"lateral": lateral})
+    digits = 10.0 ** -(3 if form == ".3f" else 4)
+    error = result.frequency_error + FREQUENCY * digits / time[-1]
     assert abs(result.frequency - FREQUENCY) < 5.0 * error
     assert result.peak_to_peak("lateral")[0] == pytest.approx(2.0, abs=0.05)
-
-
-def test_times_with_six_significant_digits_after_an_offset_are_equally_spaced():
-    time, lateral = sine()
-    rounded = np.array([float(f"{10.0 + one:.6g}") for one in time])
-    assert microslip.fold(rounded, {"lateral": lateral}).frequency == pytest.approx(207.3, abs=0.1)
 
 
 @pytest.mark.parametrize("decimals", [5, 8])
@@ -198,9 +189,8 @@ def test_a_missing_sample_is_refused(decimals):
 
 @pytest.mark.parametrize("value", [0.1, 1e6, -3.7e-9])
 def test_a_constant_channel_does_not_oscillate(value):
-    time, lateral = sine()
     with pytest.raises(microslip.InputError, match="constant"):
-        microslip.fold(time, {"lateral": np.full_like(lateral, value)})
+        microslip.fold(np.arange(1000.0), {"lateral": np.full(1000, value)})
 
 
 @pytest.mark.parametrize("part", [slice(None, 12_500), slice(12_500, None)])

@@ -67,16 +67,14 @@ def test_amplitude_is_a_factor_and_the_mean_of_a_displacement_has_no_effect(tmp_
     assert one.amplitude_factor == 0.5
 
 
-@pytest.mark.parametrize(("rows", "hint"), [(2000, False), (2001, True)])
-def test_a_long_period_has_a_hint_to_fold(tmp_path, rows, hint):
-    name = file_of(tmp_path / "record.csv", lateral_um=np.sin(np.arange(rows)))
-    assert ("microslip fold" in read_stroke(name).hint) == hint
-
-
-def test_a_record_with_too_many_rows_is_refused_with_a_hint_to_fold(tmp_path):
-    name = file_of(tmp_path / "record.csv", lateral_um=np.sin(np.arange(10_001)))
+def test_a_long_period_has_a_hint_to_fold_and_a_longer_one_is_refused(tmp_path):
+    usual, long, record = (
+        file_of(tmp_path / f"{rows}.csv", lateral_um=np.sin(np.arange(rows)))
+        for rows in (2000, 2001, 10_001)
+    )
+    assert read_stroke(usual).hint == "" and "microslip fold" in read_stroke(long).hint
     with pytest.raises(InputError, match="10001 rows; allowed .* 10000 rows.* `microslip fold`"):
-        read_stroke(name)
+        read_stroke(record)
 
 
 def test_a_map_of_a_motion_from_a_file_is_refused(tmp_path):
@@ -152,14 +150,12 @@ def test_bad_units_are_refused_in_one_line(tmp_path, heading, problem):
 
 
 def test_a_prediction_of_a_file_prints_without_the_file(tmp_path):
-    path = tmp_path / "stroke.csv"
-    path.write_text("time [ms],lateral [um]\n0,0\n0.25,1\n0.5,0\n0.75,-1\n")
-    body = {"material": "steel", "radius": "5 mm", "load": "10 N", "mu": 0.3, "speed": "1 mm/s"}
-    result = microslip.predict(f"file:{path}", **body, tolerance=0.1)
+    name = file_of(tmp_path / "stroke.csv", lateral_um=0.1 * SINE)
+    result = microslip.predict(name, **SHAKEN | {"tolerance": 0.1})
     text = str(result)
-    path.write_text("time [ms],lateral [um]\n0,0\n0.25,2\n0.5,0\n0.75,-2\n")
+    file_of(tmp_path / "stroke.csv", lateral_um=0.2 * SINE)
     assert str(result) == text
-    path.unlink()
+    (tmp_path / "stroke.csv").unlink()
     (tmp_path / "result").write_bytes(pickle.dumps(result))
     code = "import pickle, sys; print(pickle.load(open(sys.argv[1], 'rb')))"
     words = [sys.executable, "-c", code, str(tmp_path / "result")]

@@ -342,13 +342,12 @@ def _name_and_unit(title: str) -> tuple[str, str | None] | None:
 
 def _count_problem(where: int, count: int, columns: int, separator: str) -> str:
     """What is wrong with a row of `count` cells; 0 for open quotes."""
-    if not count:
-        allowed = "allowed are cells in whole pairs of double quotes"
-        return f"line {where}: a double quote is open or inside a cell; {allowed}"
+    what = f"{count} cells" if count else "a double quote is open or inside a cell"
     hint = "; for decimal commas in quotes give decimal = ','" if count > columns else ""
-    allowed = f"{columns}, parted by a {SEPARATORS[separator]} as in the heading"
-    allowed += f", one with such a sign in double quotes{hint}"
-    return f"line {where}: {count} cells; allowed: {allowed}"
+    allowed = (
+        f"{columns}, parted by a {SEPARATORS[separator]} as in the heading, one with such a sign"
+    )
+    return f"line {where}: {what}; allowed: {allowed} in a pair of double quotes{hint}"
 
 
 def _with_point(where: int, name: str, cell: str, decimal: str) -> str:

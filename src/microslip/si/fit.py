@@ -66,6 +66,7 @@ LISTS = "understood", "warnings", "left_out"
 PARTS = "value", "low", "high"
 OPEN = "open"
 """Text of an end that the rows do not determine."""
+MORE_ROWS = "add rows without vibration, or rows where vibration reduces friction more"
 EMPTY = "empty; allowed: a number in every row; leave out the row, or fill the cell"
 MOST_ROWS, MOST_SOLVED = 10_000, 200
 """Largest number of rows with a map, and without."""
@@ -281,8 +282,8 @@ def fit(
     if not isinstance(motion, str) or motion not in MOTIONS:
         raise InputError("motion", motion, f"allowed is one of {', '.join(MOTIONS)}")
     shared = {"speed": speed, "amplitude": amplitude, "load": load, "frequency": frequency}
-    rows, texts, about = _read_rows(measured, shared, decimal=decimal, encoding=encoding)
-    bodies, own_texts = _read_bodies(nu, radius, counterbody)
+    about = _read_rows(measured, shared, decimal=decimal, encoding=encoding)
+    bodies, texts = _read_bodies(nu, radius, counterbody)
     level = CONFIDENCE if confidence is None else confidence
     level = read_quantity("confidence", level, CONFIDENCES).si
     if map is not None:
@@ -290,15 +291,12 @@ def fit(
     else:
         accuracy = TOLERANCE if tolerance is None else tolerance
         accuracy = read_quantity("tolerance", accuracy, TOLERANCES).si
-        friction = _of_solver(rows, motion, bodies.get("nu", 0.0), accuracy)
-    about |= {"motion": motion, "understood": {"motion": motion} | own_texts | texts}
-    result = _fitted(about, rows, friction, bodies, level)
+        friction = _of_solver(about["rows"], motion, bodies.get("nu", 0.0), accuracy)
+    about |= {"motion": motion, "understood": {"motion": motion} | texts | about["understood"]}
+    result = _fitted(about, friction, bodies, level)
     if not result.mu_high < WIDEST_MU * result.mu_low:
-        problem = f"mu from {result.mu_low:.3g} to {result.mu_high:.3g} fits as well with another "
-        problem += (
-            "u_lim; add rows without vibration, or rows where vibration reduces friction more"
-        )
-        problem = f"the rows determine neither number: {problem}"
+        problem = f"mu from {result.mu_low:.3g} to {result.mu_high:.3g} fits as well with another"
+        problem = f"the rows determine neither number: {problem} u_lim; {MORE_ROWS}"
         raise InputError("measured", source_name(measured), problem)
     return result
 
@@ -306,14 +304,12 @@ def fit(
 # Rows and bodies
 
 
-def _read_rows(
-    source: Any, shared: dict[str, Any], **form: str
-) -> tuple[Rows, dict[str, str], dict[str, Any]]:
-    """The rows of a file or of a table of columns, the shared conditions as texts, and the fields
-    quantity, labels and left_out of the fit.  Raises InputError."""
+def _read_rows(source: Any, shared: dict[str, Any], **form: str) -> dict[str, Any]:
+    """The rows of a file or of a table of columns, and the fields quantity, labels, left_out and
+    understood of the fit.  Raises InputError."""
     table = table_of("measured", source, UNITS, need_units=True, **form)
     columns, errors = table.columns, dict(table.errors)
-    kept: dict[int, list[float]] = {}
+    good: dict[int, list[float]] = {}
 
     def refuse(wrong: object, text: str) -> None:
         if wrong:
@@ -331,7 +327,7 @@ def _read_rows(
             continue
         try:
             pairs = zip(names, cells, strict=True)
-            kept[k] = [read_quantity(one, cell, COLUMNS[one]).si for one, cell in pairs]
+            good[k] = [read_quantity(one, cell, COLUMNS[one]).si for one, cell in pairs]
         except InputError as error:
             empty = error.value is None
             if not table.lines:
@@ -339,9 +335,9 @@ def _read_rows(
                 raise InputError(error.argument, error.value, allowed) from None
             problem = f"{error.argument} is {EMPTY}" if empty else error
             errors[k] = f"line {table.lines[k]}: {problem}"
-    count, left_out = len(kept), tuple(errors[k] for k in sorted(errors))
-    refuse(not kept, (*left_out, "no rows; allowed is a row for each measurement")[0])
-    numbers, texts = dict(zip(names, np.array(list(kept.values())).T, strict=True)), {}
+    count, left_out = len(good), tuple(errors[k] for k in sorted(errors))
+    refuse(not good, (*left_out, "no rows; allowed is a row for each measurement")[0])
+    numbers, texts = dict(zip(names, np.array(list(good.values())).T, strict=True)), {}
     for one, value in shared.items():
         if (one in names) == (value is not None):
             where = "both a column and an argument" if one in names else "missing"
@@ -352,22 +348,21 @@ def _read_rows(
             numbers[one], texts[one] = np.full(count, quantity.si), quantity.text
     rows = {key: numbers[one] for key, one in zip(KEYS, CONDITIONS, strict=True)}
     value, least = numbers[what], 2 if f"{what}_error" in names else 3
-    needed = f"two numbers take at least {least}" + ", or two with errors of their own" * (
-        least - 2
-    )
     refuse(count > MOST_ROWS, f"{count} rows; allowed are at most {MOST_ROWS} rows")
     refuse(not numbers["amplitude"].any(), "amplitude is 0 in all rows, so that nothing vibrates")
-    refuse(count < least, f"{count} rows; {needed}")
+    refuse(count < least, f"{count} rows; allowed are at least 3, or 2 with errors of their own")
     nothing = f"above 0 in none of {count} rows, and negative in {(value < 0.0).sum()}"
     refuse(not (value > 0.0).any(), f"{what} is {nothing}; a force against the motion is positive")
     same = np.unique([*rows.values()], axis=1).shape[1] == 1
     refuse(same, "all rows are of one condition; allowed: two or more conditions")
-    rows |= {
-        "measured": value,
-        "measured_error": numbers.get(f"{what}_error", np.full(count, np.nan)),
+    sigma = numbers.get(f"{what}_error", np.full(count, np.nan))
+    return {
+        "quantity": what,
+        "labels": {name: [cells[k] for k in good] for name, cells in table.labels.items()},
+        "left_out": left_out,
+        "understood": texts,
+        "rows": rows | {"measured": value, "measured_error": sigma},
     }
-    labels = {name: [cells[k] for k in kept] for name, cells in table.labels.items()}
-    return rows, texts, {"quantity": what, "labels": labels, "left_out": left_out}
 
 
 def _read_bodies(nu: Any, radius: Any, counterbody: Any) -> tuple[dict[str, Any], dict[str, str]]:
@@ -379,13 +374,11 @@ def _read_bodies(nu: Any, radius: Any, counterbody: Any) -> tuple[dict[str, Any]
         raise InputError("nu", None, "needed with a radius")
     if counterbody not in (None, "rigid", "same"):
         raise InputError("counterbody", counterbody, "allowed is rigid or same")
-    read = {n: read_input(n, x) for n, x in (("nu", nu), ("radius", radius)) if x is not None}
-    texts = {"nu": "", "counterbody": str(counterbody or "rigid (default)"), "radius": ""}
-    texts |= {name: one.text for name, one in read.items()}
-    bodies = {name: one.si for name, one in read.items()} | {"counterbody": counterbody}
-    return bodies, {
-        name: text for name, text in texts.items() if name in read or radius is not None
-    }
+    inputs = {n: read_input(n, x) for n, x in (("nu", nu), ("radius", radius)) if x is not None}
+    texts = {name: one.text for name, one in inputs.items()}
+    if radius is not None:
+        texts = {"nu": "", "counterbody": str(counterbody or "rigid (default)")} | texts
+    return {name: one.si for name, one in inputs.items()} | {"counterbody": counterbody}, texts
 
 
 def _contact(
@@ -549,10 +542,9 @@ class Profile:
         return self.x[min(far, key=lambda k: sums[k + 1])] if far else None
 
 
-def _fitted(
-    about: dict[str, Any], rows: Rows, friction: Friction, bodies: dict[str, Any], level: float
-) -> Fit:
+def _fitted(about: dict[str, Any], friction: Friction, bodies: dict[str, Any], level: float) -> Fit:
     """The fit at a confidence level."""
+    rows = about["rows"]
     load = float(rows["row_load_N"].mean())
     weight = rows["row_load_N"] ** (about["quantity"] == "friction")
     known = bool(np.isfinite(rows["measured_error"]).all())
@@ -614,8 +606,7 @@ def _fitted(
         "residual": np.divide(rest, sigma, out=0.0 * rest, where=sigma > 0.0),
     }
     return Fit(
-        **about,
-        **values,
+        **about | values | {"rows": rows | added},
         load_N=load,
         confidence=level,
         standard_error=None if known else float(sigma[0]),
@@ -624,7 +615,6 @@ def _fitted(
         degrees_of_freedom=free,
         reason=reason,
         warnings=tuple(doubts),
-        rows=rows | added,
         curve=_curve(rows | added, profile, friction, mu),
     )
 

@@ -166,11 +166,10 @@ def fold(
     share = power[:, order] / np.maximum(power.mean(axis=(0, 1)), 1e-300)
     sizes = [float(np.median(one)) for one in np.array_split(np.sqrt(share.sum(axis=-1)), PARTS)]
     steady = min(sizes) / np.mean(sizes)
-    part = f"in part {np.argmin(sizes) + 1} of {PARTS} of the record of {longest:.6g} s"
-    allowed = (
-        f"{100.0 * steady:.2g} % of its mean; allowed is a steady oscillation; cut off the rest"
+    problem = (
+        f"not periodic throughout: in part {np.argmin(sizes) + 1} of {PARTS}, the oscillation is "
     )
-    problem = f"not periodic throughout: {part}, the oscillation is only {allowed}"
+    problem += f"only {100.0 * steady:.2g} % of its mean; allowed is a steady one; cut off the rest"
     _refuse(steady < STEADY, "time", longest, problem)
     peaks = np.array([_peak_to_peak(one) for one in mean.T])
     ratios = peaks / np.maximum(2.0 * scatter.max(axis=0), 1e-300)
@@ -214,12 +213,9 @@ def _refuse(wrong: object, argument: str, value: Any, allowed: str, digits: int 
 def _check_periods(frequency: float, longest: float, step: float, typed: bool) -> None:
     """Raise InputError if the record has too few periods, or too few samples in a period."""
     periods, samples = frequency * longest, 1.0 / max(frequency * step, 1e-300)
-    problem = f"the record of {longest:.6g} s has {periods:.6g} periods"
-    problem += f"; allowed are at least {FEWEST_PERIODS}"
-    if periods >= FEWEST_PERIODS:
-        problem = f"a period has {samples:.3g} samples in steps of {step:.6g} s"
-        problem += f"; allowed are at least {FEWEST_PER_PERIOD}"
     wrong = periods < FEWEST_PERIODS or samples < FEWEST_PER_PERIOD
+    problem = f"the record of {longest:.6g} s has {periods:.6g} periods of {samples:.3g} samples; "
+    problem += f"allowed are at least {FEWEST_PERIODS}, of {FEWEST_PER_PERIOD} samples or more"
     _refuse(typed and wrong, "frequency", frequency, problem)
     hint = "if this is not the frequency of the motion, give its approximate frequency"
     where = f"at {frequency:.6g} Hz, the strongest component"

@@ -108,9 +108,8 @@ def _of_content(file: NamedFile, content: bytes) -> Stroke:
         frequency = (rows - 1) / (rows * float(time[-1] - time[0]))
     Sampled.of_columns(columns)  # raises InputError
     load = float(columns["load"].mean()) if "load" in columns else None
-    columns = {
-        n: columns[n] - (columns[n].mean() if n in PLANE else 0.0) for n in COLUMNS if n in columns
-    }
+    columns = {name: columns[name] for name in COLUMNS if name in columns}
+    columns |= {name: one - one.mean() for name, one in columns.items() if name in PLANE}
     plane = np.stack([columns.get(name, np.zeros(rows)) for name in PLANE])
     rates = np.fft.irfft(1j * np.arange(rows // 2 + 1) * np.fft.rfft(plane), rows)
     sizes = [(float(np.hypot(x, y).max()), float(np.abs(z).max())) for x, y, z in (plane, rates)]
