@@ -9,6 +9,7 @@ import pytest
 import microslip
 from microslip.foundation.errors import InputError
 from microslip.scene.by_name import MOTIONS
+from microslip.scene.motion import Motion, Wave
 from microslip.scene.named import Elliptic, Transverse
 from microslip.scene.problem import Force, Problem, Spring
 
@@ -69,3 +70,19 @@ def test_what_follows_a_prescribed_contact_refuses_a_drive():
         with pytest.raises(InputError) as raised:
             question(problem)
         assert raised.value.argument == "drive"
+
+
+class OwnWave(Motion):
+    waves = {"lateral": Wave(form=lambda phase: phase)}  # not periodic
+
+
+class OwnDisplacement(Motion):
+    def displacement(self, phase, velocity, amplitude, poisson):
+        return velocity * phase, amplitude * phase, 0.0 * phase
+
+
+@pytest.mark.parametrize("motion", [OwnWave, OwnDisplacement])
+def test_an_own_motion_that_does_not_repeat_is_refused(motion):
+    with pytest.raises(InputError) as caught:
+        motion()
+    assert caught.value.argument == "motion"

@@ -97,6 +97,7 @@ def test_equal_samples_are_one_motion():
         ({"lateral": SINE, "load": SINE}, "load"),
         ({}, "forward"),
         ({"foo": SINE}, "columns"),
+        ({"lateral": 0.0 * SINE}, "lateral"),
     ],
 )
 def test_bad_samples_are_refused_by_name(columns, argument):

@@ -39,6 +39,10 @@ PLANE = ("forward", "lateral", "angle")
 NORMAL = ("load", "indentation")
 
 
+REPEAT = 1e-6
+"""Largest accepted difference between values of a user's motion that must be equal."""
+
+
 class Wave(NamedTuple):
     """Oscillation along one direction.
 
@@ -124,6 +128,21 @@ class Motion(spec.Named):
                 raise InputError("motion", self.name, f"{cycles}: {allowed}")
         if shares and not any(shares.values()):
             raise InputError("motion", self.name, f"allowed is {' or '.join(shares)} above 0")
+        for name, wave in self.waves.items():
+            if wave.form is not np.sin and not _is_like_sine(wave.form):
+                allowed = "with form(-x) = -form(x), form(pi - x) = form(x) and form(pi/2) = 1"
+                raise InputError(
+                    "motion", self.name, f"form of {name}: allowed is a function {allowed}"
+                )
+        if self.periodic and type(self).displacement is not Motion.displacement:
+            start, end = np.transpose(
+                self.displacement(np.array([0.0, 2.0 * np.pi]), 0.0, 1.0, 0.0)
+            )
+            if not np.allclose(start, end, rtol=0.0, atol=REPEAT):
+                allowed = "equal after a period of 2 pi at velocity 0"
+                raise InputError(
+                    "motion", self.name, f"displacement: allowed is one that is {allowed}"
+                )
 
     @property
     def readings(self) -> tuple[Motion, ...]:
@@ -345,6 +364,15 @@ class Motion(spec.Named):
             mu = oscillating_load.friction(slow, size, by_load, pressure)
             return mu, 2.0 * np.pi * velocity * mu * self.mean_load(amplitude, pressure)
         return None
+
+
+def _is_like_sine(form: Callable[[np.ndarray], np.ndarray]) -> bool:
+    """Whether a wave form has the symmetries of the sine, and the value 1 at pi/2."""
+    phase = np.linspace(-2.0 * np.pi, 2.0 * np.pi, 33)
+    values = form(phase)
+    images = np.stack([-form(-phase), form(np.pi - phase)])
+    same = np.shape(values) == phase.shape and np.allclose(images, values, rtol=0.0, atol=REPEAT)
+    return bool(same and np.allclose(form(np.array([0.5 * np.pi])), 1.0, rtol=0.0, atol=REPEAT))
 
 
 def within_rings(radius: float) -> float:

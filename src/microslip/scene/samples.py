@@ -152,9 +152,13 @@ class Sampled(spec.NamedByText, _Samples):
         ------
         InputError
             In the same cases as `SampledPath.of_columns`, and if there are fewer than
-            FEWEST_SAMPLES rows.
+            FEWEST_SAMPLES rows or if nothing changes.
         """
         rows, height, by_load = _rows_of(columns, FEWEST_SAMPLES)
+        if not (np.ptp(rows, axis=0).any() or height is not None and np.ptp(height)):
+            name = next(name for name, one in columns.items() if one is not None)
+            allowed = "equal in all rows; allowed is a motion, in this or in another column"
+            raise InputError(name, float(columns[name][0]), allowed)
         parts = [rows] if height is None else [rows, height]
         digest = hashlib.sha256(b"".join(one.tobytes() for one in parts)).hexdigest()[:16]
         kind = "" if height is None else ",load" if by_load else ",indentation"
@@ -212,7 +216,9 @@ class Sampled(spec.NamedByText, _Samples):
             power = np.column_stack([power, height])
         power = power[:, power.sum(axis=0) > 0.0]
         order = np.arange(len(power))[:, None]
-        return int(np.ceil(np.sqrt((order**2 * power).sum(axis=0) / power.sum(axis=0)).max()))
+        return int(
+            np.ceil(np.sqrt((order**2 * power).sum(axis=0) / power.sum(axis=0)).max(initial=1.0))
+        )
 
     def displacement(
         self, phase: np.ndarray, velocity: float, amplitude: float, poisson: float
