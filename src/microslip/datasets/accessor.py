@@ -24,9 +24,12 @@ ANY = "microslip.solve computes any"
 
 Ranges = dict[str, tuple[float, float]]
 """Smallest and largest value of each axis."""
-Interpolation = Callable[..., tuple[np.ndarray, np.ndarray]]
-"""Function of points, one array of shape (n,) for each axis, that returns values and error bounds
-of shape (n,)."""
+Points = dict[str, np.ndarray]
+"""Coordinates of points, an array of shape (n,) for each axis."""
+Interpolation = Callable[[Points], tuple[np.ndarray, np.ndarray]]
+"""Function that returns values and error bounds of points, shape (n,) each."""
+BLOCK = 2**14
+"""Number of points that are interpolated at once.  It limits the memory."""
 
 
 class Map:
@@ -87,7 +90,7 @@ class Map:
                 raise InputError(one, None, f"needed; the map has {low:g} to {high:g}")
         chosen = {one: _coordinate(one, requests[one]) for one in ranges if one in requests}
         value, error = xr.apply_ufunc(
-            partial(_block, {one: ranges[one] for one in chosen}, len(axes), function),
+            partial(_block, {one: ranges[one] for one in chosen}, function),
             *chosen.values(),
             join="outer",
             dask="parallelized",
@@ -112,13 +115,10 @@ class Map:
 def _of_cells(dataset: xr.Dataset, name: str) -> tuple[Ranges, Interpolation]:
     """Ranges of the axes of a certified map, and its interpolation."""
     cells = cells_of(dataset)
-    directions = cells.coordinates.directions
-    axes = [axis for axis in AXES if axis in directions]
-
-    def at(*points: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        return cells.at(*(points[axes.index(direction)] for direction in directions))
-
-    return {axis: tuple(getattr(cells.coordinates, axis)) for axis in axes}, at
+    coordinates = cells.coordinates
+    axes = [axis for axis in AXES if axis in coordinates.directions]
+    ranges = {axis: tuple(getattr(coordinates, axis)) for axis in axes}
+    return ranges, lambda points: cells.at(*(points[axis] for axis in coordinates.directions))
 
 
 def _of_grid(dataset: xr.Dataset, name: str) -> tuple[Ranges, Interpolation]:
@@ -134,49 +134,45 @@ def _of_grid(dataset: xr.Dataset, name: str) -> tuple[Ranges, Interpolation]:
     for dim in dims:
         if dim not in nodes.coords or not nodes.sizes[dim]:
             raise InputError(dim, None, LOST)
+        if nodes.indexes[dim].has_duplicates:
+            raise InputError(dim, "is there twice", "in the dataset; allowed is each value once")
     for one in (name, f"{name}_error", *dims):
         if dataset[one].dtype.kind not in "iuf":
             raise InputError(one, f"of type {dataset[one].dtype}", "allowed are numbers")
-    for dim in dims:
-        wrong = nodes[dim].values[~(np.isfinite(nodes[dim].values) & (nodes[dim].values >= 0.0))]
-        if wrong.size:
-            raise InputError(dim, float(wrong[0]), "in the dataset; allowed are numbers >= 0")
-        if nodes.indexes[dim].has_duplicates:
-            raise InputError(dim, "is there twice", "in the dataset; allowed is each value once")
+    value, error = nodes[name], nodes[f"{name}_error"]
+    most = 1.0 + error + SAME if name == "mu_macro" else np.inf
+    wrong = {dim: (~(nodes[dim] < np.inf) | (nodes[dim] < 0.0), "are numbers >= 0") for dim in dims}
+    wrong |= {error.name: (error < 0.0, "is 0 or more"), name: (abs(value) > most, "is -1 to 1")}
+    for one, (bad, allowed) in wrong.items():
+        if bad.any():
+            first = float(nodes[one].values[bad.values][0])
+            raise InputError(one, first, f"in the dataset; allowed {allowed}")
     nodes = nodes.sortby(dims).transpose(*dims)
-    values, errors = (nodes[one].values.astype(float) for one in (name, f"{name}_error"))
-    if (wrong := errors[errors < 0.0]).size:
-        raise InputError(
-            f"{name}_error", float(wrong.min()), "in the dataset; allowed is 0 or more"
-        )
-    if name == "mu_macro" and (wrong := values[np.abs(values) > 1.0 + errors + SAME]).size:
-        raise InputError(name, float(wrong[0]), "in the dataset; allowed is -1 to 1")
-    axes = [nodes[dim].values.astype(float) for dim in dims]
-    ranges = {dim: (float(axis[0]), float(axis[-1])) for dim, axis in zip(dims, axes, strict=True)}
+    ranges = {dim: (float(nodes[dim][0]), float(nodes[dim][-1])) for dim in dims}
 
-    def grid(rows: slice = slice(None)) -> Grid:
-        """Grid of some of the velocities."""
-        parts = tuple(rows if dim == "velocity" else slice(None) for dim in dims)
-        kept = (Axis(axis[part]) for axis, part in zip(axes, parts, strict=True))
-        return Grid(tuple(kept), values[parts], errors[parts])
+    def grid(part: xr.Dataset) -> Callable:
+        axes = tuple(Axis(part[dim].values.astype(float)) for dim in dims)
+        values, errors = (part[one].values.astype(float) for one in (name, f"{name}_error"))
+        at = Grid(axes, values, errors).at
+        return lambda points: at(*(points[dim] for dim in dims))
 
-    place = dims.index("velocity") if "velocity" in dims else -1
-    if place < 0 or axes[place][0] != 0.0 or len(axes[place]) < 2:
-        return ranges, grid().at
+    if ranges.get("velocity", (1.0,))[0] != 0.0 or nodes.sizes["velocity"] < 2:
+        return ranges, grid(nodes)
     # The static limit is not interpolated: between it and the smallest velocity, friction rises
     # with the power 2/3 of the velocity.
-    still, moving, slowest = grid(slice(1)), grid(slice(1, None)), axes[place][1]
+    still, moving = (grid(nodes.isel(velocity=part)) for part in (slice(1), slice(1, None)))
+    slowest = float(nodes["velocity"][1])
 
-    def at(*points: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        rests = points[place] == 0.0
-        between = points[place][~rests & (points[place] < slowest)]
+    def at(points: Points) -> tuple[np.ndarray, np.ndarray]:
+        rests = points["velocity"] == 0.0
+        between = points["velocity"][~rests & (points["velocity"] < slowest)]
         if between.size:
             allowed = f"allowed is 0, or {slowest:g} to {ranges['velocity'][1]:g}"
             raise InputError("velocity", float(between[0]), f"{allowed}; {ANY}")
-        value, error = np.empty(len(rests)), np.empty(len(rests))
+        both = np.empty((2, len(rests)))
         for part, chosen in ((still, rests), (moving, ~rests)):
-            value[chosen], error[chosen] = part.at(*(one[chosen] for one in points))
-        return value, error
+            both[:, chosen] = part({dim: values[chosen] for dim, values in points.items()})
+        return both[0], both[1]
 
     return ranges, at
 
@@ -208,21 +204,21 @@ def _coordinate(name: str, value: Any) -> xr.DataArray:
     return xr.DataArray(array, dims=dims, coords={name: (dims, array)})
 
 
-def _block(
-    ranges: Ranges, count: int, function: Interpolation, *parts: np.ndarray
-) -> tuple[np.ndarray, ...]:
-    """Evaluate an interpolation at broadcast coordinates, after a check of their ranges.
-
-    The first `count` coordinates belong to the axes of the map.
-    """
+def _block(ranges: Ranges, function: Interpolation, *parts: np.ndarray) -> tuple[np.ndarray, ...]:
+    """Evaluate an interpolation at broadcast coordinates, after a check of their ranges."""
     arrays = np.broadcast_arrays(*parts)
-    points = []
+    points = {}
     for (name, (low, high)), array in zip(ranges.items(), arrays, strict=True):
         outside = array[~((array >= low - SAME) & (array <= high + SAME))]
         if outside.size:
             allowed = f"allowed is {low:g} to {high:g}, the range of the map"
             allowed = allowed if high > low else f"allowed is {low:g}, the only one of the map"
             raise InputError(name, float(outside.flat[0]), f"{allowed}; {ANY}")
-        points.append(np.clip(array.ravel().astype(float), low, high))
-    value, error = function(*points[:count])
-    return value.reshape(arrays[0].shape), error.reshape(arrays[0].shape)
+        points[name] = np.clip(array.ravel().astype(float), low, high)
+    blocks = [
+        function({name: values[k : k + BLOCK] for name, values in points.items()})
+        for k in range(0, max(arrays[0].size, 1), BLOCK)
+    ]
+    return tuple(
+        np.concatenate(part).reshape(arrays[0].shape) for part in zip(*blocks, strict=True)
+    )

@@ -22,9 +22,6 @@ from microslip.theory.exact import STATIC_LIMITS
 
 STATIC = "mu_static"
 """Name of the exact limit as the velocity tends to 0. All motions use this name."""
-TEXTS = ("name", "equation", "label", "long_name", "description")
-PROPERTIES = ("exact", "any_poisson", "any_pressure")
-"""Columns of the table that contain texts, and words in the column `properties`."""
 
 
 @dataclass(frozen=True)
@@ -58,18 +55,17 @@ class ClosedForm:
     label: str
     long_name: str
     description: str = ""
-    exact: bool = True
+    exact: bool = False
     any_poisson: bool = False
     any_pressure: bool = False
 
 
-def _form(row: dict[str, str]) -> ClosedForm:
+def _form(function: str, arguments: str, properties: str, **more: Any) -> ClosedForm:
     """Return the closed form of a row of the table."""
-    module, _, function = row["function"].partition(".")
-    values: dict[str, Any] = {key: row[key] for key in TEXTS}
-    values |= {key: key in row["properties"].split() for key in PROPERTIES}
-    values["function"] = getattr(import_module(f"microslip.theory.{module}"), function)
-    return ClosedForm(arguments=tuple(row["arguments"].split()), **values)
+    module, _, name = function.partition(".")
+    more |= dict.fromkeys(properties.split(), True)
+    computes = getattr(import_module(f"microslip.theory.{module}"), name)
+    return ClosedForm(function=computes, arguments=tuple(arguments.split()), **more)
 
 
 FORMS: dict[str, dict[str, ClosedForm]] = {}
@@ -78,7 +74,8 @@ them."""
 DRIFT_FORMS: dict[str, ClosedForm] = {}
 """Closed forms for the mean velocity under a constant force, by motion."""
 for _row in rows(Path(__file__).with_suffix(".csv")):
-    _motion, _one = _row["motion"], _form(_row)
+    _motion = _row.pop("motion")
+    _one = _form(**_row)
     if "force" in _one.arguments:
         DRIFT_FORMS[_motion] = _one
     else:
@@ -89,5 +86,6 @@ for _motion, _limit in STATIC_LIMITS.items():
         *(STATIC, _limit.function, ("amplitude",)),
         *("", "exact limit", "exact limit for velocity to 0"),
         _text if _limit.any_poisson else f"{_text} at Poisson's ratio 0",
+        exact=True,
         any_poisson=_limit.any_poisson,
     )

@@ -49,32 +49,25 @@ def build(
     record_of = lookup(records := list(records))
     answers, cells = map_refinement.refine(sweep, lambda requests: map(record_of, requests))
     coordinates = map_refinement.coordinates_of(sweep)
-    points = sorted(answers)
+    degrees, points = coordinates.degrees, sorted(answers)
     index = {node: i for i, node in enumerate(points)}
-    degrees, places = coordinates.degrees, [coordinates.place(node) for node in points]
+    places = [coordinates.place(node) for node in points]
     values, errors = np.array([answers[node] for node in points]).T
-    cell_nodes = [
-        [index[node] for node in map_refinement.nodes_of(cell, degrees)] for cell in cells.cells
-    ]
-    axes: dict[str, tuple] = {
-        name: ("point", np.array(axis))
-        for name, axis in zip(coordinates.directions, zip(*places, strict=True), strict=True)
+    variables: dict[str, tuple] = {
+        "mu_macro": ("point", values),
+        "mu_macro_error": ("point", errors),
     }
-    # Poisson's ratio and velocity are scalars, unless they are directions of the map.
-    axes = {"velocity": ((), 0.0), "poisson": ((), sweep.poisson[0])} | axes
     ends = np.array(cells.cells)  # (cell, lower or upper, direction)
-    values_of = {
-        BORDERS[direction][j]: ends[:, j, i]
-        for i, direction in enumerate(coordinates.directions)
-        for j in range(2)
-    } | {"cell_error": cells.errors}
-    variables = {
-        "mu_macro": described("mu_macro", "point", values),
-        "mu_macro_error": described("mu_macro_error", "point", errors),
-        **{name: described(name, "cell", column) for name, column in values_of.items()},
-        "cell_node": described("cell_node", ("cell", "node"), cell_nodes),
-    }
-    dataset = xr.Dataset(variables, axes)
+    for direction, own in zip(coordinates.directions, ends.T, strict=True):
+        variables |= zip(BORDERS[direction], (("cell", end) for end in own), strict=True)
+    nodes = [map_refinement.nodes_of(cell, degrees) for cell in cells.cells]
+    cell_nodes = [[index[node] for node in own] for own in nodes]
+    variables |= {"cell_error": ("cell", cells.errors), "cell_node": (("cell", "node"), cell_nodes)}
+    # Poisson's ratio and velocity are scalars, unless they are directions of the map.
+    axes: dict = {"velocity": ((), 0.0), "poisson": ((), sweep.poisson[0])}
+    for direction, axis in zip(coordinates.directions, zip(*places, strict=True), strict=True):
+        axes[direction] = "point", np.array(axis)
+    dataset = xr.Dataset({name: described(name, *one) for name, one in variables.items()}, axes)
     sweep_dataset.describe_axes(dataset, sweep)
     motion, pressure = solver_names(sweep)
     about = sweep_dataset.provenance(

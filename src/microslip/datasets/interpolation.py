@@ -23,8 +23,6 @@ from microslip.sweeps.map_coordinates import MapCoordinates
 
 NODES = 4
 """Number of nodes of a local cubic."""
-BLOCK = 2**14
-"""Number of points that are interpolated at once.  It limits the memory."""
 COORDINATES = "map_coordinates"
 """Attribute of a certified map that contains its coordinates as JSON."""
 BORDERS = {
@@ -135,8 +133,7 @@ def polynomial(nodes: np.ndarray, weights: Iterable[np.ndarray]) -> np.ndarray:
 
     Terms are summed one by one, so that rounding at a point does not depend on the other points.
 
-    nodes: shape (k, l, ..., n), or with 1 in place of n.  weights: shapes (n, k), (n, l), ...
-    Returns shape (n,).
+    nodes: shape (k, l, ..., n).  weights: shapes (n, k), (n, l), ...  Returns shape (n,).
     """
     for one in weights:
         nodes = sum(weight * part for weight, part in zip(one.T, nodes, strict=True))
@@ -176,19 +173,12 @@ class Grid:
 
         points: coordinates, one array of shape (n,) for each axis.
         """
-        starts = range(0, max(len(points[0]), 1), BLOCK)
-        parts = [self._at(*(one[k : k + BLOCK] for one in points)) for k in starts]
-        value, error = (np.concatenate(part) for part in zip(*parts, strict=True))
-        return value, error
-
-    def _at(self, *points: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         stencils = [axis.cubics(one) for axis, one in zip(self.axes, points, strict=True)]
-        count = len(stencils)
+        around = tuple(range(len(stencils)))
         near = tuple(  # indices of the nodes, shape (k, l, ..., n)
-            np.expand_dims(index.T, [other for other in range(count) if other != k])
+            np.expand_dims(index.T, [other for other in around if other != k])
             for k, (_, _, index, _) in enumerate(stencils)
         )
-        around = tuple(range(count))
         value = polynomial(self.values[near], [weights for *_, weights in stencils])
         error = self.errors[near].max(axis=around)
         for (_, share, _, _), misses in zip(stencils, self._misses, strict=True):
@@ -225,21 +215,18 @@ class Cells:
         points: coordinates, one array of shape (n,) for each direction.
         """
         scaled = self.coordinates.scaled(*points)
-        value, error = np.full(len(scaled), np.nan), np.full(len(scaled), np.inf)
-        for (begin, end), nodes, bound in zip(
-            self.borders.transpose(0, 2, 1), self.nodes, self.bounds, strict=True
-        ):
-            here = np.flatnonzero(((scaled >= begin) & (scaled <= end)).all(axis=1))
-            if len(here):
-                degrees = np.array(nodes.shape) - 1
-                shares = degrees * ((scaled[here] - begin) / (end - begin))
-                weights = (
-                    lagrange(np.arange(degree + 1.0)[None], share)
-                    for degree, share in zip(degrees, shares.T, strict=True)
-                )
-                value[here] = polynomial(nodes[..., None], weights)
-                error[here] = bound
-        return value, np.where(np.isnan(value), np.inf, error)
+        begin, end = self.borders.transpose(2, 0, 1)
+        inside = ((scaled[:, None] >= begin) & (scaled[:, None] <= end)).all(axis=2)
+        cell = inside.shape[1] - 1 - inside[:, ::-1].argmax(axis=1)  # the last one on a border
+        degrees = np.array(self.nodes.shape[1:]) - 1
+        shares = degrees * ((scaled - begin[cell]) / (end[cell] - begin[cell]))
+        weights = (
+            lagrange(np.arange(degree + 1.0)[None], share)
+            for degree, share in zip(degrees, shares.T, strict=True)
+        )
+        value = polynomial(np.moveaxis(self.nodes[cell], 0, -1), weights)
+        value[~inside.any(axis=1)] = np.nan
+        return value, np.where(np.isnan(value), np.inf, self.bounds[cell])
 
 
 def cells_of(dataset: xr.Dataset) -> Cells:

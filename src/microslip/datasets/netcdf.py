@@ -21,7 +21,7 @@ import netCDF4
 import numpy as np
 import xarray as xr
 
-from microslip.datasets.variables import link_errors
+from microslip.datasets.variables import ANCILLARY
 from microslip.foundation.errors import CacheError, InputError
 from microslip.foundation.files import writing_beside
 
@@ -47,19 +47,16 @@ def divide(dataset: xr.Dataset, groups: Groups) -> tuple[xr.Dataset, dict[str, x
     parts : dict of xarray.Dataset
         Datasets of the groups, by name.  Empty groups are omitted.
     """
-    place = {}
-    for name, variable in dataset.data_vars.items():
-        fits = (g for g, (_, dims) in groups.items() if set(variable.dims) <= set(dims))
-        place[name] = next(fits, None) if variable.dims else None
-    root = dataset[[name for name in place if place[name] is None]]
-    scalars = [name for name, variable in dataset.coords.items() if not variable.dims]
+    group_of = {
+        name: next((g for g, (_, dims) in groups.items() if set(variable.dims) <= set(dims)), "")
+        for name, variable in dataset.data_vars.items()
+        if variable.dims
+    }
     parts = {}
     for group, (title, _) in groups.items():
-        names = [name for name in place if place[name] == group]
-        if names:
-            part = dataset[names].drop_vars(scalars)
-            parts[group] = part.drop_attrs(deep=False).assign_attrs(title=title)
-    return root, parts
+        if names := [name for name, own in group_of.items() if own == group]:
+            parts[group] = dataset[names].drop_attrs(deep=False).assign_attrs(title=title)
+    return dataset[[name for name in dataset.data_vars if not group_of.get(name)]], parts
 
 
 TEXTS = "flag_texts"
@@ -142,9 +139,11 @@ def write(
 
 
 def _append(dataset: xr.Dataset, path: str | os.PathLike[str], **how: Any) -> None:
-    dataset = link_errors(dataset)
     of_text = {n: v for n, v in dataset.variables.items() if v.dtype.kind in "OUT"}
     dataset = dataset.assign({n: coded(v) for n, v in of_text.items() if n not in dataset.dims})
+    for name, variable in dataset.variables.items():
+        if f"{name}_error" in dataset.variables:
+            variable.attrs[ANCILLARY] = f"{name}_error"
     encoding = {name: _encoding(name, v.dtype.kind) for name, v in dataset.variables.items()}
     dataset.to_netcdf(path, engine="netcdf4", format="NETCDF4", encoding=encoding, **how)
 

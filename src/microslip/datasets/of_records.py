@@ -6,7 +6,6 @@ from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
-import pandas as pd
 import xarray as xr
 
 from microslip.answer.along import History, Response
@@ -89,13 +88,6 @@ def to_xarray(record: Any) -> xr.Dataset:
     return xr.Dataset(variables, attrs=about)
 
 
-def table(dataset: xr.Dataset) -> pd.DataFrame:
-    """Columns of a response, with the units in the headings."""
-    units = {name: one.attrs["units"] for name, one in dataset.items()}
-    headings = {name: name if unit == "1" else f"{name} [{unit}]" for name, unit in units.items()}
-    return dataset.to_dataframe().rename(columns=headings)
-
-
 def response_text(record: Response | RealResponse) -> str:
     """The lines that `microslip response` prints: a CSV table with six digits.
 
@@ -106,5 +98,8 @@ def response_text(record: Response | RealResponse) -> str:
         least = ROUNDING * np.abs(dataset[error])
         dataset[name] = dataset[name].where(np.abs(dataset[name]) > least, 0.0)
     lines = [] if record.converged else [f"# NOT CONVERGED: {record.reason}"]
-    rows = table(dataset).to_csv(index=False, float_format="%.6g", lineterminator="\n")
+    units = {name: one.attrs["units"] for name, one in dataset.items()}
+    headings = {name: name if unit == "1" else f"{name} [{unit}]" for name, unit in units.items()}
+    table = dataset.to_dataframe().rename(columns=headings)
+    rows = table.to_csv(index=False, float_format="%.6g", lineterminator="\n")
     return "\n".join([*lines, rows.rstrip("\n")])

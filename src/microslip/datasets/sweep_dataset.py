@@ -7,9 +7,8 @@ depend on the time, the computer or the number of jobs.
 """
 
 import math
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator
 from itertools import islice
-from typing import Any
 
 import numpy as np
 import xarray as xr
@@ -19,7 +18,7 @@ from microslip.config.quantities import AMPLITUDE, DRIVES, VELOCITY
 from microslip.config.settings import Configuration, Sweep
 from microslip.datasets import netcdf, theory_limits
 from microslip.datasets.catalogue import FORMS
-from microslip.datasets.variables import TABLE, TYPES, described, rows_of
+from microslip.datasets.variables import TYPES, described, rows_of
 from microslip.foundation import named_files, source_digest
 from microslip.foundation.canonical import canonical_json
 from microslip.scene.by_name import motion_named
@@ -54,28 +53,46 @@ def build(
     """
     sweep, rest = configuration.sweeps[name], iter(records)
     motion, pressure = solver_names(sweep)
-    title = sweep.title or f"Friction of a vibrated Hertz contact, motion {motion}"
+    size = math.prod(len(sweep.axes[dim]) for dim in sweep.dims)
+    columns, versions = _columns(sweep, size, islice(rest, size))
+    requests, runs = runs_of(configuration, name), list(rest)
+    if len(runs) != len(requests):
+        raise ValueError(f"{name}: {len(runs)} single runs")
+    versions |= {canonical_json(record["versions"]) for record in runs}
     tolerance = np.nan if sweep.tolerance is None else sweep.tolerance
     about = {"motion": motion, "pressure": pressure, "tolerance": tolerance}
     for role, text in (("motion", motion), ("pressure", pressure)):
         if file := named_files.base_name(text):
             about[f"{role}_file"] = file
-    axes = {dim: sweep.axes[dim] for dim in sweep.dims}
-    points = islice(rest, math.prod(map(len, axes.values())))
-    of_points, versions = _variables(sweep, axes, points)
-    histories = list(rest)
-    if len(histories) != len(runs_of(configuration, name)):
-        raise ValueError(f"{name}: {len(histories)} single runs")
-    failed = [record for record in histories if record["result"].get("crashed")]
+    failed = [record for record in runs if record["result"].get("crashed")]
     if failed:
         reasons = (f"{r['request']['kind']}: {r['result']['reason']}" for r in failed)
         about["single_runs_failed"] = "; ".join(reasons)
     if sweep.drives:
         about["drive"] = ", ".join(sweep.drives)
-    versions |= {canonical_json(record["versions"]) for record in histories}
-    settings = {"sweep": sweep.model_dump(mode="json"), "runs": runs_of(configuration, name)}
-    root = _root(sweep, of_points).assign_attrs(provenance(title, settings, versions, **about))
-    return root, _parts(sweep, histories)
+    title = sweep.title or f"Friction of a vibrated Hertz contact, motion {motion}"
+    settings = {"sweep": sweep.model_dump(mode="json"), "runs": requests}
+    coords: dict[str, tuple] = {
+        axis: (axis, np.array(values)) if axis in sweep.dims else ((), values[0])
+        for axis, values in sweep.axes.items()
+    }
+    shape = [len(sweep.axes[dim]) for dim in sweep.dims]
+    columns = {name: column.reshape(shape) for name, column in columns.items()}
+    if "poisson" in sweep.dims:  # changes from the smallest ratio, with summed errors
+        for change, row in rows_of("change").items():
+            source, sign = columns[row["source"]], 1.0 if change.endswith("_error") else -1.0
+            first = source.take([0], axis=sweep.dims.index("poisson"))
+            columns[change] = source + sign * first
+    of_points = {one: described(one, sweep.dims, values) for one, values in columns.items()}
+    root = xr.Dataset(theory_limits.variables(sweep) | of_points, coords)
+    describe_axes(root, sweep)
+    groups = theory_limits.curves(sweep) | ({} if failed else _of_runs(runs))  # see `report`
+    parts = {
+        group: xr.Dataset(groups[group], attrs={"title": text, "motion": motion})
+        for group, text in GROUPS.items()
+        if group in groups
+    }
+    return root.assign_attrs(provenance(title, settings, versions, **about)), parts
 
 
 GROUPS = {
@@ -88,91 +105,61 @@ GROUPS = {
 """Titles of the groups in a sweep's file.  Each motion has only some of the groups."""
 ENTRIES = {"history": "periods", "transients": "travel"}
 """Entry that identifies the requests of a group of single runs."""
-MISSING: dict[type, Any] = {float: np.nan, bool: False, np.int32: 0, str: ""}
+MISSING = {"float": np.nan, "str": ""}
+"""Values of points without a result by the type of the variable; 0 for the other types."""
 LONGEST_TEXT = 256
 """Maximum number of characters in a text.  A longer text is truncated and ends with dots."""
 
 
-def _root(sweep: Sweep, of_points: dict) -> xr.Dataset:
-    """Return a dataset with the axes, the limits from theory and the variables of the points."""
-    coords: dict[str, tuple] = {
-        name: (name, np.array(values)) if name in sweep.dims else ((), values[0])
-        for name, values in sweep.axes.items()
-    }
-    dataset = xr.Dataset(theory_limits.variables(sweep) | of_points, coords)
-    describe_axes(dataset, sweep)
-    return dataset
+def _columns(
+    sweep: Sweep, size: int, points: Iterable[dict]
+) -> tuple[dict[str, np.ndarray], set[str]]:
+    """Return the values of the variables at all points, in order.
 
-
-def _variables(
-    sweep: Sweep, axes: dict[str, tuple[float, ...]], points: Iterable[dict]
-) -> tuple[dict, set[str]]:
-    """Build the variables of all points, which have the axes of the sweep.
-
-    One record is in memory at a time.  Returns the variables, and the versions of the libraries
-    that computed the records, as JSON.  Raises ValueError if the number of records differs from the
-    number of points.
+    One record is in memory at a time.  Also returns the versions of the libraries that computed
+    the records, as JSON.  Raises ValueError if the number of records differs from `size`.
     """
     groups = [] if sweep.velocity else ["force"]
     table = rows_of(*groups, "points", "oscillation" if sweep.amplitude else "steady")
-    columns: dict[str, np.ndarray] = {}
-    shape = tuple(len(values) for values in axes.values())
-    for name, row in table.items():
-        kind = TYPES[row["kind"]]
-        columns[name] = np.full(shape, MISSING[kind], object if kind is str else kind)
-    versions, count, size = set(), 0, math.prod(shape)
+    kinds = {name: row["kind"] for name, row in table.items()}
+    columns: dict[str, np.ndarray] = {
+        name: np.full(size, MISSING.get(kind, 0), TYPES[kind]) for name, kind in kinds.items()
+    }
+    versions, count = set(), 0
     for count, record in enumerate(points, 1):
-        if count > size:
-            break
         versions.add(canonical_json(record["versions"]))
         for name, column in columns.items():
             if (value := record["result"].get(name)) is not None:
-                column.flat[count - 1] = _shortened(value) if isinstance(value, str) else value
+                column[count - 1] = _shortened(value) if isinstance(value, str) else value
     if count != size:
         raise ValueError(f"{count} results for {size} points")
-    if len(axes.get("poisson", ())) > 1:  # changes from the smallest ratio, with summed errors
-        for name, row in rows_of("change").items():
-            sign = 1.0 if name.endswith("_error") else -1.0
-            column = columns[row["source"]]
-            columns[name] = column + sign * column.take([0], list(axes).index("poisson"))
-    return {name: described(name, tuple(axes), columns[name]) for name in columns}, versions
+    return columns, versions
 
 
 def _shortened(text: str) -> str:
     return text if len(text) <= LONGEST_TEXT else f"{text[: LONGEST_TEXT - 3]}..."
 
 
-def _parts(sweep: Sweep, runs: Sequence[dict]) -> dict[str, xr.Dataset]:
-    """Return the dataset of each group of a sweep, keyed by the names in GROUPS."""
-    variables = theory_limits.curves(sweep)
-    failed = any(record["result"].get("crashed") for record in runs)
-    for group, own in ({} if failed else _by_group(runs)).items():  # `report` lists failed runs
-        variables[group] = {name: _of_runs(name, own) for name in rows_of(group)}
-    about = {"motion": solver_names(sweep)[0]}
-    return {
-        name: xr.Dataset(variables[name], attrs={"title": title} | about)
-        for name, title in GROUPS.items()
-        if name in variables
-    }
+def _of_runs(runs: list[dict]) -> dict[str, dict]:
+    """Return the variables of single runs by group.
 
-
-def _by_group(runs: Sequence[dict]) -> dict[str, list[dict]]:
-    """Return the single runs of each group: entries of requests, results and closed forms."""
-    groups: dict[str, list[dict]] = {}
+    The values are entries of requests and results, and closed forms.  For a variable without the
+    dimension `start`, only the first run of a group counts.
+    """
+    of_group: dict[str, list[dict]] = {}
     for record in runs:
         request = record["request"]
         group = next((name for name, key in ENTRIES.items() if key in request), request["kind"])
-        forms = FORMS["continuous-bore"].values() if group == "transients" else ()
+        forms = FORMS["continuous-bore"].values()
         steady = {form.name: form.function(float(request["velocity"])) for form in forms}
-        groups.setdefault(group, []).append(record["result"] | request | steady)
-    return groups
-
-
-def _of_runs(name: str, runs: list[dict]) -> tuple:
-    """Return a variable of single runs.  Without a dimension `start`, only the first run counts."""
-    dims, source = TABLE[name]["dims"].split(), TABLE[name]["source"]
-    values = [run[source] for run in runs] if "start" in dims else runs[0][source]
-    return described(name, dims, values)
+        of_group.setdefault(group, []).append(record["result"] | request | steady)
+    variables: dict[str, dict] = {}
+    for group, own in of_group.items():
+        for name, row in rows_of(group).items():
+            dims, values = row["dims"].split(), [run[row["source"]] for run in own]
+            one = described(name, dims, values if "start" in dims else values[0])
+            variables.setdefault(group, {})[name] = one
+    return variables
 
 
 def provenance(title: str, settings: dict, versions: set, **more: object) -> dict:
@@ -222,18 +209,17 @@ def report(dataset: xr.Dataset, name: str) -> Iterator[str]:
 def describe_axes(dataset: xr.Dataset, sweep: Sweep) -> None:
     """Set the attributes of the axes.  The attribute `formula` defines the coordinate."""
     motion = motion_named(sweep.motion)
-    axes = [("velocity", VELOCITY, motion.velocity_label)] if sweep.velocity else []
-    if sweep.amplitude:
-        axes.append(("amplitude", AMPLITUDE, motion.amplitude_label))
-    for name, of_paper, formula in axes:
-        text = of_paper["transverse"].text  # the same for all motions
-        about = {"long_name": f"{text}, {formula}", "units": "1", "formula": formula}
-        if motion.name in of_paper:
-            about["description"] = of_paper[motion.name].description
-        dataset[name].attrs = about
-    for name in sweep.drives:
-        quantity = DRIVES[name]
-        about = {"long_name": f"{quantity.text}, {quantity.unit}", "units": "1"}
-        about |= {"formula": quantity.unit, "description": quantity.description}
-        dataset[name].attrs = about
+    texts = {name: (one.text, one.unit, one.description) for name, one in DRIVES.items()}
+    for name, of_paper, formula in (
+        ("velocity", VELOCITY, motion.velocity_label),
+        ("amplitude", AMPLITUDE, motion.amplitude_label),
+    ):
+        own = of_paper.get(motion.name)
+        # The label is the same for all motions.
+        texts[name] = of_paper["transverse"].text, formula, own.description if own else ""
+    for name, (text, formula, description) in texts.items():
+        if name in sweep.axes:
+            about = {"long_name": f"{text}, {formula}", "units": "1", "formula": formula}
+            about |= {"description": description} if description else {}
+            dataset[name].attrs = about
     dataset["poisson"].attrs = {"long_name": "Poisson's ratio", "units": "1"}

@@ -17,14 +17,14 @@ from collections.abc import Hashable, Sequence
 from pathlib import Path
 
 import numpy as np
-import xarray as xr
 from numpy.typing import ArrayLike
 
 ANCILLARY = "ancillary_variables"
 """Attribute of a variable.  It contains the name of a second variable, which is the error of the
 first."""
-TYPES: dict[str, type] = {"float": float, "int": np.int32, "bool": bool, "str": str}
-"""Types of values by their names in tables."""
+TYPES: dict[str, type] = {"float": float, "int": np.int32, "bool": bool, "str": object}
+"""Types of values by their names in tables.  Any other name of a type is a text with the meanings
+of codes 0, 1, ..., separated by spaces."""
 
 
 def rows(path: Path) -> list[dict[str, str]]:
@@ -46,43 +46,27 @@ def described(name: str, dims: str | Sequence[Hashable], values: ArrayLike) -> t
     """Return a variable of variables.csv as a tuple for xarray.Dataset."""
     row = TABLE[name]
     texts = {key: row[key] for key in ("flag_meanings", "description") if row[key]}
-    return variable(dims, values, row["long_name"], TYPES[row["kind"]], row["units"], **texts)
+    return variable(dims, values, row["long_name"], row["kind"], row["units"], **texts)
 
 
 def variable(
     dims: str | Sequence[Hashable],
     values: ArrayLike,
     long_name: str,
-    kind: type = float,
+    kind: str = "float",
     units: str = "1",
     **more: str,
 ) -> tuple:
     """Return a variable as a tuple for xarray.Dataset.
 
-    kind: type of the values; units: unit of numbers; more: additional attributes.
+    kind: key of TYPES, or the meanings of codes; units: unit of numbers; more: additional
+    attributes.
     """
     about: dict = {"long_name": long_name}
-    if kind is bool:  # stored as bytes, which xarray reads as bool
-        about |= {"flag_values": np.array([0, 1], np.int8), "flag_meanings": "no yes"}
-    elif kind is not str and units:
+    if kind == "bool" or kind not in TYPES:  # stored as bytes; xarray reads bool as bool
+        meanings = "no yes" if kind == "bool" else kind
+        codes = np.arange(len(meanings.split()), dtype=np.int8)
+        about |= {"flag_values": codes, "flag_meanings": meanings}
+    elif kind != "str" and units:
         about["units"] = units
-    return dims, np.array(values).astype(object if kind is str else kind), about | more
-
-
-def flags(
-    dims: str | Sequence[Hashable], codes: ArrayLike, long_name: str, meanings: Sequence[str]
-) -> tuple:
-    """Return a variable for xarray.Dataset, as a tuple.  Its values are codes, which are indices of
-    `meanings`."""
-    words = " ".join(name.replace(" ", "_") for name in meanings)
-    about = {"flag_values": np.arange(len(meanings), dtype=np.int8), "flag_meanings": words}
-    return dims, np.asarray(codes).astype(np.int8), {"long_name": long_name} | about
-
-
-def link_errors(dataset: xr.Dataset) -> xr.Dataset:
-    """Return a copy of a dataset in which every variable is linked to its error."""
-    linked = dataset.copy()
-    for name in linked.variables:
-        if f"{name}_error" in linked.variables:
-            linked[name].attrs[ANCILLARY] = f"{name}_error"
-    return linked
+    return dims, np.array(values).astype(TYPES.get(kind, np.int8)), about | more

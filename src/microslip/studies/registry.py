@@ -28,9 +28,6 @@ if TYPE_CHECKING:
 
     from microslip.config.settings import Configuration, Settings
 
-TYPES = {"float": float, "int": "int32", "bool": bool, "str": str}
-"""Types of variables by name.  Any other text lists the meanings of codes."""
-
 
 def pieces(study: str, settings: Settings) -> list[list[dict]]:
     """Return the jobs of a study, slow ones first.  A job is a list of different requests."""
@@ -72,18 +69,15 @@ def undivided(
     import xarray as xr
 
     from microslip.datasets import sweep_dataset
-    from microslip.datasets.variables import flags, variable
+    from microslip.datasets.variables import variable
 
     module, settings, answers = _module(study), configuration.studies[study], Answers(answer)
     values = module.values(settings, answers)
     variables = {}
     for row in rows_of("variables.csv", study):
-        name, dims, kind = row["name"], row["dims"].split(), row["kind"]
-        if name in values and kind in TYPES:
-            about: Any = row["long_name"], TYPES[kind], row["units"]
-            variables[name] = variable(dims, values[name], *about)
-        elif name in values:
-            variables[name] = flags(dims, values[name], row["long_name"], kind.split())
+        if (name := row["name"]) in values:
+            about = row["long_name"], row["kind"], row["units"]
+            variables[name] = variable(row["dims"].split(), values[name], *about)
     # The keys also depend on the sources of the methods.
     more: dict[str, Any] = {"results_digest": sha256("\n".join(sorted(answers.keys)))}
     tolerance = getattr(settings, "tolerance", None)
