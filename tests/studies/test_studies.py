@@ -164,8 +164,8 @@ class Trials(Solver):
 
 def trial(**changes):
     """Request for a trial with 8 rings."""
-    _, level, tolerance = requests.ladder("radial", "euler", 6)[1]
-    return requests.trial(MID, "radial", "euler", level, tolerance, 2) | changes
+    every = requests.trials(MID, ["euler"], levels=6, repeats=2)
+    return next(one for _, one in every if one["cells"] == 8) | changes
 
 
 def probe(method, study=None):
@@ -174,7 +174,9 @@ def probe(method, study=None):
     return stability.probe(study, method, block, value)
 
 
-@pytest.mark.parametrize("one", [trial(), requests.choice(MID, 1e-3, 1)], ids=["trial", "choice"])
+@pytest.mark.parametrize(
+    "one", [trial(), requests.of("choice", MID, tolerance=1e-3, repeats=1)], ids=["trial", "choice"]
+)
 def test_times_are_stored_with_the_computer(monkeypatch, one):
     Trials(monkeypatch)
     monkeypatch.setenv("OPENBLAS_NUM_THREADS", "3")

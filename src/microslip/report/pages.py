@@ -156,7 +156,7 @@ def _static(dataset: xr.Dataset, motion: str) -> SimpleNamespace:
 
     The table also contains the excess of each formula over the limit.
     """
-    names = {name: FORMS[motion][form].equation for name, (form, *_) in FORMULAS[motion].items()}
+    names = {name: FORMS[motion][form].equation for name, form in FORMULAS[motion].items()}
     gaps = [
         (equation, *(float(dataset[f"{motion}_gap_{name}{end}"]) for end in ("", "_at")))
         for name, equation in names.items()

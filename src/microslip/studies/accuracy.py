@@ -14,6 +14,7 @@ divided by the smallest cost in the contest.
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from itertools import product
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -63,36 +64,23 @@ def trials(study: Accuracy, point: AnyPoint) -> Iterator[tuple[int, dict]]:
 
     The level of a solve is the index of its tolerance in CHOICE_TOLERANCES.
     """
-    for method in study.methods:
-        for model in forms.models_for(method, point.motion, point.poisson):
-            for k, level, tolerance in forms.ladder(model, method, study.levels):
-                yield k, forms.trial(point, model, method, level, tolerance, study.repeats)
+    yield from forms.trials(point, study.methods, study.levels, study.repeats)
     if SHIPPED in study.methods:
         for k, tolerance in enumerate(CHOICE_TOLERANCES):
-            yield k, forms.choice(point, tolerance, study.repeats)
+            yield k, forms.of("choice", point, tolerance=tolerance, repeats=study.repeats)
 
 
-def map_requests(study: Accuracy, motion: str) -> list[tuple[Point, dict, list[dict]]]:
-    """Return the points of a map, each with its reference and with the trials of all models.
+def map_requests(study: Accuracy, motion: str) -> Iterator[tuple[float, dict, list[dict]]]:
+    """Yield the points of a map: the amplitude, the reference, and the trials of all models.
 
     The velocity varies fastest.
     """
-    repeats, levels = min(study.repeats, MAP_REPEATS), min(study.levels, MAP_LEVELS)
-    tolerance = TRUTH_SHARE * min(study.map.tolerance)
-    return [
-        (
-            point := Point(motion, velocity, amplitude),
-            forms.solve(point, tolerance),
-            [
-                forms.trial(point, model, SHIPPED, level, run_tolerance, repeats)
-                for model in forms.models_of(motion, point.poisson)
-                for _, level, run_tolerance in forms.ladder(model, SHIPPED, levels)
-                if model != "cartesian" or level.cells <= MAP_SQUARES
-            ],
-        )
-        for amplitude in study.map.amplitude[motion]
-        for velocity in study.map.velocity
-    ]
+    sizes = min(study.levels, MAP_LEVELS), min(study.repeats, MAP_REPEATS)
+    for amplitude, velocity in product(study.map.amplitude[motion], study.map.velocity):
+        point = Point(motion, velocity, amplitude)
+        runs = (request for _, request in forms.trials(point, [SHIPPED], *sizes))
+        shown = [r for r in runs if r["model"] != "cartesian" or r["cells"] <= MAP_SQUARES]
+        yield amplitude, forms.solve(point, TRUTH_SHARE * min(study.map.tolerance)), shown
 
 
 def requests(study: Accuracy) -> Iterator[tuple[tuple, dict]]:
@@ -105,9 +93,9 @@ def requests(study: Accuracy) -> Iterator[tuple[tuple, dict]]:
             slow = request.get("model") == "cartesian" and request["cells"] >= LARGE
             yield (0 if slow else 1, name if method == SHIPPED else method), request
     for motion in MOTIONS:
-        for point, truth, runs in map_requests(study, motion):
+        for amplitude, truth, runs in map_requests(study, motion):
             for request in (truth, *runs):
-                yield (1, motion, point.amplitude), request
+                yield (1, motion, amplitude), request
 
 
 # The dataset
@@ -118,16 +106,11 @@ def values(study: Accuracy, answers: Answers) -> dict[str, Any]:
     import pandas as pd
 
     points = [_point(name, point, answers) for name, point in study.points.items()]
-    runs = pd.DataFrame(
-        [
-            trial
-            for row, point in zip(points, study.points.values(), strict=True)
-            for trial in _trials(study, row, point, answers)
-        ],
-        columns=names_along("trial", "accuracy"),
-    )
+    of_points = zip(points, study.points.values(), strict=True)
+    trials_of = [_trials(study, row, point, answers) for row, point in of_points]
+    runs = pd.concat(trials_of, ignore_index=True)
     tolerances = study.map.tolerance[::-1]  # from loose to tight
-    entries = {name: [row[name] for row in points] for name in points[0]} | dict(runs)
+    entries = dict(pd.DataFrame(points)) | dict(runs)
     entries |= profiles(runs, list(study.points), tolerances) | {"map_tolerance": tolerances}
     for motion in MOTIONS:
         entries |= _map(study, motion, tolerances, answers)
@@ -158,7 +141,8 @@ def _point(name: str, point: AnyPoint, answers: Answers) -> Row:
         mu, error = number(result, "mu_macro"), number(result, "mu_macro_error")
         source = f"model {result['model']}, tolerance {forms.reference(point)['tolerance']}"
         source += "" if result["converged"] else f", not met: {result.get('reason') or ''}"
-    return {f"point_{key}": value for key, value in forms.at(point).items()} | {
+    place = {f"point_{key}": getattr(point, key) for key in Point._fields}
+    return place | {
         "point": name,
         "point_title": getattr(point, "title", None) or name,
         "reference": mu,
@@ -167,24 +151,25 @@ def _point(name: str, point: AnyPoint, answers: Answers) -> Row:
     }
 
 
-def _trials(study: Accuracy, place: Row, point: AnyPoint, answers: Answers) -> list[Row]:
-    """Return the rows of the trials at one point.  place: row of the point."""
+def _trials(study: Accuracy, place: Row, point: AnyPoint, answers: Answers) -> pd.DataFrame:
+    """Return the trials at one point.  place: row of the point."""
+    import pandas as pd
+
     rows = []
     for level, request in trials(study, point):
         row = answers(request)
         if not row.get("applies", True):
             continue
-        by_tolerance = request["kind"] == "choice"
         mu, machine = number(row, "mu_macro"), row.get("machine")
         rows.append(
             {
                 "trial_point": place["point"],
-                "trial_model": "auto" if by_tolerance else request["model"],
-                "trial_method": SHIPPED if by_tolerance else request["method"],
+                "trial_model": request.get("model", "auto"),
+                "trial_method": request.get("method", SHIPPED),
                 "trial_level": level,
                 "trial_cells": row.get("cells") or 0,
                 "trial_angles": row.get("angles") or 0,
-                "trial_steps": row.get("steps_per_period" if by_tolerance else "steps") or 0,
+                "trial_steps": row.get("steps_per_period") or row.get("steps") or 0,
                 "trial_tolerance": float(request["tolerance"]),
                 "mu_macro": mu,
                 "error": abs(mu - place["reference"]),
@@ -193,17 +178,15 @@ def _trials(study: Accuracy, place: Row, point: AnyPoint, answers: Answers) -> l
                 "converged": bool(row.get("converged")),
                 "reason": row.get("reason") or "",
                 "trial_machine": answers.machines.index(machine) if machine else -1,
-                "claimed_error": number(row, "mu_macro_error") if by_tolerance else np.nan,
+                "claimed_error": number(row, "mu_macro_error"),
             }
         )
+    runs = pd.DataFrame(rows, columns=names_along("trial", "accuracy"))
     # Errors below the reference's error count as equal.
-    floor = place["reference_error"]
-    error = [max(row["error"], floor) if row["converged"] else np.nan for row in rows]
+    error = np.maximum(runs["error"], place["reference_error"]).where(runs["converged"] == 1)
     for cost in ("seconds", "effort"):
-        front = on_front([row[cost] for row in rows], error)
-        for row, mark in zip(rows, front, strict=True):
-            row[f"front_{cost}"] = mark
-    return rows
+        runs[f"front_{cost}"] = on_front(runs[cost], error)
+    return runs
 
 
 BEST = (("", "model", ""), ("_cells", "cells", 0), ("_seconds", "seconds", np.nan))
@@ -302,34 +285,30 @@ def profiles(runs: pd.DataFrame, points: list[str], tolerances: Sequence[float])
 
     runs: table of trials.  points: names of all points.
     """
+    import pandas as pd
+
     place = ["trial_point", "trial_model"]
     runs = runs.assign(error=runs["error"].where(runs["converged"].astype(bool)))
     runs["largest"] = largest_from(runs, "trial_method", *place)
-    contest_of_run = runs["trial_method"].map(contest_of)
-    contests: list[str] = []
-    names: list[str] = []
-    ratios = [np.empty((0, len(tolerances), len(points)))]
-    methods = sorted(set(runs["trial_method"]))
-    for contest in dict.fromkeys([MODELS, *map(contest_of, methods)] if methods else []):
+    methods = runs["trial_method"]
+    shipped, contest_of_run = methods == SHIPPED, methods.map(contest_of)
+    tables = []
+    for contest in dict.fromkeys([MODELS, *map(contest_of, sorted(set(methods)))]):
         own = contest_of_run == contest
-        shipped = runs["trial_method"] == SHIPPED
         beside = own.groupby([runs[name] for name in place]).transform("any")
-        entrants = runs[own | (shipped & beside)]
-        is_model = shipped & (contest == MODELS)
-        competitor = entrants["trial_method"].mask(is_model, entrants["trial_model"])
-        every = list(competitor.unique())
-        if not every:
-            continue
-        costs = [
-            good["seconds"].groupby([competitor, good["trial_point"]]).min()
-            for good in (entrants[entrants["largest"] <= tolerance] for tolerance in tolerances)
-        ]
-        tables = [cost.unstack().reindex(index=every, columns=points) for cost in costs]
-        ratios.append(np.stack([(table / table.min()).fillna(np.inf) for table in tables], 1))
-        names += every
-        contests += [contest] * len(every)
-    return {
-        "competitor_contest": contests,
-        "competitor": names,
-        "profile_ratio": np.concatenate(ratios),
+        names = methods.mask(shipped, runs["trial_model"]) if contest == MODELS else methods
+        every = runs.assign(competitor_contest=contest, competitor=names)
+        tables.append(every[own | (shipped & beside)])
+    entrants = pd.concat(tables)
+    pair = ["competitor_contest", "competitor"]
+    pairs = pd.MultiIndex.from_frame(entrants[pair].drop_duplicates())
+    ratios = []
+    for tolerance in tolerances:
+        good = entrants[entrants["largest"] <= tolerance]
+        costs = good.groupby([*pair, "trial_point"])["seconds"].min().unstack()
+        costs = costs.reindex(index=pairs, columns=points)
+        least = costs.groupby("competitor_contest").transform("min")
+        ratios.append((costs / least).fillna(np.inf))
+    return {name: pairs.get_level_values(name) for name in pair} | {
+        "profile_ratio": np.stack(ratios, axis=1)
     }

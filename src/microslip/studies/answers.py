@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-import csv
 import math
 from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
 
+from microslip.datasets.variables import rows
 from microslip.foundation.canonical import canonical_json
 
 Row = dict[str, Any]
@@ -24,8 +24,8 @@ class Answers:
     ----------
     rows : dict of str to (dict, Row)
         Requests and their rows by the JSON text of the request, in the order of first use.
-    keys, versions : set of str
-        Names of the results, and versions of the libraries that computed them.
+    versions : set of str
+        Versions of the libraries that computed the results.
     machines : list of dict
         Computers on which times were measured.
     """
@@ -34,7 +34,6 @@ class Answers:
         """answer: function that returns the record of a request, see sweeps.batch.lookup."""
         self._answer = answer
         self.rows: dict[str, tuple[dict, Row]] = {}
-        self.keys: set[str] = set()
         self.versions: set[str] = set()
         self.machines: list[dict] = []
 
@@ -45,7 +44,6 @@ class Answers:
             record = self._answer(request)
             result = record["result"]
             self.rows[text] = request, request | result | {"key": record["key"]}
-            self.keys.add(record["key"])
             self.versions.add(canonical_json(record["versions"]))
             if result.get("machine") not in (None, *self.machines):
                 self.machines.append(result["machine"])
@@ -63,11 +61,10 @@ def rows_of(table: str, study: str) -> Iterator[dict[str, str]]:
 
     table: "variables.csv" or "groups.csv".
     """
-    with open(Path(__file__).with_name(table), newline="", encoding="utf-8") as file:
-        for row in csv.DictReader(file):
-            if row["study"] == study:
-                for motion in MOTIONS if "{motion}" in row["dims"] else MOTIONS[:1]:
-                    yield {key: text.replace("{motion}", motion) for key, text in row.items()}
+    for row in rows(Path(__file__).with_name(table)):
+        if row["study"] == study:
+            for motion in MOTIONS if "{motion}" in row["dims"] else MOTIONS[:1]:
+                yield {key: text.replace("{motion}", motion) for key, text in row.items()}
 
 
 def names_along(dim: str, study: str) -> list[str]:

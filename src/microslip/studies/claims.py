@@ -4,12 +4,14 @@ stick patches of the oscillating bore."""
 from __future__ import annotations
 
 from collections.abc import Iterator
+from itertools import chain
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from microslip.studies import evidence, static_limits, verdicts
 from microslip.studies.answers import Answers, Row, number
+from microslip.studies.evidence import COLUMNS
 from microslip.studies.statements import PARTS, STATEMENTS
 from microslip.theory import hertz, paper
 
@@ -31,15 +33,15 @@ COMMENT = (
 
 def requests(study: Claims) -> Iterator[tuple[tuple, dict]]:
     """Yield each request with its job."""
-    for table in evidence.requests_of(study).values():
-        for request in (request for row in table for request in row):
-            place = request["motion"], request.get("amplitude")
-            if request["kind"] == "run":
-                yield (0, *place), request
-            elif request["kind"] == "point" and request["motion"] == "bore":
-                yield (1, *place), request
-            else:
-                yield (2, request["kind"] == "patches"), request
+    tables = (rows for rows, _ in evidence.sources(study).values())
+    for request in chain.from_iterable(chain.from_iterable(tables)):
+        place = request["motion"], request.get("amplitude")
+        if request["kind"] == "run":
+            yield (0, *place), request
+        elif request["kind"] == "point" and request["motion"] == "bore":
+            yield (1, *place), request
+        else:
+            yield (2, request["kind"] == "patches"), request
 
 
 def values(study: Claims, answers: Answers) -> dict[str, Any]:
@@ -68,30 +70,33 @@ def _verdicts(checks: pd.DataFrame) -> dict[str, Any]:
 
     checks: checks of all parts, with the name of the part as the first level of the index.
     """
-    own = {name: checks[checks.index.get_level_values("part") == name] for name in PARTS}
-    of_parts = {name: verdicts.of_part(part["outcome"]) for name, part in own.items()}
-    claims = [
-        verdicts.of_claim(of_parts[n] for n, p in PARTS.items() if p.claim == claim and p.counts)
+    parts: list[Row] = []
+    for name, part in PARTS.items():
+        own = checks[checks.index.get_level_values("part") == name]
+        parts.append(
+            {
+                "part": name,
+                "part_claim": part.claim,
+                "part_text": part.text,
+                "part_counts": part.counts,
+                "part_where": verdicts.where(own),
+                "part_shown_by": verdicts.shown_by(own),
+                "part_verdict": verdicts.of_part(own["outcome"]),
+            }
+        )
+        for code, word in enumerate(verdicts.OUTCOMES):
+            parts[-1][f"part_{word}"] = int((own["outcome"] == code).sum())
+    of_claims = [
+        [p["part_verdict"] for p in parts if p["part_claim"] == claim and p["part_counts"]]
         for claim in STATEMENTS
     ]
-    columns = ("run", "other_run", "amplitude", "velocity", "value", "against", "margin", "error")
     return {
         "claim": list(STATEMENTS),
         "statement": list(STATEMENTS.values()),
-        "verdict": claims,
-        "part": list(PARTS),
-        "part_claim": [part.claim for part in PARTS.values()],
-        "part_text": [part.text for part in PARTS.values()],
-        "part_counts": [part.counts for part in PARTS.values()],
-        "part_where": [verdicts.where(part) for part in own.values()],
-        "part_shown_by": [verdicts.shown_by(part) for part in own.values()],
-        "part_verdict": list(of_parts.values()),
-        **{
-            f"part_{name}": [int((part["outcome"] == code).sum()) for part in own.values()]
-            for code, name in enumerate(verdicts.OUTCOMES)
-        },
+        "verdict": [verdicts.of_claim(codes) for codes in of_claims],
+        **{name: [part[name] for part in parts] for name in parts[0]},
         "check_part": checks.index.get_level_values("part"),
-        **{f"check_{name}": checks[name] for name in (*columns, "outcome")},
+        **{f"check_{name}": checks[name] for name in (*COLUMNS, "against", "margin", "outcome")},
     }
 
 
@@ -165,7 +170,7 @@ def command(request: dict) -> str:
 
 def _patches(study: Claims, answers: Answers) -> dict:
     """Return the stick patches and edges at the smallest velocity and the amplitude nearest 1."""
-    rows = [answers(fine) for fine, _ in evidence.requests_of(study)["periods"]]
+    rows = [answers(fine) for fine, _ in evidence.periods(study)]
     slowest = min(float(row["velocity"]) for row in rows)
     rows = [r for r in rows if float(r["velocity"]) == slowest and r.get("converged")]
     if not rows:

@@ -16,6 +16,8 @@ evidence has a line for each row, with the columns
 from __future__ import annotations
 
 from collections.abc import Callable
+from functools import partial
+from itertools import product
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -55,6 +57,8 @@ STIFF_EXPONENTS = (100, 50, 25)
 """Indenter exponents for extrapolation to a flat end.  A flat end has a constant stiffness."""
 STIFF_AMPLITUDES, STIFF_RATIOS = (0.4, 0.8), (0.02, 0.1, 0.2, 0.35, 0.5, 0.7, 0.9)
 """Amplitudes of the indentation, and ratios of the velocity to the amplitude."""
+COLUMNS = ("amplitude", "velocity", "run", "other_run", "other", "value", "error")
+"""Columns of a table of evidence."""
 
 
 # Requests
@@ -75,24 +79,49 @@ def paper_run(motion: str, amplitude: float) -> dict:
 
     The run has 32 x 32 squares and 8,000 steps.
     """
-    place = forms.at(Point(motion, PAPER_VELOCITY, amplitude))
     sizes = {"cells": PAPER_SQUARES, "angles": 1, "steps": PAPER_STEPS}
     how = {"model": "cartesian", "method": "paper", "tolerance": PAPER_TOLERANCE}
-    return request_of("run", **place, **how, **sizes)
+    return forms.of("run", Point(motion, PAPER_VELOCITY, amplitude), **how, **sizes)
 
 
-def requests_of(study: Claims) -> dict[str, list[list[dict]]]:
-    """Return all tables of requests by name."""
+def periods(study: Claims) -> list[list[dict]]:
+    """Return the requests for periods of the oscillating bore near static friction."""
+    near_static = [v for v in velocities(study) if v <= NEAR_STATIC][-2:]
+    sizes = study.cells, 2 * (study.cells // 4)
+    return [
+        [
+            forms.of("patches", Point("bore", v, a), cells=n, angles=n, steps=PERIOD_STEPS)
+            for n in sizes
+        ]
+        for v, a in product(near_static, static_amplitudes(study, "bore"))
+    ]
+
+
+def sources(study: Claims) -> dict[str, tuple[list[list[dict]], Callable[..., dict]]]:
+    """Return the tables that are read from runs, by name.
+
+    A table has rows of requests, and a function that reads a line of evidence from the results of a
+    row.
+    """
 
     def point(*place: Any, model: str = "auto", cells: int | None = None) -> dict:
         return forms.solve(Point(*place), study.tolerance, model, cells)
 
-    tables = {}
+    def stiff(amplitude: float, ratio: float) -> list[dict]:
+        one = point("normal:indentation=1", amplitude * ratio, amplitude)
+        return [one | {"pressure": f"power:exponent={n}"} for n in STIFF_EXPONENTS]
+
+    flat = [stiff(*place) for place in product(STIFF_AMPLITUDES, STIFF_RATIOS)]
+    tables: dict[str, tuple[list[list[dict]], Callable[..., dict]]] = {
+        "steady": (
+            [[point("continuous-bore", v, model="polar")] for v in STEADY_VELOCITIES],
+            point_of,
+        ),
+        "flat end": (flat, flat_end_of),
+    }
     for motion in MOTIONS:
         amplitudes = study.amplitude[motion]
-        tables[motion] = [[point(motion, v, a)] for a in amplitudes for v in velocities(study)]
-        tables[f"{motion} closed"] = [[point(motion, 0.0, a)] for a in amplitudes]
-        tables[f"{motion} limit"] = [
+        limits = [
             [
                 point(motion, 0.0, a),
                 point(motion, 0.0, a, model=exact_model(motion, 0.0)),
@@ -101,38 +130,28 @@ def requests_of(study: Claims) -> dict[str, list[list[dict]]]:
             ]
             for a in static_amplitudes(study, motion)
         ]
+        moving = [[point(motion, v, a)] for a, v in product(amplitudes, velocities(study))]
+        tables[motion] = moving, point_of
+        tables[f"{motion} closed"] = [[point(motion, 0.0, a)] for a in amplitudes], point_of
+        tables[f"{motion} limit"] = limits, limit_of
     largest = study.amplitude["transverse"][-1]
-    if largest > STATIC_AMPLITUDES["transverse"]:  # the whole contact slides
-        run = paper_run("transverse", largest)
-        tables["sliding"] = [[run, point("transverse", PAPER_VELOCITY, largest)]]
-    near_static = [v for v in velocities(study) if v <= NEAR_STATIC][-2:]
-    tables["periods"] = [
-        [
-            request_of(
-                "patches", **forms.at(Point("bore", v, a)), cells=n, angles=n, steps=PERIOD_STEPS
-            )
-            for n in (study.cells, 2 * (study.cells // 4))
-        ]
-        for v in near_static
-        for a in static_amplitudes(study, "bore")
-    ]
-    tables["steady"] = [[point("continuous-bore", v, model="polar")] for v in STEADY_VELOCITIES]
-    tables["transients"] = [
+    run = [paper_run("transverse", largest), point("transverse", PAPER_VELOCITY, largest)]
+    slides = largest > STATIC_AMPLITUDES["transverse"]  # the whole contact
+    tables["sliding"] = [run] if slides else [], paper_run_of
+    transients = [
         [request_of("history", start=start, cells=n, **TRANSIENT) for n in CELLS]
         for start in STARTS
     ]
-    tables["fields"] = [
+    for name in ("force_forward", "torque"):
+        tables[name] = transients, partial(end_of, name)
+    fields = [
         [request_of("field", motion="continuous-bore", velocity=v, cells=n) for n in CELLS]
         for v in FIELD_VELOCITIES
     ]
-    tables["flat end"] = [
-        [
-            point("normal:indentation=1", a * ratio, a) | {"pressure": f"power:exponent={n}"}
-            for n in STIFF_EXPONENTS
-        ]
-        for a in STIFF_AMPLITUDES
-        for ratio in STIFF_RATIOS
-    ]
+    for name, read in (("ratio", traction_ratio), ("angle", traction_angle)):
+        tables[name] = fields, partial(both_of, read)
+    for name, read in (("least stick", least_stick), ("lead", lead)):
+        tables[name] = periods(study), partial(both_of, read)
     return tables
 
 
@@ -143,43 +162,28 @@ def tables_of(study: Claims, answers: Answers) -> dict[str, pd.DataFrame]:
     """Return all tables of evidence by name."""
     import pandas as pd
 
-    requests = requests_of(study)
-
-    def table(name: str, read: Callable[..., dict]) -> pd.DataFrame:
+    tables = {}
+    for name, (requests, read) in sources(study).items():
         lines = []
-        for some in requests.get(name, []):
+        for some in requests:
             rows = [answers(request) for request in some]
             keys = {"run": rows[0]["key"], "other_run": "".join(row["key"] for row in rows[1:2])}
             place = {axis: number(some[0], axis) for axis in ("amplitude", "velocity")}
             lines.append(place | keys | {"other": np.nan} | read(*rows))
-        names = ["amplitude", "velocity", "run", "other_run", "other", "value", "error"]
-        return pd.DataFrame(lines) if lines else pd.DataFrame(columns=names, dtype=float)
-
-    tables = {"steady": table("steady", point_of), "flat end": table("flat end", flat_end_of)}
+        tables[name] = pd.DataFrame(lines) if lines else pd.DataFrame(columns=COLUMNS, dtype=float)
     tables["steady faster"] = beside_previous(tables["steady"])
     for motion in MOTIONS:
-        points, closed = table(motion, point_of), table(f"{motion} closed", point_of)
-        limit = table(f"{motion} limit", limit_of)
+        points, closed, limit = (tables[f"{motion}{part}"] for part in ("", " closed", " limit"))
         static = points[points["amplitude"] <= STATIC_AMPLITUDES[motion]]
         rings = {"value": limit["rings"], "error": limit["rings_error"], "run": limit["other_run"]}
         every = pd.concat([closed, points]).sort_values(["amplitude", "velocity"])
         tables |= {
-            motion: points,
-            f"{motion} closed": closed,
-            f"{motion} limit": limit,
             f"{motion} rings": limit.assign(**rings, other_run=""),
             f"{motion} slow": static[static["velocity"] == velocities(study)[0]],
             f"{motion} paper": static[static["velocity"] == PAPER_VELOCITY],
             f"{motion} faster": beside_previous(every, "amplitude"),
             f"{motion} larger": beside_previous(points, "velocity"),
         }
-    tables["sliding"] = table("sliding", paper_run_of)
-    for name in ("force_forward", "torque"):
-        tables[name] = table("transients", lambda *rows, name=name: end_of(name, *rows))
-    for name, read in (("ratio", traction_ratio), ("angle", traction_angle)):
-        tables[name] = table("fields", lambda *rows, read=read: both_of(read, *rows))
-    for name, read in (("least stick", least_stick), ("lead", lead)):
-        tables[name] = table("periods", lambda *rows, read=read: both_of(read, *rows))
     return tables
 
 

@@ -17,7 +17,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Iterator
 from importlib import import_module
 from types import ModuleType
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from microslip.foundation.canonical import canonical_json, sha256
 from microslip.studies.answers import Answers, rows_of
@@ -79,12 +79,11 @@ def undivided(
             about = row["long_name"], row["kind"], row["units"]
             variables[name] = variable(row["dims"].split(), values[name], *about)
     # The keys also depend on the sources of the methods.
-    more: dict[str, Any] = {"results_digest": sha256("\n".join(sorted(answers.keys)))}
-    tolerance = getattr(settings, "tolerance", None)
-    more |= {"comment": module.COMMENT} | ({} if tolerance is None else {"tolerance": tolerance})
-    attributes = sweep_dataset.provenance(
-        module.TITLE, settings.model_dump(), answers.versions, **more
-    )
+    keys = sorted({row["key"] for _, row in answers.rows.values()})
+    more = {"results_digest": sha256("\n".join(keys)), "comment": module.COMMENT}
+    own = settings.model_dump()
+    more |= {"tolerance": own["tolerance"]} if "tolerance" in own else {}
+    attributes = sweep_dataset.provenance(module.TITLE, own, answers.versions, **more)
     return xr.Dataset(variables, attrs=attributes)
 
 

@@ -17,6 +17,7 @@ file can prescribe the model and the resolution for that method.
 
 from __future__ import annotations
 
+from collections.abc import Iterable, Iterator
 from typing import TYPE_CHECKING, Any, NamedTuple, Union
 
 from microslip.foundation.machine import cpu_model
@@ -28,10 +29,6 @@ if TYPE_CHECKING:
 
 RINGS_TOLERANCE, TOLERANCE = 1e-6, 3e-5
 """Tolerance of a reference computed with rings (cheap), and with angular points."""
-MOST_WORK = 5_000_000
-"""Work budget of a probe (number of step solves times number of unknowns).  It is several times the
-work of the shipped method."""
-
 ROTATIONS = ("bore", "continuous-bore")
 """Motions with a rotation, to which few models apply."""
 OF_ROTATIONS = ("rigid", "polar", "cartesian")
@@ -137,43 +134,11 @@ def ladder(model: str, method: str, count: int) -> list[tuple[int, Level, float]
 # Requests
 
 
-def at(point: AnyPoint) -> dict[str, Any]:
-    """Return the arguments of a request that describe a point."""
-    return {name: getattr(point, name) for name in Point._fields}
-
-
-def trial(
-    point: AnyPoint, model: str, method: str, level: Level, tolerance: float, repeats: int
-) -> dict:
-    """Return the request for a timed run at a level of a ladder.
-
-    The number of steps of a steady motion is None.
-    """
-    steps = None if point.amplitude is None else level.steps
-    how = {"model": model, "method": method, "tolerance": tolerance, "repeats": repeats}
-    sizes = level._asdict() | {"steps": steps}
-    return request_of("trial", cpu=cpu_model(), **at(point), **how, **sizes)
-
-
-def choice(point: AnyPoint, tolerance: float, repeats: int) -> dict:
-    """Return the request for a timed solve at a tolerance."""
-    how = {"cpu": cpu_model(), "tolerance": tolerance, "repeats": repeats}
-    return request_of("choice", **at(point), **how)
-
-
-def probe(
-    point: AnyPoint,
-    method: str,
-    tolerance: float,
-    cells: int | None = None,
-    steps: int | None = None,
-) -> dict:
-    """Return the request for an untimed solve with a method and the budget MOST_WORK.
-
-    cells, steps: imposed resolution.  If None, the resolution follows from the tolerance.
-    """
-    how = {"method": method, "model": "auto", "tolerance": tolerance, "most_work": MOST_WORK}
-    return request_of("probe", **at(point), **how, cells=cells, steps=steps)
+def of(kind: str, point: AnyPoint, **arguments: Any) -> dict:
+    """Return the request of a kind at a point.  A timed request contains the name of the CPU."""
+    place = {name: getattr(point, name) for name in Point._fields}
+    timed = {"cpu": cpu_model()} if kind in ("trial", "choice") else {}
+    return request_of(kind, **place, **timed, **arguments)
 
 
 def solve(point: AnyPoint, tolerance: float, model: str = "auto", cells: int | None = None) -> dict:
@@ -181,11 +146,25 @@ def solve(point: AnyPoint, tolerance: float, model: str = "auto", cells: int | N
 
     cells: imposed number of rings or squares.  If None, it follows from the tolerance.
     """
-    how = {"model": model, "tolerance": tolerance, "cells": cells, "steps": None}
-    return request_of("point", **at(point), **how)
+    return of("point", point, model=model, tolerance=tolerance, cells=cells, steps=None)
 
 
 def reference(point: AnyPoint) -> dict:
     """Return the request for the reference of a point, at a tight tolerance."""
     rings = exact_model(point.motion, point.poisson) == "radial"
     return solve(point, RINGS_TOLERANCE if rings else TOLERANCE)
+
+
+def trials(
+    point: AnyPoint, methods: Iterable[str], levels: int, repeats: int
+) -> Iterator[tuple[int, dict]]:
+    """Yield (level number, request) for timed runs of methods, with all of their models and levels.
+
+    The number of steps of a steady motion is None.
+    """
+    for method in methods:
+        for model in models_for(method, point.motion, point.poisson):
+            for k, level, tolerance in ladder(model, method, levels):
+                sizes = level._asdict() | ({"steps": None} if point.amplitude is None else {})
+                how = {"model": model, "method": method, "tolerance": tolerance} | sizes
+                yield k, of("trial", point, repeats=repeats, **how)

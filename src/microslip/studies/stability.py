@@ -25,12 +25,17 @@ if TYPE_CHECKING:
 
 TRUTH_SHARE = 0.1
 """Tolerance of the references, divided by the tolerance of the probes."""
+MOST_WORK = 5_000_000
+"""Work budget of a probe (number of step solves times number of unknowns).  It is several times the
+work of the shipped method."""
 BLOCKS_PER_JOB = 5
 """Number of blocks in one job."""
 UNSOLVED = "a step was left unsolved"
 """First words of `reason` if a run reached the iteration limit close to the solution of a step."""
 OUTCOMES = ("not_applicable", "converged", "slow", "wrong", "diverged")
 NOT_APPLICABLE, CONVERGED, SLOW, WRONG, DIVERGED = range(len(OUTCOMES))
+NUMBERS = {"mu_macro": "mu_macro", "claimed_error": "mu_macro_error", "work": "work"}
+"""Variables of the dataset, and their entries in the result of a probe."""
 
 TITLE = "Where methods for the friction of a vibrated Hertz contact fail"
 COMMENT = "The outcome of a method is judged by the distance from the reference of the case."
@@ -44,11 +49,13 @@ def cases(study: Stability) -> list[tuple[str, Block, float]]:
     return [(name, block, v) for name, block in study.axes.items() for v in block.values]
 
 
-def _point(block: Block, value: float) -> Point:
-    place = {name: getattr(block, name)[0] for name in ("velocity", "amplitude", "poisson")}
-    if block.quantity in place:
-        place[block.quantity] = value
-    return Point(block.motion, **place)
+def _place(block: Block, value: float) -> tuple[Point, dict[str, Any]]:
+    """Return the point of a case, and its imposed resolution."""
+    names = ("velocity", "amplitude", "poisson", "cells", "steps")
+    first = {name: values[0] for name in names if (values := getattr(block, name))}
+    at = first | {block.quantity: value}
+    point = Point(block.motion, *(at[name] for name in names[:3]))
+    return point, {name: at.get(name) for name in names[3:]}
 
 
 def probe(study: Stability, method: str, block: Block, value: float) -> dict | None:
@@ -63,18 +70,15 @@ def probe(study: Stability, method: str, block: Block, value: float) -> dict | N
             return None
         words = (f"{k}={text_of_number(n)}" for k, n in (numbers | {"step": value}).items())
         method = f"{name}:{','.join(words)}"
-    resolution = {
-        name: values[0] for name in ("cells", "steps") if (values := getattr(block, name))
-    }
-    if block.quantity in resolution:
-        resolution[block.quantity] = value
-    return forms.probe(_point(block, value), method, study.tolerance, **resolution)
+    point, sizes = _place(block, value)
+    how = {"model": "auto", "method": method, "tolerance": study.tolerance, "most_work": MOST_WORK}
+    return forms.of("probe", point, **how, **sizes)
 
 
 def reference(study: Stability, block: Block, value: float) -> dict:
     """Return the request for the reference of a case: the shipped method without an imposed
     resolution."""
-    return forms.solve(_point(block, value), TRUTH_SHARE * study.tolerance)
+    return forms.solve(_place(block, value)[0], TRUTH_SHARE * study.tolerance)
 
 
 def requests(study: Stability) -> Iterator[tuple[tuple, dict]]:
@@ -133,15 +137,13 @@ def values(study: Stability, answers: Answers) -> dict[str, Any]:
     mu = np.array([number(truth, "mu_macro") for truth in truths])
     error = np.array([number(truth, "mu_macro_error") for truth in truths])
     imposed = [bool(block.cells or block.steps) for _, block, _ in every]
-    probes = [[probe(study, m, block, v) for _, block, v in every] for m in study.methods]
-    results: list[list[Row]] = [
-        [{"applies": False} if request is None else answers(request) for request in row]
-        for row in probes
-    ]
-    names = {"mu_macro": "mu_macro", "claimed_error": "mu_macro_error", "work": "work"}
+    results: list[list[Row]] = []
+    for method in study.methods:
+        probes = [probe(study, method, block, value) for _, block, value in every]
+        results.append([{"applies": False} if one is None else answers(one) for one in probes])
     numbers = {
         name: np.array([[number(result, key) for result in row] for row in results])
-        for name, key in names.items()
+        for name, key in NUMBERS.items()
     }
     outcomes = [
         [outcome(*four) for four in zip(row, mu, error, imposed, strict=True)] for row in results

@@ -12,13 +12,13 @@ statements in plain words, and parts.csv contains a row for each part:
 
 from __future__ import annotations
 
-import csv
 from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
+from microslip.datasets.variables import rows
 from microslip.studies import verdicts
 from microslip.studies.static_limits import asymptote
 from microslip.theory import oscillating_load, paper
@@ -118,11 +118,6 @@ MARGINS: dict[str, Numbers] = {
 """Margins of checks by name.  A margin is positive where the part holds."""
 
 
-def _rows(name: str) -> list[dict[str, str]]:
-    with open(Path(__file__).with_name(name), newline="", encoding="utf-8") as file:
-        return list(csv.DictReader(file))
-
-
 def _part(row: dict[str, str]) -> Part:
     limit = LIMITS.get(row["limit"], np.nan)
     text = row["text"].format(limit=f"{limit:g}", percent=f"{100 * limit:g}")
@@ -130,7 +125,8 @@ def _part(row: dict[str, str]) -> Part:
     return Part(**values | {"limit": limit, "text": text})
 
 
-STATEMENTS = {int(row["claim"]): row["text"] for row in _rows("statements.csv")}
+FOLDER = Path(__file__).parent
+STATEMENTS = {int(row["claim"]): row["text"] for row in rows(FOLDER / "statements.csv")}
 """The statements by number."""
-PARTS = {part.part: part for part in map(_part, _rows("parts.csv"))}
+PARTS = {part.part: part for part in map(_part, rows(FOLDER / "parts.csv"))}
 """The parts of all statements by name."""

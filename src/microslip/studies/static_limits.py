@@ -14,6 +14,7 @@ import scipy
 from numpy.typing import ArrayLike
 
 from microslip.config.settings import STATIC_AMPLITUDES
+from microslip.datasets.catalogue import FORMS, STATIC
 from microslip.studies import evidence
 from microslip.theory import hertz, paper
 
@@ -23,18 +24,10 @@ if TYPE_CHECKING:
     from microslip.config.settings import Claims
 
 FORMULAS = {
-    "transverse": {
-        "slider": ("mu_static_slider", paper.static_slider),
-        "zone": ("mu_static_stick_zone", paper.static_transverse),
-    },
-    "bore": {
-        "zone": ("mu_static_stick_zone", paper.static_bore),
-        "zone_printed": ("mu_static_stick_zone_printed", paper.static_bore_printed),
-    },
+    "transverse": {"slider": "mu_static_slider", "zone": "mu_static_stick_zone"},
+    "bore": {"zone": "mu_static_stick_zone", "zone_printed": "mu_static_stick_zone_printed"},
 }
-"""The paper's formulas for each motion: name in datasets.catalogue, and function."""
-LIMITS = {"transverse": paper.static_limit_transverse, "bore": paper.static_limit_bore}
-"""Exact static limit of each motion."""
+"""The paper's formulas for each motion: names in datasets.catalogue."""
 CURVE_POINTS = 501
 SHARE_AMPLITUDES = {"transverse": (0.1, 0.25, 0.5, 0.75), "bore": (0.25, 0.5, 1.0, 2.0)}
 """Amplitudes at which the fractions of the friction bound are drawn."""
@@ -96,11 +89,9 @@ def values(study: Claims, tables: dict[str, pd.DataFrame]) -> dict[str, Any]:
     for motion in FORMULAS:
         shown = np.array(SHARE_AMPLITUDES[motion])
         at = motion, radius, shown[:, None]
+        limit, march, slow = (tables[f"{motion} {name}"] for name in ("limit", "slow", "paper"))
         columns = {"used_share": used_share(*at), "left_share": left_share(*at)}
-        columns |= {"share_amplitude": shown} | _curves(motion)
-        columns |= _table(
-            motion, *(tables[f"{motion} {name}"] for name in ("limit", "slow", "paper"))
-        )
+        columns |= {"share_amplitude": shown} | _curves(motion) | _table(motion, limit, march, slow)
         entries |= {f"{motion}_{name}": value for name, value in columns.items()}
     return entries
 
@@ -108,10 +99,10 @@ def values(study: Claims, tables: dict[str, pd.DataFrame]) -> dict[str, Any]:
 def _curves(motion: str) -> dict:
     """Return the static limit and the formulas on a fine axis, and their largest differences."""
     amplitude = np.linspace(0.0, STATIC_AMPLITUDES[motion], CURVE_POINTS)
-    exact = np.asarray(LIMITS[motion](amplitude))
+    exact = FORMS[motion][STATIC].function(amplitude)
     entries: dict[str, Any] = {"curve_amplitude": amplitude, "curve_limit": exact}
-    for name, (_, formula) in FORMULAS[motion].items():
-        curve = np.asarray(formula(amplitude))
+    for name, form in FORMULAS[motion].items():
+        curve = FORMS[motion][form].function(amplitude)
         most = int(np.argmax(curve - exact))
         entries |= {f"curve_{name}": curve, f"gap_{name}": (curve - exact)[most]}
         entries[f"gap_{name}_at"] = amplitude[most]
@@ -126,31 +117,27 @@ def _table(motion: str, limit: pd.DataFrame, march: pd.DataFrame, slow: pd.DataF
     limit, march, slow: static limit, and friction at the smallest velocity of the study and of the
     paper, with a line for each amplitude.
     """
-    exact, error, squares, own = (
-        limit[name].to_numpy() for name in ("value", "error", "squares", "paper")
-    )
-    mu, mu_error = slow["value"].to_numpy(), slow["error"].to_numpy()
-    formulas = {
-        name: formula(limit["amplitude"].to_numpy())
-        for name, (_, formula) in FORMULAS[motion].items()
-    }
+    limit, march, slow = (table.set_index("amplitude") for table in (limit, march, slow))
+    exact, own = limit["value"], limit["paper"]
+    amplitude = limit.index.to_numpy(float)
+    formulas = {n: FORMS[motion][form].function(amplitude) for n, form in FORMULAS[motion].items()}
     with np.errstate(invalid="ignore", divide="ignore"):
         lost = np.where(formulas["zone"] > 0.0, 1.0 - exact / formulas["zone"], np.nan)
     return formulas | {
-        "amplitude": limit["amplitude"],
+        "amplitude": amplitude,
         "limit": exact,
-        "limit_error": error,
-        "limit_squares": squares,
+        "limit_error": limit["error"],
+        "limit_squares": limit["squares"],
         "march": march["value"],
         "march_error": march["error"],
-        "slow": mu,
-        "slow_error": mu_error,
+        "slow": slow["value"],
+        "slow_error": slow["error"],
         "paper": own,
         "paper_shift": own - exact,
-        "from_velocity": mu - exact,
-        "from_velocity_error": mu_error + error,
-        "from_resolution": own - mu,
-        "from_resolution_error": mu_error,
-        "squares_shift": squares - exact,
+        "from_velocity": slow["value"] - exact,
+        "from_velocity_error": slow["error"] + limit["error"],
+        "from_resolution": own - slow["value"],
+        "from_resolution_error": slow["error"],
+        "squares_shift": limit["squares"] - exact,
         "lost": lost,
     }
