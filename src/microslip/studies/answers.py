@@ -7,7 +7,6 @@ from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
 
-from microslip.datasets.variables import rows
 from microslip.foundation.canonical import canonical_json
 
 Row = dict[str, Any]
@@ -61,6 +60,8 @@ def rows_of(table: str, study: str) -> Iterator[dict[str, str]]:
 
     table: "variables.csv" or "groups.csv".
     """
+    from microslip.datasets.variables import rows  # imports NumPy
+
     for row in rows(Path(__file__).with_name(table)):
         if row["study"] == study:
             for motion in MOTIONS if "{motion}" in row["dims"] else MOTIONS[:1]:
