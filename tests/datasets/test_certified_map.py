@@ -1,4 +1,4 @@
-"""Interpolation in certified maps, and arrays of dask."""
+"""Certified maps over velocity, amplitude and Poisson's ratio, and of the static limit."""
 
 from types import SimpleNamespace
 
@@ -9,46 +9,90 @@ from stubs import certified_stub
 from stubs.eq6_map import places
 
 from microslip.datasets import certified_map, netcdf
+from microslip.datasets.interpolation import COORDINATES
 from microslip.foundation.errors import InputError
 from microslip.theory import paper
 
-ERROR = 1e-2
+AXES = ("velocity", "amplitude", "poisson")
+PLAIN = {"velocity": [0.001, 10], "amplitude": [0, 3], "error": 1e-2}
+STATIC = {"velocity": [0], "amplitude": [0, 1.5], "error": 2e-3}
+MAPS = {
+    "plain": PLAIN,
+    "poisson": PLAIN | {"velocity": [0.01, 10], "poisson": [0, 0.4], "error": 3e-2},
+    "static": STATIC,
+    "static poisson": STATIC | {"poisson": [0, 0.5]},
+}
+DIRECTIONS = {
+    "plain": "velocity amplitude",
+    "poisson": "velocity amplitude poisson",
+    "static": "amplitude",
+    "static poisson": "amplitude poisson",
+}
 
 
-def friction(velocity, amplitude):
-    """An invented smooth friction: Eq 6 with the power 1.5 of the amplitude."""
-    return paper.large_amplitude_transverse(velocity, np.asarray(amplitude) ** 1.5)
+def friction(velocity, amplitude, poisson):
+    """The static limit, and an invented friction: Eq 6 with the power 1.5 of the amplitude.  Both
+    depend on Poisson's ratio."""
+    moving = paper.large_amplitude_transverse(np.maximum(velocity, 1e-9), amplitude**1.5)
+    static = paper.static_limit_transverse(amplitude) * (1.0 - 0.1 * poisson**2)
+    return np.where(velocity > 0, 1.0 - (1.0 - moving) * (1.0 - poisson**2), static)
 
 
 def record(request):
-    place = float(request["velocity"]), float(request["amplitude"])
-    return certified_stub.record(request, float(friction(*place)))
+    place = (np.array(float(request[name])) for name in AXES)
+    error = 1e-5 if request["velocity"] == "0" else 1e-4
+    return certified_stub.record(request, float(friction(*place)), error)
+
+
+def made_of(name):
+    """A certified map and the records of its points."""
+    map_ = certified_stub.configured("transverse", **MAPS[name])
+    return SimpleNamespace(map=map_, records=certified_stub.played(map_, record))
+
+
+def reopened(made, folder):
+    return certified_stub.reopened(certified_map.build(made.map, "map", made.records)[0], folder)
 
 
 @pytest.fixture(scope="module")
 def made():
-    """A certified map of the invented friction, and the records of its points."""
-    axes = {"velocity": [0.001, 10], "amplitude": [0, 3], "error": ERROR}
-    map_ = certified_stub.configured("transverse", **axes)
-    return SimpleNamespace(map=map_, records=certified_stub.played(map_, record))
+    return made_of("plain")
 
 
 @pytest.fixture(scope="module")
 def dataset(made, tmp_path_factory):
     """The dataset of `made`, read from a file."""
-    built = certified_map.build(made.map, "map", made.records)[0]
-    return certified_stub.reopened(built, tmp_path_factory.mktemp("certified"))
+    return reopened(made, tmp_path_factory.mktemp("certified"))
 
 
-def test_answers_are_within_their_errors_and_these_within_what_was_asked(dataset):
-    velocity, amplitude = places(2000)
-    answer = dataset.microslip.at(velocity, amplitude)
-    miss = abs(answer.mu_macro - friction(velocity.values, amplitude.values))
+@pytest.mark.parametrize("name", MAPS)
+def test_answers_are_within_their_errors_and_these_within_what_was_asked(name, tmp_path):
+    data, settings, count = reopened(made_of(name), tmp_path), MAPS[name], 5000
+    decades = np.log10(settings["velocity"]) if len(settings["velocity"]) > 1 else (0, 0)
+    velocity, amplitude = places(count, decades, settings["amplitude"])
+    velocity = velocity if "velocity" in DIRECTIONS[name] else 0.0 * velocity
+    poisson = places(count, amplitude=settings.get("poisson", (0, 0)), seed=2)[1]
+    more = {"poisson": poisson} if "poisson" in settings else {}
+    answer = data.microslip.at(velocity, amplitude, **more)
+    miss = abs(answer.mu_macro - friction(velocity.values, amplitude.values, poisson.values))
     assert float((miss <= answer.mu_macro_error).mean()) >= 0.999
-    assert float(answer.mu_macro_error.max()) <= ERROR
-    assert dataset.sizes["point"] == len(np.unique(dataset.cell_node))
-    solved = zip(dataset.velocity.values, dataset.amplitude.values, strict=True)
-    assert dataset.points == len(set(solved))
+    assert float(answer.mu_macro_error.max()) <= settings["error"]
+    assert data.directions == DIRECTIONS[name]
+    assert data.sizes["point"] == len(np.unique(data.cell_node))
+    solved = [np.broadcast_to(data[axis], data.sizes["point"]) for axis in AXES]
+    assert data.points == len(set(zip(*solved, strict=True)))
+    assert data.points < 50 or name != "static"
+
+
+def test_points_of_a_cell_are_listed_with_the_last_direction_fastest(tmp_path):
+    data = reopened(made_of("static poisson"), tmp_path)
+    assert data.degrees.tolist() == [4, 2] and data.sizes["node"] == 5 * 3
+    poisson = data.poisson.values[data.cell_node.values[:, :3]]
+    assert (np.diff(poisson) > 0.0).all()
+    assert set(np.unique(data.poisson)) >= {0.0, 0.25, 0.5}
+    assert (data.cell_poisson_low < data.cell_poisson_high).all()
+    with pytest.raises(InputError, match="velocity = 0.1: allowed is 0"):
+        data.microslip.at(0.1, 0.5, poisson=0.1)
 
 
 def test_at_a_node_the_answer_is_the_node(dataset):
@@ -83,28 +127,22 @@ def test_in_chunks_the_answer_is_the_same_and_waits(dataset):
     velocity, amplitude = places(1000)
     at_once = dataset.microslip.at(velocity, amplitude)
     lazy = dataset.microslip.at(velocity.chunk(n=300), amplitude.chunk(n=300))
-    assert {name: lazy[name].chunks for name in lazy.data_vars} == dict.fromkeys(
-        at_once.data_vars, ((300, 300, 300, 100),)
-    )
+    assert lazy.mu_macro.chunks == lazy.mu_macro_error.chunks == ((300, 300, 300, 100),)
     xr.testing.assert_identical(lazy.compute(), at_once)
     outer = velocity[:20].chunk(n=7), amplitude[:30].rename(n="a")
     lazy = dataset.microslip.at(*outer)
     assert lazy.mu_macro.dims == ("a", "n")
     xr.testing.assert_identical(lazy.compute(), dataset.microslip.at(outer[0].compute(), outer[1]))
-
-
-def test_in_chunks_a_bad_question_is_refused_when_it_is_looked_at(dataset):
     lazy = dataset.microslip.at(xr.DataArray([1.0, -1.0], dims="n").chunk(n=2), 1.0)
     with pytest.raises(InputError, match="velocity"):
         lazy.compute()
 
 
-@pytest.mark.parametrize("name", ["mu_macro", "cell_error", "cell_low"])
-def test_what_a_map_has_lost_is_named(dataset, name):
-    with pytest.raises(InputError, match=f"{name} = None: microslip.at needs it"):
-        dataset.drop_vars(name).microslip.at(0.1, 1.0)
-
-
-def test_a_map_without_all_its_points_is_refused(dataset):
+def test_a_map_that_lacks_a_part_is_refused_by_its_name(dataset):
+    for name in ("mu_macro", "cell_error", "cell_low"):
+        with pytest.raises(InputError, match=f"{name} = None: microslip.at needs it"):
+            dataset.drop_vars(name).microslip.at(0.1, 1.0)
     with pytest.raises(InputError, match="all points"):
         dataset.isel(point=slice(0, 20)).microslip.at(0.1, 1.0)
+    with pytest.raises(InputError, match="make it again"):
+        dataset.assign_attrs({COORDINATES: '{"velocity": [0.01, 10]}'}).microslip.at(0.1, 1.0)

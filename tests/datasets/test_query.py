@@ -54,14 +54,17 @@ def test_a_dataset_can_be_pickled_after_a_query():
 
 
 def test_a_cubic_is_interpolated_exactly_on_three_axes():
-    axes = Axis(np.linspace(0, 1, 6)), Axis(np.linspace(2, 3, 7)), Axis(np.linspace(0, 0.5, 5))
+    ends = {"a": (0, 1, 6), "b": (2, 3, 7), "c": (0, 0.5, 5)}
+    axes = {name: Axis(np.linspace(*of_axis)) for name, of_axis in ends.items()}
 
     def cubic(a, b, c):
         return 1 + a - 2 * a**3 + b**2 * a - b**3 + c**3 * a
 
-    nodes = cubic(*np.meshgrid(*(axis.values for axis in axes), indexing="ij"))
+    nodes = cubic(*np.meshgrid(*(axis.values for axis in axes.values()), indexing="ij"))
     points = np.array([[0.03, 0.5, 0.97], [2.9, 2.01, 2.5], [0.0, 0.11, 0.49]])
-    value, error = Grid(axes, nodes, np.zeros(nodes.shape)).at(*points)
+    value, error = Grid(axes, nodes, np.zeros(nodes.shape)).at(
+        dict(zip("abc", points, strict=True))
+    )
     assert value == pytest.approx(cubic(*points), abs=1e-12)
     assert error == pytest.approx(0.0, abs=1e-12)
 
@@ -71,7 +74,7 @@ def test_the_bound_covers_a_kink(kink):
     axis = Axis(np.linspace(0, 1, 13))
     values = np.abs(axis.values - kink)
     x = np.linspace(0, 1, 1001)
-    value, error = Grid((axis,), values, np.zeros(values.shape)).at(x)
+    value, error = Grid({"x": axis}, values, np.zeros(values.shape)).at({"x": x})
     miss = np.abs(value - np.abs(x - kink))
     assert miss.max() > 5e-3  # the cubic has a large error at the kink
     assert (miss <= error + 1e-12).mean() > 0.99

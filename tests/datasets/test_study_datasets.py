@@ -3,20 +3,25 @@
 import netCDF4
 import numpy as np
 import pytest
-from stubs.studies_stub import GOOD, accuracy_result, answered, configured, stability_result
+from scipy.integrate import dblquad
+from stubs import studies_stub
+from stubs.studies_stub import GOOD, accuracy_result, configured, mu_of, stability_result
 
 from microslip.datasets import netcdf
 from microslip.studies import registry
 from microslip.studies.stability import OUTCOMES, outcome
 
 
+def written(folder, configuration, study, results):
+    """The dataset of a study from invented results, read from a file."""
+    path = folder / f"{study}.nc"
+    netcdf.write(path, *studies_stub.built(configuration, study, results))
+    return netcdf.whole(path)
+
+
 @pytest.fixture
 def accuracy(tmp_path):
-    """The dataset of accuracy from invented results, read from a file."""
-    answer, _ = answered(accuracy_result)
-    data = registry.undivided(configured(), "accuracy", answer)
-    netcdf.write(tmp_path / "accuracy.nc", *registry.divided(data, "accuracy"))
-    return netcdf.whole(tmp_path / "accuracy.nc")
+    return written(tmp_path, configured(), "accuracy", accuracy_result)
 
 
 def rows_of(data, **where):
@@ -33,33 +38,52 @@ def test_trials_are_rows_with_their_errors(accuracy):
     assert np.isnan(accuracy.point_amplitude.values[1])
     radial = rows_of(accuracy, point="mid", model="radial", method="shipped")
     assert list(radial.trial_cells.values) == [4, 8, 16]
+    assert list(radial.trial_level.values) == [0, 1, 2]
     assert radial.error.values == pytest.approx(0.1 / np.array([4, 8, 16]) ** 2)
     assert radial.trial_steps.values.tolist() == [16, 32, 64]
-    assert radial.converged.values.all()
-    assert np.isnan(radial.claimed_error).all()
-    (paper,) = rows_of(accuracy, method="paper", point="mid").trial_model.values
-    assert paper == "cartesian"
-    assert (rows_of(accuracy, point="steady").trial_steps.values == 0).all()
-
-
-def test_the_choice_that_follows_a_tolerance_claims_an_error(accuracy):
+    assert radial.converged.values.all() and np.isnan(radial.claimed_error).all()
     auto = rows_of(accuracy, point="mid", model="auto")
     assert set(auto.trial_method.values) == {"shipped"}
     assert auto.trial_tolerance.values == pytest.approx([1e-2, 1e-3, 1e-4])
     assert auto.claimed_error.values == pytest.approx([6e-3, 6e-4, 6e-5])
     assert auto.error.values == pytest.approx([3e-3, 3e-4, 3e-5])
-    assert (auto.trial_steps.values == 64).all()
-    assert (auto.effort.values == 900).all()
+    assert (auto.trial_steps.values == 64).all() and (auto.effort.values == 900).all()
+    assert list(rows_of(accuracy, method="paper", point="mid").trial_model.values) == ["cartesian"]
+    assert (rows_of(accuracy, point="steady").trial_steps.values == 0).all()
 
 
-def test_what_does_not_apply_has_no_row_and_what_fails_has_no_number(accuracy):
+def test_a_method_that_does_not_apply_has_no_row_and_one_that_fails_has_no_number(accuracy):
     assert not rows_of(accuracy, method="full-newton").sizes["trial"]
     euler = rows_of(accuracy, method="euler", point="mid")
     assert euler.sizes["trial"] == 3
-    assert np.isnan(euler.mu_macro).all()
-    assert not euler.converged.any()
+    assert np.isnan(euler.mu_macro).all() and not euler.converged.any()
     assert set(euler.reason.values) == {"gave up"}
-    assert not (euler.front_seconds | euler.front_effort).any()
+    count = rows_of(accuracy, point="mid").sizes["trial"]
+    line = f"mid: {count} trials, 3 not converged, reference within 2.0e-04"
+    assert list(registry.report(accuracy, "accuracy"))[0] == line
+
+
+@pytest.mark.parametrize("cost", ["seconds", "effort"])
+def test_a_front_has_converged_trials_and_errors_below_that_of_the_reference_are_equal(cost):
+    def results(request):
+        exact = {"mu_macro": mu_of(request) + 1e-9 / (request.get("cells") or 1), "effort": 1}
+        return accuracy_result(request) | (exact if request["kind"] == "trial" else {})
+
+    data = studies_stub.dataset(configured(), "accuracy", results)
+    mid = data.isel(trial=data.trial_point == "mid")
+    cheapest = mid[cost] == mid[cost].where(mid.converged).min()
+    assert mid[f"front_{cost}"].values.tolist() == (cheapest & mid.converged).values.tolist()
+
+
+def test_methods_that_never_apply_leave_a_study_without_trials(tmp_path):
+    none = configured({"methods": ["full-newton"]})
+    data = written(tmp_path, none, "accuracy", accuracy_result)
+    assert data.sizes["trial"] == 0 and data.reference.size == 2
+    assert list(registry.report(data, "accuracy"))[0].startswith(
+        "mid: 0 trials, none not converged"
+    )
+    with netCDF4.Dataset(tmp_path / "accuracy.nc") as raw:
+        assert raw["front_seconds"].flag_meanings == "no yes"
 
 
 @pytest.mark.slow
@@ -68,27 +92,23 @@ def test_references_say_where_they_come_from(accuracy):
     assert float(mid.reference) == pytest.approx(0.1 / 1.6)
     assert float(mid.reference_error) == 2e-4
     assert mid.reference_source.item() == "model radial, tolerance 1e-6"
-    # Eq 21 by quadrature of the forward component of the slip direction.
-    radius, angle = np.meshgrid(
-        (np.arange(1000) + 0.5) / 1000, (np.arange(1000) + 0.5) * np.pi / 1000, indexing="ij"
-    )
-    forward, lateral = 0.8 + radius * np.cos(angle), radius * np.sin(angle)
-    pressure = 1.5 / np.pi * np.sqrt(1 - radius**2) * radius
-    share = forward / np.hypot(forward, lateral)
-    mean = 2 * np.pi * np.mean(pressure * share)
+
+    def forward(angle, radius):
+        """Pressure times the forward component of the slip direction (Eq 21)."""
+        slip = 0.8 + radius * np.cos(angle), radius * np.sin(angle)
+        return 1.5 / np.pi * np.sqrt(1 - radius**2) * radius * slip[0] / np.hypot(*slip)
+
+    mean = 2 * dblquad(forward, 0, 1, 0, np.pi, epsabs=1e-5)[0]
     assert float(steady.reference) == pytest.approx(mean, abs=1e-4)
-    assert float(steady.reference_error) == 0
-    assert "Eq 21" in steady.reference_source.item()
+    assert float(steady.reference_error) == 0 and "Eq 21" in steady.reference_source.item()
 
 
 def test_a_reference_that_did_not_converge_says_so():
     def result(request):
-        answer = accuracy_result(request)
-        if request["kind"] == "point":
-            answer |= {"converged": False, "reason": "stalled"}
-        return answer
+        bad = {"converged": False, "reason": "stalled"} if request["kind"] == "point" else {}
+        return accuracy_result(request) | bad
 
-    data = registry.undivided(configured(), "accuracy", answered(result)[0])
+    data = studies_stub.dataset(configured(), "accuracy", result)
     assert data.reference_source.values[0] == "model radial, tolerance 1e-6, not met: stalled"
     assert data.reference.values[0] == pytest.approx(0.1 / 1.6)
 
@@ -109,8 +129,8 @@ def test_maps_hold_the_cheapest_model_that_is_good_enough(accuracy):
 
 # Outcomes of probes
 
-
-STUCK = "a step was left unsolved after 2000 iterations: residual 4.5e-06"
+FAILS = GOOD | {"converged": False, "mu_macro": None}
+COARSE = GOOD | {"converged": False, "mu_macro_error": 0.03, "mu_macro": 0.52}
 
 
 @pytest.mark.parametrize(
@@ -124,13 +144,12 @@ STUCK = "a step was left unsolved after 2000 iterations: residual 4.5e-06"
         (GOOD | {"mu_macro": 0.4979}, "wrong"),
         (GOOD | {"mu_macro_error": 0.0, "mu_macro": 0.5011}, "wrong"),
         (GOOD | {"mu_macro_error": None}, "wrong"),
-        (GOOD | {"converged": False, "reason": "no periodic state"}, "slow"),
-        (GOOD | {"converged": False, "mu_macro": 0.9, "reason": "no periodic state"}, "slow"),
+        (COARSE, "slow"),
         (GOOD | {"converged": False, "reason": "diverged: tractions of 1e9"}, "diverged"),
-        (GOOD | {"converged": False, "mu_macro": None}, "diverged"),
-        (GOOD | {"converged": False, "mu_macro": None, "reason": STUCK}, "slow"),
+        (FAILS, "diverged"),
+        (FAILS | {"reason": "a step was left unsolved after 2000 iterations"}, "slow"),
         ({"applies": True, "converged": False, "reason": "LinAlgError: singular"}, "diverged"),
-        (GOOD | {"converged": False, "mu_macro": None, "exhausted": "work"}, "slow"),
+        (FAILS | {"exhausted": "work"}, "slow"),
     ],
 )
 def test_outcomes(result, expected):
@@ -139,53 +158,35 @@ def test_outcomes(result, expected):
 
 def test_a_method_is_not_to_blame_for_a_resolution_that_was_imposed():
     """With few cells the error exceeds the tolerance for all methods."""
-    coarse = GOOD | {"converged": False, "mu_macro_error": 0.03, "mu_macro": 0.52}
-    assert OUTCOMES[outcome(coarse, 0.5, 1e-3, imposed=True)] == "converged"
-    assert OUTCOMES[outcome(coarse | {"mu_macro": 0.6}, 0.5, 1e-3, imposed=True)] == "wrong"
-    assert OUTCOMES[outcome(coarse | {"periodic": False}, 0.5, 1e-3, imposed=True)] == "slow"
-    assert OUTCOMES[outcome(coarse, 0.5, 1e-3)] == "slow"
+    for change, expected in (
+        ({}, "converged"),
+        ({"mu_macro": 0.6}, "wrong"),
+        ({"periodic": False}, "slow"),
+    ):
+        assert OUTCOMES[outcome(COARSE | change, 0.5, 1e-3, imposed=True)] == expected
 
 
-@pytest.fixture
-def atlas(tmp_path):
-    """The dataset of stability from invented results, read from a file."""
-    data = registry.undivided(configured(), "stability", answered(stability_result)[0])
-    netcdf.write(tmp_path / "stability.nc", *registry.divided(data, "stability"))
-    return netcdf.whole(tmp_path / "stability.nc")
-
-
-def test_the_atlas_holds_what_became_of_every_method(atlas, tmp_path):
+def test_the_atlas_holds_the_outcome_of_every_method(tmp_path):
+    atlas = written(tmp_path, configured(), "stability", stability_result)
     assert list(atlas.method.values) == ["shipped", "projected-gradient", "euler"]
     assert list(atlas.axis.values) == ["poisson", "step-length", "steps"]
     assert list(dict.fromkeys(atlas.case_axis.values)) == ["poisson", "step-length", "steps"]
     step_length = atlas.case_axis.values == "step-length"
-    values = [0.25, 0.5, 1.0, 2.0]
-    assert atlas.case_value.values[step_length].tolist() == values
-    assert atlas.case_label.values[step_length].tolist() == [f"{v:g}" for v in values]
+    assert atlas.case_value.values[step_length].tolist() == [0.25, 0.5, 1.0, 2.0]
+    assert atlas.case_label.values[step_length].tolist() == ["0.25", "0.5", "1", "2"]
     shipped, gradient, euler = atlas.outcome.values
-    assert (shipped == 1).all()
-    assert (gradient == 1).all()
+    assert (shipped == 1).all() and (gradient == 1).all()
     assert (euler == np.where(step_length, 0, 2)).all()
     assert atlas.error.values[0] == pytest.approx(5e-4)
     assert np.isnan(atlas.mu_macro.values[2][step_length]).all()
     assert set(atlas.reason.values[2][~step_length]) == {"gave up"}
     assert set(atlas.reason.values[2][step_length]) == {""}
-    assert (atlas.reference == 0.5).all()
-    assert all(atlas.method_summary.values)
+    assert (atlas.reference == 0.5).all() and all(atlas.method_summary.values)
+    assert list(registry.report(atlas, "stability"))[::2] == [
+        "shipped: 9 converged, 0 slow, 0 wrong, 0 diverged",
+        "euler: 0 converged, 5 slow, 0 wrong, 0 diverged",
+    ]
     with netCDF4.Dataset(tmp_path / "stability.nc") as raw:
         assert raw["outcome"].dtype == np.int8
         assert list(raw["outcome"].flag_values) == [0, 1, 2, 3, 4]
         assert raw["outcome"].flag_meanings == "not_applicable converged slow wrong diverged"
-
-
-@pytest.mark.slow
-def test_reports_count(accuracy, atlas):
-    assert list(registry.report(accuracy, "accuracy"))[0] == (
-        f"mid: {rows_of(accuracy, point='mid').sizes['trial']} trials, 3 not converged, "
-        "reference within 2.0e-04"
-    )
-    assert list(registry.report(atlas, "stability")) == [
-        "shipped: 9 converged, 0 slow, 0 wrong, 0 diverged",
-        "projected-gradient: 9 converged, 0 slow, 0 wrong, 0 diverged",
-        "euler: 0 converged, 5 slow, 0 wrong, 0 diverged",
-    ]

@@ -2,8 +2,6 @@
 
 import errno
 import json
-import subprocess
-import sys
 import time
 import warnings
 from types import SimpleNamespace
@@ -24,23 +22,19 @@ from microslip.foundation.files import CacheError
 from microslip.sweeps import request
 from microslip.theory import paper
 
-GRIDS = {
-    "transverse": {"velocity": [0.1, 1, 10], "amplitude": [0, 2]},
-    "bore": {"velocity": [0.1, 1, 10], "amplitude": [0, 2]},
-    "continuous_bore": {"velocity": [0.1, 1, 10]},
-}
-NU = {"transverse": {**GRIDS["transverse"], "poisson": [0, 0.3]}}
+AXES = {"velocity": [0.1, 1, 10], "amplitude": [0, 2]}
+GRIDS = {"transverse": AXES, "bore": AXES, "continuous_bore": {"velocity": [0.1, 1, 10]}}
 
 
-def configured(grids):
-    """A configuration of sweeps, with the figures of single runs of the sweeps that it has."""
+def records_of(name, grids):
+    """Configuration of sweeps with the figures of their single runs, and records of a sweep."""
     figures = {name: figure for name, figure in RUNS.items() if figure["sweep"] in grids}
-    return sweep_stub.configured(grids, figures=figures)
+    configuration = sweep_stub.configured(grids, figures=figures)
+    return configuration, sweep_stub.records_of(configuration, name)
 
 
 def write(name, path, grids=GRIDS):
-    configuration = configured(grids)
-    records = sweep_stub.records_of(configuration, name)
+    configuration, records = records_of(name, grids)
     netcdf.write(path, *sweep_dataset.build(configuration, name, records))
 
 
@@ -65,15 +59,13 @@ def test_points_lie_where_their_coordinates_say(tmp_path, solver):
         assert data.mu_macro.dims == ("amplitude", "velocity")
         expected = data.velocity / (1 + data.velocity + data.amplitude)
         xr.testing.assert_allclose(data.mu_macro, expected.transpose("amplitude", "velocity"))
-        assert float(data.mu_macro.sel(velocity=10, amplitude=2)) == pytest.approx(10 / 13)
-        between = data.interp(velocity=5.5, amplitude=1.0)
-        assert 0 < float(between.mu_macro) < 1
+        assert 0 < float(data.interp(velocity=5.5, amplitude=1.0).mu_macro) < 1
         assert float(data.poisson) == 0
 
 
 @pytest.mark.parametrize("more", [{}, {"stiffness": [0.5, 2]}], ids=str)
 def test_a_list_of_poissons_ratios_is_a_dimension(more, tmp_path, solver):
-    grids = {"transverse": NU["transverse"] | more}
+    grids = {"transverse": AXES | {"poisson": [0, 0.3]} | more}
     with on_disk("transverse", tmp_path, grids) as data:
         assert {*data.mu_macro.dims} == {"poisson", "amplitude", "velocity", *more}
         assert data.sel(poisson=0.3, velocity=1, amplitude=2).mu_macro.size == 2 ** len(more)
@@ -89,8 +81,7 @@ def test_errors_convergence_and_effort_are_there(tmp_path, monkeypatch):
     Solver(monkeypatch, fails=2.0)
     with on_disk("transverse", tmp_path) as data:
         assert data.converged.dtype == bool
-        assert data.converged.sel(amplitude=0).all()
-        assert not data.converged.sel(amplitude=2).any()
+        assert data.converged.sel(amplitude=0).all() and not data.converged.sel(amplitude=2).any()
         assert np.isnan(data.mu_macro.sel(amplitude=2)).all()
         assert set(microslip.texts(data.reason.sel(amplitude=2)).values) == {"no periodic state"}
         assert set(microslip.texts(data.model).values.flat) == {"polar"}
@@ -98,56 +89,61 @@ def test_errors_convergence_and_effort_are_there(tmp_path, monkeypatch):
             assert data[name].dtype.kind == ("f" if name in ("periods", "work", "effort") else "i")
             assert (data[name] == value).all()
         assert (data.mu_macro_error == 4e-5).all()
-        assert list(sweep_dataset.report(data, "transverse")) == [
+        assert list(sweep_dataset.report(data, "transverse"))[:2] == [
             "transverse: 6 points, 3 not converged",
-            *(
-                f"  not converged: amplitude 2, velocity {v}: no periodic state"
-                for v in (0.1, 1, 10)
-            ),
+            "  not converged: amplitude 2, velocity 0.1: no periodic state",
         ]
     with netCDF4.Dataset(tmp_path / "transverse.nc") as raw:
         flag = raw["converged"]
-        assert flag.dtype == np.int8
-        assert list(flag.flag_values) == [0, 1]
+        assert flag.dtype == np.int8 and list(flag.flag_values) == [0, 1]
         assert flag.flag_meanings == "not_converged converged"
         assert raw["mu_macro"].dimensions == ("amplitude", "velocity")
         assert raw["model"].flag_meanings == "polar"
         assert (raw["model"][:] == raw["model"].flag_values).all()
+        # texts of variable length crash Python if an open file is opened again
+        kinds = {str(variable.dtype) for variable in raw.variables.values()}
+        assert kinds <= {"int8", "int16", "int32", "float32", "float64"}
 
 
 def test_a_point_that_the_solver_failed_at_is_a_gap(tmp_path, monkeypatch, solver):
     monkeypatch.setattr("microslip.solve", Mock(side_effect=SolverError("stalled")))
     data = built("continuous_bore", tmp_path)
     assert np.isnan(data.mu_macro).all()
-    assert not data.converged.any()
-    assert (data.cells == 0).all()
+    assert not data.converged.any() and (data.cells == 0).all()
 
 
-def test_limits_of_the_transverse_motion(tmp_path, solver):
-    data = built("transverse", tmp_path)
-    v, a = data.velocity.values, data.amplitude.values
-    assert data.mu_large_amplitude.dims == ("amplitude", "velocity")
-    assert float(data.mu_large_amplitude.sel(velocity=1, amplitude=2)) == pytest.approx(
-        float(paper.large_amplitude_transverse(1.0, 2.0))
-    )
-    assert (data.mu_large_amplitude.sel(amplitude=0) == 1).all()
-    assert data.mu_static_slider.values == pytest.approx(paper.static_slider(a))
-    assert data.mu_static_stick_zone.values == pytest.approx(paper.static_transverse(a))
-    assert data.mu_static.values == pytest.approx(paper.static_limit_transverse(a))
-    assert v.size == 3
+LIMITS = {
+    "transverse": {
+        "mu_large_amplitude": paper.large_amplitude_transverse,
+        "mu_static_slider": lambda v, a: paper.static_slider(a),
+        "mu_static_stick_zone": lambda v, a: paper.static_transverse(a),
+        "mu_static": lambda v, a: paper.static_limit_transverse(a),
+    },
+    "bore": {
+        "mu_large_amplitude": lambda v, a: paper.large_amplitude_bore(v),
+        "mu_static_stick_zone": lambda v, a: paper.static_bore(a),
+        "mu_static_stick_zone_printed": lambda v, a: paper.static_bore_printed(a),
+        "mu_static": lambda v, a: paper.static_limit_bore(a),
+    },
+    "continuous_bore": {
+        "mu_forward_theory": lambda v, a: paper.bore_forward(v),
+        "mu_torque_theory": lambda v, a: paper.bore_torque(v),
+    },
+}
 
 
-@pytest.mark.slow
-def test_limits_of_the_bore_motions(tmp_path, solver):
-    data = built("bore", tmp_path)
-    v, a = data.velocity.values, data.amplitude.values
-    assert data.mu_large_amplitude.values == pytest.approx(paper.large_amplitude_bore(v))
-    assert data.mu_static_stick_zone.values == pytest.approx(paper.static_bore(a))
-    assert data.mu_static_stick_zone_printed.values == pytest.approx(paper.static_bore_printed(a))
-    assert data.mu_static.values == pytest.approx(paper.static_limit_bore(a))
-    data = built("continuous_bore", tmp_path)
-    assert data.mu_forward_theory.values == pytest.approx(paper.bore_forward(v))
-    assert data.mu_torque_theory.values == pytest.approx(paper.bore_torque(v))
+@pytest.mark.parametrize("name", LIMITS)
+def test_limits_are_at_the_points_and_on_fine_axes(name, tmp_path, solver):
+    data = built(name, tmp_path)
+    for limit, function in LIMITS[name].items():
+        axes = set(data[limit].dims)
+        assert axes <= set(data.mu_macro.dims)
+        places = ((0 * data[limit] + (data[axis] if axis in axes else 0)).values for axis in AXES)
+        assert data[limit].values == pytest.approx(function(*places))
+        fine = data[f"{limit}_curve"]
+        along = "velocity" if "velocity" in axes else "amplitude"
+        place = {"velocity": 1.0, "amplitude": 2.0} | {along: data[f"{along}_curve"].values}
+        assert fine.values == pytest.approx(function(*place.values()))
 
 
 @pytest.mark.slow
@@ -156,6 +152,10 @@ def test_single_runs_for_the_figures_are_in_the_dataset(tmp_path, solver):
     assert data.history_force_forward.dims == ("history_step",)
     assert data.history_phase.attrs["units"] == "rad"
     assert (float(data.history_velocity), float(data.history_amplitude)) == (0.1, 1.0)
+    history = microslip.open_map("transverse", tmp_path, group="history")
+    assert history.source_digest == data.source_digest and "Figure 1" in history.title
+    with pytest.raises(InputError, match="group = 'field': allowed is one of velocity_curves, am"):
+        microslip.open_map("transverse", tmp_path, group="field")
     data = built("continuous_bore", tmp_path)
     assert list(data.start.values) == list(request.STARTS)
     assert data.transient_torque.dims == ("start", "transient_step")
@@ -168,16 +168,15 @@ def test_single_runs_for_the_figures_are_in_the_dataset(tmp_path, solver):
 
 @pytest.mark.slow
 @pytest.mark.parametrize("name", GRIDS)
-def test_conventions_and_provenance(name, tmp_path, solver):
+def test_conventions_provenance_and_equal_bytes(name, tmp_path, solver):
     for variable in built(name, tmp_path).variables.values():
         assert 0 < len(variable.attrs["long_name"]) <= 40  # long names are labels of plots
-        if name == "continuous_bore" and "description" in variable.attrs:
-            assert variable.attrs["description"] != variable.attrs["long_name"]
+    first = (tmp_path / f"{name}.nc").read_bytes()
+    time.sleep(1.1)  # HDF5 can store times in seconds
     with on_disk(name, tmp_path) as data:
         for variable in data.variables.values():
             if variable.dtype.kind in "if" and "flag_values" not in variable.attrs:
                 assert variable.attrs["units"] in ("1", "rad")
-                assert not np.isin("_FillValue", list(variable.encoding)) or variable.ndim == 0
         assert data.Conventions == "CF-1.11"
         assert data.source.startswith(f"microslip {microslip.__version__}") and data.institution
         assert data.mu_macro.ancillary_variables == "mu_macro_error"
@@ -186,23 +185,11 @@ def test_conventions_and_provenance(name, tmp_path, solver):
         assert json.loads(data.configuration)["sweep"]["velocity"] == [0.1, 1, 10]
         assert "numba" in data.library_versions
         assert str(tmp_path) not in str(data.attrs)
+    assert (tmp_path / f"{name}.nc").read_bytes() == first
 
 
-@pytest.mark.slow
-def test_equal_results_give_equal_bytes(tmp_path, solver):
-    first, second = tmp_path / "first", tmp_path / "second"
-    for folder in (first, second):
-        for name in GRIDS:
-            write(name, folder / f"{name}.nc")
-        time.sleep(1.1 * (folder == first))  # HDF5 can store times in seconds
-    for path in first.iterdir():
-        assert path.read_bytes() == (second / path.name).read_bytes()
-
-
-@pytest.mark.slow
-def test_a_missing_or_additional_point_is_an_error(tmp_path, solver):
-    configuration = configured(GRIDS)
-    records = sweep_stub.records_of(configuration, "bore")
+def test_a_missing_or_additional_point_is_an_error(solver):
+    configuration, records = records_of("bore", GRIDS)
     for wrong in (records[:-1], [*records, records[0]]):
         with pytest.raises(ValueError, match="results for 6 points|1 single runs"):
             sweep_dataset.build(configuration, "bore", wrong)
@@ -212,24 +199,35 @@ def test_a_dataset_is_replaced_whole_or_not_at_all(tmp_path, monkeypatch, solver
     path = tmp_path / "bore.nc"
     write("bore", path)
     before = path.read_bytes()
-
     full = OSError(errno.ENOSPC, "No space left on device")
     monkeypatch.setattr(files.os, "fsync", Mock(side_effect=full))
     with pytest.raises(CacheError, match="No space left"):
-        write("transverse", path, NU)
+        write("transverse", path)
     assert path.read_bytes() == before
     assert {p.name for p in tmp_path.iterdir() if p.is_file()} == {"bore.nc"}
 
 
+def test_a_single_run_that_fails_is_left_out_and_listed(tmp_path, monkeypatch, solver):
+    fail = Mock(side_effect=SolverError("a root finder found none"))
+    monkeypatch.setattr("microslip.history", fail, raising=False)
+    data = built("transverse", tmp_path)
+    assert not [name for name in data.variables if name.startswith("history_")]
+    assert data.converged.all()
+    *_, last = sweep_dataset.report(data, "transverse")
+    assert last == "  single runs left out: history: SolverError: a root finder found none"
+
+
+# Texts, plots and joins in plain xarray
+
 VERBS = {
     "transpose": lambda data: data.transpose(),
-    "stack": lambda data: data.stack(point=("velocity", "amplitude")),
-    "unstack": lambda data: data.stack(point=("velocity", "amplitude")).unstack(),
+    "stack": lambda data: data.stack(point=("velocity", "amplitude")).unstack(),
     "where": lambda data: data.where(data.converged),
     "sortby": lambda data: data.sortby("velocity", ascending=False),
     "reindex": lambda data: data.reindex(velocity=[0.1, 0.5]),
     "roll": lambda data: data.roll(velocity=1),
-    "table": lambda data: data.to_dataframe(),
+    "part": lambda data: data.isel(velocity=[0, 2]),
+    "table": lambda data: data.to_dataframe().to_xarray(),
 }
 
 
@@ -242,12 +240,11 @@ def test_an_opened_map_supports_the_verbs_of_xarray(chunks, tmp_path, monkeypatc
         for of in (xr.open_dataset, microslip.open_map):
             with of(tmp_path / "transverse.nc", chunks=chunks) as data:
                 for verb in VERBS.values():
-                    changed = verb(data)
-                    if isinstance(changed, xr.Dataset):
-                        assert changed.load().mu_macro.size
-                data.to_netcdf(tmp_path / "copy.nc")
-                with xr.open_dataset(tmp_path / "copy.nc") as copy:
-                    xr.testing.assert_identical(copy.load(), data.load())
+                    assert verb(data).load().mu_macro.size
+                for part in (data, VERBS["part"](data)):
+                    part.to_netcdf(tmp_path / "copy.nc")
+                    with xr.open_dataset(tmp_path / "copy.nc") as copy:
+                        xr.testing.assert_identical(copy.load(), part.load())
 
 
 def test_codes_of_texts_are_equal_in_all_files_and_texts_are_stored_exactly(tmp_path):
@@ -263,48 +260,8 @@ def test_codes_of_texts_are_equal_in_all_files_and_texts_are_stored_exactly(tmp_
         assert some.reason.values.tolist() == every.reason[1:2501:7].values.tolist()
         assert len(set(every.reason.flag_meanings.split())) == 3001
     assert netcdf.whole(tmp_path / "some.nc").reason.values.tolist() == texts[:2500:7]
-
-
-def test_a_single_run_that_fails_is_left_out_and_listed(tmp_path, monkeypatch, solver):
-    fail = Mock(side_effect=SolverError("a root finder found none"))
-    monkeypatch.setattr("microslip.history", fail, raising=False)
-    data = built("transverse", tmp_path)
-    assert not [name for name in data.variables if name.startswith("history_")]
-    assert data.converged.all()
-    *_, last = sweep_dataset.report(data, "transverse")
-    assert last == "  single runs left out: history: SolverError: a root finder found none"
-    with on_disk("continuous_bore", tmp_path) as data:
-        assert "transient_torque" not in data and "field_bound" not in data
-
-
-# Tables, plots and joins in plain xarray
-
-
-def test_groups_are_opened_by_name(tmp_path, solver):
-    write("transverse", tmp_path / "transverse.nc")
-    history = microslip.open_map("transverse", tmp_path, group="history")
-    assert history.history_force_forward.dims == ("history_step",)
-    assert history.source_digest == microslip.open_map("transverse", tmp_path).source_digest
-    assert "Figure 1" in history.title
-    reference = "velocity_curves, amplitude_curves, history"
-    with pytest.raises(InputError, match=f"group = 'field': allowed is one of {reference}"):
-        microslip.open_map("transverse", tmp_path, group="field")
-
-
-@pytest.mark.long
-def test_a_file_may_be_open_many_times_at_once(tmp_path, solver):
-    """With texts of variable length Python would crash here, since HDF5 loses their type."""
-    write("transverse", tmp_path / "transverse.nc")
-    code = (
-        "import microslip, sys\n"
-        "for _ in range(30):\n"
-        "    data = microslip.open_map(sys.argv[1])\n"
-        "    microslip.open_map(sys.argv[1]).load()\n"
-        "    microslip.open_map(sys.argv[1], group='history').load()\n"
-        "    data.load()\n"
-    )
-    command = [sys.executable, "-c", code, str(tmp_path / "transverse.nc")]
-    assert subprocess.run(command, check=False, capture_output=True).returncode == 0
+    with pytest.raises(InputError, match="codes = 'mu_macro': allowed is a variable with"):
+        microslip.texts(xr.DataArray(1.0, name="mu_macro"))
 
 
 def test_texts_come_back_whole_and_long_ones_are_cut(tmp_path, monkeypatch, solver):
@@ -324,16 +281,11 @@ def test_texts_come_back_whole_and_long_ones_are_cut(tmp_path, monkeypatch, solv
 
 
 @pytest.mark.slow
-def test_a_part_is_saved_and_read_again_and_plots_have_labels(tmp_path, solver):
-    write("transverse", tmp_path / "transverse.nc")
-    data = microslip.open_map("transverse", tmp_path)
-    part = data.isel(velocity=[0, 2])
-    part.to_netcdf(tmp_path / "part.nc")
-    with xr.open_dataset(tmp_path / "part.nc") as again:
-        xr.testing.assert_identical(again.load(), part.load())
-    shown = data.mu_macro.plot()
-    message = (shown.axes.get_xlabel(), shown.axes.get_ylabel(), shown.colorbar.ax.get_ylabel())
-    assert [" ".join(text.split()) for text in message] == [
+def test_plots_have_labels(tmp_path, solver):
+    with on_disk("transverse", tmp_path) as data:
+        shown = data.mu_macro.plot()
+    labels = shown.axes.get_xlabel(), shown.axes.get_ylabel(), shown.colorbar.ax.get_ylabel()
+    assert [" ".join(text.split()) for text in labels] == [
         "forward velocity, v0 / (omega u_lim) [1]",
         "amplitude, y0 / u_lim [1]",
         "mean forward force divided by mu F_z [1]",
@@ -351,9 +303,8 @@ def test_a_dataset_of_many_points_can_be_opened(tmp_path):
 
 @pytest.mark.slow
 def test_files_of_parts_of_an_axis_are_one_dataset(tmp_path, solver):
-    axes = {"amplitude": [0, 2]}
     for name, velocity in (("slow", [0.1, 1]), ("fast", [10, 100])):
-        write("bore", tmp_path / f"{name}.nc", {"bore": axes | {"velocity": velocity}})
+        write("bore", tmp_path / f"{name}.nc", {"bore": AXES | {"velocity": velocity}})
     paths = [tmp_path / "fast.nc", tmp_path / "slow.nc"]
     with xr.open_mfdataset(paths, data_vars="minimal", compat="no_conflicts") as both:
         assert both.velocity.values.tolist() == [0.1, 1, 10, 100]
@@ -361,18 +312,3 @@ def test_files_of_parts_of_an_axis_are_one_dataset(tmp_path, solver):
         assert both.converged.dtype == bool
         assert float(both.mu_macro.sel(velocity=100, amplitude=2)) == pytest.approx(100 / 103)
         assert both.motion == "bore"
-
-
-def test_variables_of_a_map_have_types_of_cf_1_8_and_no_texts(tmp_path, solver):
-    write("transverse", tmp_path / "transverse.nc")
-    with netCDF4.Dataset(tmp_path / "transverse.nc") as raw:
-        kinds = {name: variable.dtype for name, variable in raw.variables.items()}
-    assert set(map(str, kinds.values())) <= {"int8", "int16", "int32", "float32", "float64"}
-
-
-def test_only_codes_have_texts(tmp_path, solver):
-    with (
-        on_disk("bore", tmp_path) as data,
-        pytest.raises(InputError, match="codes = 'mu_macro': allowed is a variable with"),
-    ):
-        microslip.texts(data.mu_macro)

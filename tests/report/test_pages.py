@@ -6,7 +6,7 @@ import re
 import shlex
 
 import pytest
-from stubs.claims_stub import answered, configured
+from stubs.claims_stub import configured
 from stubs.figures_stub import studies
 
 import microslip
@@ -20,7 +20,7 @@ from microslip.studies.claims import command
 
 @pytest.fixture(scope="module")
 def data():
-    return registry.undivided(configured(), "claims", answered()[0])
+    return studies()["claims"]
 
 
 @pytest.fixture(scope="module")

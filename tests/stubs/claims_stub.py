@@ -1,7 +1,6 @@
 """A small configuration of the claims, and results from the formulas that the claims test."""
 
 import numpy as np
-from stubs import studies_stub
 
 from microslip.config import load
 from microslip.scene.by_name import pressure_named
@@ -93,8 +92,3 @@ def result(request):
         answer |= {"mu_macro_error": 1e-12 if static else 1e-4, "cells": 16, "angles": 8}
         answer |= {"steps_per_period": 64, "model": request["model"]}
     return answer
-
-
-def answered(results=result):
-    """Function from a request to the record of `results(request)`, and the list of its requests."""
-    return studies_stub.answered(results)

@@ -9,7 +9,6 @@ from stubs import certified_stub, claims_stub, studies_stub
 
 from microslip.config.kinds import KINDS
 from microslip.datasets.catalogue import DRIFT_FORMS, FORMS
-from microslip.studies import registry
 from microslip.theory import paper
 
 VELOCITY = "v0 / (omega u_lim)"
@@ -237,11 +236,8 @@ def studies() -> dict[str, xr.Dataset]:
         {"points": POINTS, "methods": METHODS}, {"axes": AXES, "methods": methods}
     )
     answers = {"accuracy": studies_stub.accuracy_result, "stability": studies_stub.stability_result}
-    datasets = {
-        study: registry.undivided(configuration, study, studies_stub.answered(result)[0])
-        for study, result in answers.items()
-    }
-    claims = registry.undivided(claims_stub.configured(), "claims", claims_stub.answered()[0])
+    datasets = {one: studies_stub.dataset(configuration, one, answers[one]) for one in answers}
+    claims = studies_stub.dataset(claims_stub.configured(), "claims", claims_stub.result)
     return datasets | {"claims": claims}
 
 

@@ -1,7 +1,8 @@
 """Small configurations of the studies, and their results from formulas."""
 
+import xarray as xr
+
 from microslip.config import load
-from microslip.foundation import canonical
 from microslip.studies import registry
 from microslip.sweeps import request as requests
 from microslip.theory import paper
@@ -38,12 +39,6 @@ def configured(accuracy=(), stability=()):
     return load.from_mapping(settings)
 
 
-def asked(study, configuration):
-    """All requests of a study as canonical JSON, in a list."""
-    pieces = registry.pieces(study, configuration.studies[study])
-    return [canonical.canonical_json(request) for piece in pieces for request in piece]
-
-
 GOOD = {
     "applies": True,
     "converged": True,
@@ -54,16 +49,21 @@ GOOD = {
 }
 
 
-def answered(results):
-    """Function from a request to the record of `results(request)`, and the list of its requests."""
-    calls = []
+def built(configuration, study, results):
+    """Root and groups of the dataset of a study with the results `results(request)`."""
+    pieces = registry.pieces(study, configuration.studies[study])
+    every = [request for piece in pieces for request in piece]
+    records = [
+        {"key": requests.key_of(one), "result": results(one), "versions": {"numpy": "2.0"}}
+        for one in every
+    ]
+    return registry.build(configuration, study, records)
 
-    def answer(request):
-        calls.append(canonical.canonical_json(request))
-        key = requests.key_of(request)
-        return {"key": key, "result": results(request), "versions": {"numpy": "2.0"}}
 
-    return answer, calls
+def dataset(configuration, study, results):
+    """Dataset of a study with the variables of all groups."""
+    root, groups = built(configuration, study, results)
+    return xr.merge([root, *groups.values()], combine_attrs="override")
 
 
 def mu_of(request):

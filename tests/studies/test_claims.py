@@ -7,11 +7,11 @@ import pandas as pd
 import pytest
 from scipy.integrate import quad
 from scipy.optimize import brentq
-from stubs.claims_stub import answered, configured, friction, result
+from stubs import studies_stub
+from stubs.claims_stub import configured, friction, result
 
 from microslip.datasets import netcdf
 from microslip.report import pages
-from microslip.studies import registry
 from microslip.studies.claims import verdicts
 from microslip.theory import oscillating_load, paper
 
@@ -21,7 +21,7 @@ OPEN, HOLD, FAIL = verdicts.OPEN, verdicts.HOLDS, verdicts.FAILS
 
 def judged(results=result, **changes):
     """Dataset of the claims with invented results."""
-    return registry.undivided(configured(**changes), "claims", answered(results)[0])
+    return studies_stub.dataset(configured(**changes), "claims", results)
 
 
 def words(data):
@@ -34,7 +34,7 @@ def words(data):
 def claims(tmp_path_factory):
     """Dataset of the claims with invented results, read from disk."""
     path = tmp_path_factory.mktemp("claims") / "claims.nc"
-    netcdf.write(path, *registry.divided(judged(), "claims"))
+    netcdf.write(path, *studies_stub.built(configured(), "claims", result))
     return netcdf.whole(path)
 
 

@@ -6,12 +6,13 @@ from unittest.mock import Mock
 import numpy as np
 import pytest
 from scipy.integrate import quad
-from stubs.claims_stub import answered, configured
+from stubs import studies_stub
+from stubs.claims_stub import configured, result
 
 import microslip
 from microslip.answer.period import NoPeriodicState, patches
 from microslip.contact.contact import StepFailure
-from microslip.studies import evidence, registry, static_limits
+from microslip.studies import evidence, static_limits
 from microslip.sweeps import batch
 from microslip.theory import hertz
 from microslip.theory import paper as theory
@@ -70,7 +71,7 @@ def test_the_asymptote_is_what_the_limit_tends_to(amplitude):
 @pytest.fixture(scope="module")
 def data():
     """Dataset of the claims with invented results."""
-    return registry.undivided(configured(), "claims", answered()[0])
+    return studies_stub.dataset(configured(), "claims", result)
 
 
 def test_eq_33_tends_to_the_excess_over_the_asymptote_in_the_dataset(data):

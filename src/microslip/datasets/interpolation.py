@@ -31,7 +31,15 @@ BORDERS = {
     "poisson": ("cell_poisson_low", "cell_poisson_high"),
 }
 """For each direction: the variables that contain the lower and upper ends of the cells."""
+AXES = ("mass", "damping", "stiffness", "poisson", "amplitude", "velocity", "force")
+"""Coordinates of maps, in the order of the dimensions of a result."""
+SAME = 1e-12
+"""Difference below which two coordinates count as equal."""
 LOST = "microslip.at needs it, and the dataset has lost it: keep it"
+ANY = "microslip.solve computes any"
+
+Points = dict[str, np.ndarray]
+"""Coordinates of points, an array of shape (n,) for each axis."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -39,20 +47,30 @@ class Axis:
     """Ascending coordinates of one axis of a grid.
 
     The axis is logarithmic if the coordinates are closer to equal ratios than to equal steps.
+
+    Attributes
+    ----------
+    values : numpy.ndarray
+        Coordinates.
+    static : int
+        1 if the first coordinate is the velocity 0, else 0.  The static limit is not interpolated:
+        between it and the smallest velocity, friction rises with the power 2/3 of the velocity.
     """
 
     values: np.ndarray
+    static: int = 0
 
     @cached_property
     def logarithmic(self) -> bool:
-        values = self.values
+        values = self.values[self.static :]
         if len(values) < 3 or values[0] <= 0.0:
             return len(values) == 2 and 0.0 < 10.0 * values[0] < values[1]
         return _unevenness(np.log(values)) < _unevenness(values)
 
     @cached_property
     def nodes(self) -> np.ndarray:
-        return self.scaled(self.values)
+        """Scaled coordinates without the static limit."""
+        return self.scaled(self.values[self.static :])
 
     def scaled(self, points: np.ndarray) -> np.ndarray:
         """Return the points, or their logarithms if the axis is logarithmic."""
@@ -64,7 +82,7 @@ class Axis:
         Parameters
         ----------
         points : numpy.ndarray, shape (n,)
-            Points between the ends of the axis.
+            Points between the ends of the axis, or at the static limit.
 
         Returns
         -------
@@ -75,17 +93,19 @@ class Axis:
         index, weights : numpy.ndarray, shape (n, k)
             Indices and weights of the k nodes of the cubic, with k at most 4.
         """
-        x, q = self.nodes, self.scaled(points)
+        x, q = self.nodes, self.scaled(np.maximum(points, self.values[self.static]))
         count = len(x)
-        if count == 1:
-            zero = np.zeros(len(q), int)
-            return zero, np.zeros(len(q)), zero[:, None], np.ones((len(q), 1))
         width = min(NODES, count)
-        cell = np.clip(np.searchsorted(x, q, side="right") - 1, 0, count - 2)
-        share = (q - x[cell]) / (x[cell + 1] - x[cell])
+        cell = np.clip(np.searchsorted(x, q, side="right") - 1, 0, max(count - 2, 0))
+        share = (q - x[cell]) / (x[cell + 1] - x[cell]) if count > 1 else np.zeros(len(q))
         first = np.clip(cell - (width // 2 - 1), 0, count - width)
         index = first[:, None] + np.arange(width)
-        return cell, share, index, lagrange(x[index], q)
+        weights = lagrange(x[index], q)
+        if self.static:
+            rests = points == 0.0
+            cell, index, share = cell + 1, index + 1, np.where(rests, 0.0, share)
+            index[rests], weights[rests] = 0, np.arange(width) == 0
+        return cell, share, index, weights
 
     def misses(self, table: np.ndarray) -> np.ndarray:
         """Return the absolute difference between the value at each node and the cubic through its
@@ -93,8 +113,11 @@ class Axis:
 
         The nodes are along the first axis of the table.  An end node is assigned the difference of
         its neighbour.  If there are only two nodes, both are assigned the difference between their
-        values.
+        values.  At the static limit, the difference is 0.
         """
+        if self.static:
+            moving = Axis(self.values[1:]).misses(table[1:])
+            return np.concatenate((np.zeros_like(table[:1]), moving))
         x = self.nodes
         count = len(x)
         if count < 3:
@@ -146,34 +169,44 @@ class Grid:
 
     Attributes
     ----------
-    axes : tuple of Axis
-        Axes of the grid.
+    axes : dict of str to Axis
+        Axes of the grid by name.
     values, errors : np.ndarray, shape (n, m, ...)
         Values and their error estimates, with one dimension for each axis.  Unknown values are NaN.
     """
 
-    axes: tuple[Axis, ...]
+    axes: dict[str, Axis]
     values: np.ndarray
     errors: np.ndarray
+
+    @property
+    def ranges(self) -> dict[str, tuple[float, float]]:
+        """Smallest and largest value of each axis."""
+        return {name: (float(x.values[0]), float(x.values[-1])) for name, x in self.axes.items()}
 
     @cached_property
     def _misses(self) -> list[np.ndarray]:
         """Differences of the leave-one-out prediction along each axis, see Axis.misses."""
         return [
             np.moveaxis(axis.misses(np.moveaxis(self.values, k, 0)), 0, k)
-            for k, axis in enumerate(self.axes)
+            for k, axis in enumerate(self.axes.values())
         ]
 
-    def at(self, *points: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    def at(self, points: Points) -> tuple[np.ndarray, np.ndarray]:
         """Return values and error bounds at points inside the grid, shape (n,) each.
 
         Between two nodes of an axis, the interpolation error is proportional to the product of the
         distances to them.  The bound is the sum over all axes, plus the largest error of the nodes.
         If a value at one of the nodes is unknown, the result is NaN and the bound is infinite.
 
-        points: coordinates, one array of shape (n,) for each axis.
+        Raises InputError for a velocity between the static limit and the smallest velocity.
         """
-        stencils = [axis.cubics(one) for axis, one in zip(self.axes, points, strict=True)]
+        for name, axis in self.axes.items():
+            slowest, own = axis.values[axis.static], points[name]
+            if axis.static and (between := own[(own > 0.0) & (own < slowest)]).size:
+                allowed = f"allowed is 0, or {slowest:g} to {axis.values[-1]:g}; {ANY}"
+                raise InputError(name, float(between[0]), allowed)
+        stencils = [axis.cubics(points[name]) for name, axis in self.axes.items()]
         around = tuple(range(len(stencils)))
         near = tuple(  # indices of the nodes, shape (k, l, ..., n)
             np.expand_dims(index.T, [other for other in around if other != k])
@@ -181,7 +214,7 @@ class Grid:
         )
         value = polynomial(self.values[near], [weights for *_, weights in stencils])
         error = self.errors[near].max(axis=around)
-        for (_, share, _, _), misses in zip(stencils, self._misses, strict=True):
+        for (_, share, *_), misses in zip(stencils, self._misses, strict=True):
             error = error + 4.0 * share * (1.0 - share) * misses[near].max(axis=around)
         return value, np.where(np.isnan(value) | np.isnan(error), np.inf, error)
 
@@ -207,14 +240,19 @@ class Cells:
     nodes: np.ndarray
     bounds: np.ndarray
 
-    def at(self, *points: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    @property
+    def ranges(self) -> dict[str, tuple[float, float]]:
+        """Smallest and largest value of each direction."""
+        directions = [axis for axis in AXES if axis in self.coordinates.directions]
+        return {axis: tuple(getattr(self.coordinates, axis)) for axis in directions}
+
+    def at(self, points: Points) -> tuple[np.ndarray, np.ndarray]:
         """Return values and error bounds at points inside the map, shape (n,) each.
 
         In a cell with an unknown node, the values are NaN and the error bounds are infinite.
-
-        points: coordinates, one array of shape (n,) for each direction.
         """
-        scaled = self.coordinates.scaled(*points)
+        directions = self.coordinates.directions
+        scaled = self.coordinates.scaled(*(points[direction] for direction in directions))
         begin, end = self.borders.transpose(2, 0, 1)
         inside = ((scaled[:, None] >= begin) & (scaled[:, None] <= end)).all(axis=2)
         cell = inside.shape[1] - 1 - inside[:, ::-1].argmax(axis=1)  # the last one on a border
@@ -229,6 +267,11 @@ class Cells:
         return value, np.where(np.isnan(value), np.inf, self.bounds[cell])
 
 
+def of_map(dataset: xr.Dataset, name: str) -> Grid | Cells:
+    """Return the interpolation of a variable in a certified or a regular map."""
+    return cells_of(dataset) if COORDINATES in dataset.attrs else grid_of(dataset, name)
+
+
 def cells_of(dataset: xr.Dataset) -> Cells:
     """Read the cells of a certified map.
 
@@ -241,7 +284,7 @@ def cells_of(dataset: xr.Dataset) -> Cells:
         allowed = "is of another version; allowed: a certified map of this version: make it again"
         raise InputError(COORDINATES, text, allowed) from None
     names = [BORDERS[direction] for direction in coordinates.directions]
-    for name in ("mu_macro", "mu_macro_error", "cell_node", "cell_error", *sum(names, ())):
+    for name in ("cell_node", "cell_error", *sum(names, ())):
         if name not in dataset.variables:
             raise InputError(name, None, LOST)
     values, cell_nodes = dataset["mu_macro"].values, dataset["cell_node"].values.astype(int)
@@ -250,3 +293,40 @@ def cells_of(dataset: xr.Dataset) -> Cells:
     borders = np.stack([[dataset[name].values for name in pair] for pair in names])
     nodes = values[cell_nodes].reshape(-1, *(n + 1 for n in coordinates.degrees))
     return Cells(coordinates, borders.transpose(2, 0, 1), nodes, dataset["cell_error"].values)
+
+
+def grid_of(dataset: xr.Dataset, name: str) -> Grid:
+    """Read the grid of a variable of a regular map.  Values that did not converge are unknown.
+
+    Raises InputError with the name of a variable or a coordinate that is missing or not allowed.
+    """
+    nodes = dataset[[name, f"{name}_error"]]
+    if "converged" in dataset:
+        nodes = nodes.where(dataset["converged"] == 1)  # a join fills gaps with NaN
+    nodes = nodes.compute()
+    dims = [dim for dim in AXES if dim in nodes.dims]
+    for extra in nodes.dims:
+        if extra not in dims:
+            raise InputError(str(extra), nodes.sizes[extra], "entries; allowed is one: select it")
+    for dim in dims:
+        if dim not in nodes.coords or not nodes.sizes[dim]:
+            raise InputError(dim, None, LOST)
+        if nodes.indexes[dim].has_duplicates:
+            raise InputError(dim, "is there twice", "in the dataset; allowed is each value once")
+    for one in (name, f"{name}_error", *dims):
+        if dataset[one].dtype.kind not in "iuf":
+            raise InputError(one, f"of type {dataset[one].dtype}", "allowed are numbers")
+    value, error = nodes[name], nodes[f"{name}_error"]
+    most = 1.0 + error + SAME if name == "mu_macro" else np.inf
+    wrong = {dim: (~(nodes[dim] < np.inf) | (nodes[dim] < 0.0), "are numbers >= 0") for dim in dims}
+    wrong |= {error.name: (error < 0.0, "is 0 or more"), name: (abs(value) > most, "is -1 to 1")}
+    for one, (bad, allowed) in wrong.items():
+        if bad.any():
+            first = float(nodes[one].values[bad.values][0])
+            raise InputError(one, first, f"in the dataset; allowed {allowed}")
+    nodes = nodes.sortby(dims).transpose(*dims)
+    axes = {}
+    for dim in dims:
+        values = nodes[dim].values.astype(float)
+        axes[dim] = Axis(values, int(dim == "velocity" and len(values) > 1 and values[0] == 0.0))
+    return Grid(axes, *(nodes[one].values.astype(float) for one in (name, f"{name}_error")))

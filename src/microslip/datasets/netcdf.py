@@ -14,7 +14,7 @@ from __future__ import annotations
 import os
 import re
 import zlib
-from collections.abc import Hashable, Mapping
+from collections.abc import Hashable, Iterable, Mapping
 from typing import Any
 
 import netCDF4
@@ -25,19 +25,19 @@ from microslip.datasets.variables import ANCILLARY
 from microslip.foundation.errors import CacheError, InputError
 from microslip.foundation.files import writing_beside
 
-Groups = Mapping[str, tuple[str, tuple[str, ...]]]
 
-
-def divide(dataset: xr.Dataset, groups: Groups) -> tuple[xr.Dataset, dict[str, xr.Dataset]]:
+def divide(
+    dataset: xr.Dataset, groups: Iterable[Mapping[str, str]]
+) -> tuple[xr.Dataset, dict[str, xr.Dataset]]:
     """Divide a dataset into one dataset for the root of a file and one for each group.
 
     Parameters
     ----------
     dataset : xarray.Dataset
         All variables.
-    groups : mapping of str to (str, tuple of str)
-        Title and dimensions of each group, by name.  A variable is assigned to the first group
-        whose dimensions include all dimensions of the variable.
+    groups : iterable of mapping
+        Name `group`, `title` and dimensions `dims` of each group.  A variable is assigned to the
+        first group whose dimensions include all dimensions of the variable.
 
     Returns
     -------
@@ -47,16 +47,15 @@ def divide(dataset: xr.Dataset, groups: Groups) -> tuple[xr.Dataset, dict[str, x
     parts : dict of xarray.Dataset
         Datasets of the groups, by name.  Empty groups are omitted.
     """
-    group_of = {
-        name: next((g for g, (_, dims) in groups.items() if set(variable.dims) <= set(dims)), "")
-        for name, variable in dataset.data_vars.items()
-        if variable.dims
-    }
-    parts = {}
-    for group, (title, _) in groups.items():
-        if names := [name for name, own in group_of.items() if own == group]:
-            parts[group] = dataset[names].drop_attrs(deep=False).assign_attrs(title=title)
-    return dataset[[name for name in dataset.data_vars if not group_of.get(name)]], parts
+    remaining, parts = {n: set(v.dims) for n, v in dataset.data_vars.items()}, {}
+    for group in groups:
+        own = {*group["dims"].split()}
+        names = [name for name, dims in remaining.items() if dims and dims <= own]
+        if names:
+            part = dataset[names].drop_attrs(deep=False)
+            parts[group["group"]] = part.assign_attrs(title=group["title"])
+        remaining = {name: dims for name, dims in remaining.items() if name not in names}
+    return dataset[list(remaining)], parts
 
 
 TEXTS = "flag_texts"
@@ -73,7 +72,7 @@ def coded(variable: xr.Variable) -> xr.Variable:
     """
     codes: dict[int, str] = {}
     code_of = {}
-    for text in sorted(set(map(str, variable.values.flat))):
+    for text in sorted(set(map(str, variable.values.flat)) or {""}):
         line = " ".join(text.split())
         code = zlib.crc32(line.encode()) & 0x7FFFFFFF
         while codes.setdefault(code, line) != line:
@@ -141,6 +140,9 @@ def write(
 def _append(dataset: xr.Dataset, path: str | os.PathLike[str], **how: Any) -> None:
     of_text = {n: v for n, v in dataset.variables.items() if v.dtype.kind in "OUT"}
     dataset = dataset.assign({n: coded(v) for n, v in of_text.items() if n not in dataset.dims})
+    # xarray mistakes an axis of texts for one of numbers if it is empty.
+    empty = {n: v.astype(str) for n, v in of_text.items() if n in dataset.dims and not v.size}
+    dataset = dataset.assign_coords(empty)
     for name, variable in dataset.variables.items():
         if f"{name}_error" in dataset.variables:
             variable.attrs[ANCILLARY] = f"{name}_error"

@@ -15,15 +15,8 @@ from microslip.foundation.errors import InputError
 from microslip.si.output import Prediction
 from microslip.si.response import RealResponse
 
-AXES: dict[type, tuple[str, ...]] = {
-    Result: (),
-    Prediction: (),
-    History: ("phase",),
-    Period: ("phase", "point"),
-    Response: ("row",),
-    RealResponse: ("row",),
-}
-"""Names of a dataset's axes, keyed by the class of the record."""
+RECORDS = (Result, Prediction, History, Period, Response, RealResponse)
+"""Classes of results that can be converted."""
 OF_POINTS = ("forward_position", "lateral_position", "area", "bound", "dissipated_energy_density")
 """Arrays in a Period whose only axis is `point`."""
 
@@ -59,26 +52,22 @@ def to_xarray(record: Any) -> xr.Dataset:
     InputError
         If the record has another type.
     """
-    kind = next((kind for kind in AXES if isinstance(record, kind)), None)
-    if kind is None:
-        names = ", ".join(one.__name__ for one in AXES)
+    if not isinstance(record, RECORDS):
+        names = ", ".join(one.__name__ for one in RECORDS)
         allowed = f"allowed is one of {names}, not {type(record).__name__}"
         raise InputError("record", record, allowed)
-    axes = AXES[kind]
-    if axes == ("row",):
-        columns = {
-            n: (axes, values, {"units": unit}) for n, (unit, values) in record.columns.items()
-        }
-        return xr.Dataset(columns, attrs=record.attributes)
-    if kind is Prediction:
+    if isinstance(record, Prediction):
         return record.to_xarray()
+    if isinstance(record, Response | RealResponse):
+        columns = {n: ("row", one, {"units": unit}) for n, (unit, one) in record.columns.items()}
+        return xr.Dataset(columns, attrs=record.attributes)
     variables: dict[str, tuple] = {}
-    about = {"record": kind.__name__}
-    plain = record.values if kind is History else record.to_dict()
+    about = {"record": type(record).__name__}
+    plain = record.values if isinstance(record, History) else record.to_dict()
     for name, value in plain.items():
         if isinstance(value, np.ndarray):
-            own = axes if value.ndim == 2 else axes[1:] if name in OF_POINTS else axes[:1]
-            variables[name] = own, value
+            dims = ("point",) if name in OF_POINTS else ("phase", "point")[: value.ndim]
+            variables[name] = dims, value
         elif isinstance(value, bool | int | float | np.number):
             variables[name] = (), value
         elif isinstance(value, Mapping):

@@ -72,43 +72,37 @@ def open_map(
     refuse_no_folder(results)
     if os.path.exists(results) and not os.path.isdir(results):
         raise InputError("results", results, "is not a folder; allowed: the name of a folder")
+    path = Path(name)
     try:
-        return _dataset(name, results, chunks, group)
+        if path.suffix != ".nc":
+            path = Path(results, f"{name}.nc")
+            if not path.is_file() and str(name) not in PAPER:
+                others = [*sorted(file.stem for file in Path(results).glob("*.nc")), *PAPER]
+                names = ", ".join(dict.fromkeys(others))
+                allowed = f"allowed is {names}, or a path that ends in .nc"
+                raise InputError("name", name, f"{near_miss(name, others)}{allowed}")
+        if not path.is_file():
+            advice = "run the workflow first, or name its results folder"
+            raise CacheError(f"{path} is not there: {advice}")
+        if not is_whole(path):
+            raise CacheError(f"{path} is damaged: run the workflow again, which makes it anew")
+        refuse_oversized(path)
+        dataset = _opened(path, chunks=chunks)
+        if "motion" not in dataset.attrs or not dataset.variables.keys() & SOLVED:
+            dataset.close()
+            raise CacheError(f"{path} is not the dataset of a sweep")
+        if group is None:
+            return dataset
+        if group not in (groups := group_names(path)):
+            raise InputError("group", group, f"allowed is one of {', '.join(groups) or 'none'}")
+        part = _opened(path, chunks=chunks, group=group)
+        return part.assign_attrs(dataset.attrs | part.attrs)
     except OSError as error:  # a damaged file, or an invalid file name
         why = " ".join((error.strerror or str(error)).split())[:120]
         raise CacheError(
             f"cannot read the dataset {name!s} of {results!s}: {why}; allowed: a netCDF file as "
             "the workflow makes it: run it again"
         ) from None
-
-
-def _dataset(
-    name: str | os.PathLike[str], results: str | os.PathLike[str], chunks: object, group: str | None
-) -> xr.Dataset:
-    path = Path(name)
-    if path.suffix != ".nc":
-        path = Path(results, f"{name}.nc")
-        if not path.is_file() and str(name) not in PAPER:
-            others = sorted(file.stem for file in Path(results).glob("*.nc"))
-            names = ", ".join(dict.fromkeys([*others, *PAPER]))
-            hint = near_miss(name, [*others, *PAPER])
-            allowed = f"{hint}allowed is {names}, or a path that ends in .nc"
-            raise InputError("name", name, allowed)
-    if not path.is_file():
-        raise CacheError(f"{path} is not there: run the workflow first, or name its results folder")
-    if not is_whole(path):
-        raise CacheError(f"{path} is damaged: run the workflow again, which makes it anew")
-    refuse_oversized(path)
-    dataset = _opened(path, chunks=chunks)
-    if "motion" not in dataset.attrs or not dataset.variables.keys() & SOLVED:
-        dataset.close()
-        raise CacheError(f"{path} is not the dataset of a sweep")
-    if group is None:
-        return dataset
-    if group not in (groups := group_names(path)):
-        raise InputError("group", group, f"allowed is one of {', '.join(groups) or 'none'}")
-    part = _opened(path, chunks=chunks, group=group)
-    return part.assign_attrs(dataset.attrs | part.attrs)
 
 
 def _opened(path: Path, **how: Any) -> xr.Dataset:

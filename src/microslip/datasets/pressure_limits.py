@@ -13,7 +13,7 @@ import numpy as np
 from microslip.datasets.catalogue import FORMS, STATIC, ClosedForm
 from microslip.scene.by_name import pressure_named
 from microslip.scene.pressure import Pressure
-from microslip.theory import hertz, indenters, masing, paper
+from microslip.theory import hertz, indenters, masing
 
 ZONE = replace(
     FORMS["transverse"]["mu_static_stick_zone"],
@@ -23,77 +23,56 @@ ZONE = replace(
 )
 
 
-def formulas_under(motion: str, name: str) -> dict:
+STEADY = (("mu_forward_theory", "Eq 17", "mu_macro"), ("mu_torque_theory", "Eq 18", "mu_torque"))
+"""Closed forms of the steady bore, with the equations that replace Eqs 21 and 22."""
+
+
+def formulas_under(motion: str, name: str) -> dict[str, ClosedForm]:
     """Return a dict of the closed forms by name.  motion, name: names of the motion and the
     pressure."""
     pressure, of_sphere = pressure_named(name), FORMS.get(motion, {})
-    if motion == "continuous-bore" and pressure.is_round:
-        return _steady(pressure, of_sphere)
-    if motion == "longitudinal" and pressure.loading is not None:
-        return _along(pressure.loading, of_sphere)
     forms = {key: form for key, form in of_sphere.items() if form.any_pressure}
-    if STATIC not in of_sphere:
-        return forms
-    if pressure.is_indenter:
-        zone, static = _of_indenter(motion, pressure)
-    elif pressure.hertzian and motion != "bore":
+    if motion == "continuous-bore" and pressure.is_round:
+        for part, (key, equation, what) in enumerate(STEADY):
+            forms[key] = replace(
+                of_sphere[key],
+                function=lambda v, part=part: indenters.bore_of(pressure.bound, v)[part],
+                equation=equation,
+                long_name=f"steady {what} ({equation})",
+                description=f"steady {what} as an integral over the pressure ({equation})",
+            )
+    elif motion == "longitudinal" and (curve := pressure.loading) is not None:
+        text = "mu_macro in closed form at Poisson's ratio 0 (first loading with Masing's memory)"
+        whole = replace(of_sphere["mu_closed_form"], description=text)
+        forms[whole.name] = replace(whole, function=partial(masing.longitudinal, curve=curve))
+        forms[STATIC] = replace(of_sphere[STATIC], function=lambda a: 1.0 - curve(a))
+    elif STATIC in of_sphere:
+        exact = ZONE, of_sphere[STATIC]
         # An elliptic stick zone carries the same fraction of the load.
-        zone, static = paper.static_transverse, of_sphere[STATIC].function
-    else:
-        return forms
-    exact = {ZONE.name: (ZONE, zone), STATIC: (of_sphere[STATIC], static)}
-    return forms | {key: replace(form, function=_each(f)) for key, (form, f) in exact.items()}
+        functions = [form.function for form in exact if pressure.hertzian and motion != "bore"]
+        if pressure.is_indenter:
+            functions = [*_of_indenter(motion, pressure)]
+        for form, function in zip(exact, functions, strict=False):
+            forms[form.name] = replace(form, function=_each(function))
+    return forms
 
 
 def _of_indenter(motion: str, pressure: Pressure) -> tuple[Callable, Callable]:
     """Return two functions of the amplitude: the fraction of the load inside the stick zone, and
     the exact static friction."""
-
-    def turned(function: Callable) -> Callable:
-        return lambda amplitude: function(pressure, float(hertz.bore_angle(amplitude)))
-
+    place: Callable = hertz.bore_angle if motion == "bore" else float
+    radius: Callable = pressure.stick_radius
+    static: Callable = partial(indenters.static_transverse, pressure)
     if motion == "bore":
-        radius = turned(indenters.torsion_stick_radius)
-        static = turned(indenters.static_bore)
-    else:
-        radius, static = pressure.stick_radius, partial(indenters.static_transverse, pressure)
+        radius = partial(indenters.torsion_stick_radius, pressure)
+        static = partial(indenters.static_bore, pressure)
 
     def zone(amplitude: float) -> float:
-        stick = radius(amplitude) or 0.0
+        stick = radius(float(place(amplitude))) or 0.0
         return float(pressure.load(stick, 1.0)) if stick > 0.0 else 0.0
 
-    return zone, static
-
-
-def _along(curve: Callable, of_sphere: dict[str, ClosedForm]) -> dict[str, ClosedForm]:
-    whole = replace(
-        of_sphere["mu_closed_form"],
-        function=partial(masing.longitudinal, curve=curve),
-        description="mu_macro in closed form at Poisson's ratio 0 (first loading with Masing's "
-        "memory)",
-    )
-    return {
-        whole.name: whole,
-        STATIC: replace(of_sphere[STATIC], function=lambda a: 1.0 - curve(a)),
-    }
+    return zone, lambda amplitude: static(float(place(amplitude)))
 
 
 def _each(function: Callable[[float], float]) -> Callable:
     return np.vectorize(lambda value: float(function(float(value))), otypes=[float])
-
-
-def _steady(pressure: Pressure, of_sphere: dict[str, ClosedForm]) -> dict[str, ClosedForm]:
-    """Return the closed forms of the steady bore, with Eqs 17 and 18 instead of Eqs 21 and 22."""
-    equations = ("Eq 17", "mu_macro"), ("Eq 18", "mu_torque")
-    return {
-        name: replace(
-            form,
-            function=lambda velocity, part=part: indenters.bore_of(pressure.bound, velocity)[part],
-            equation=equation,
-            long_name=f"steady {what} ({equation})",
-            description=f"steady {what} as an integral over the pressure ({equation})",
-        )
-        for part, ((name, form), (equation, what)) in enumerate(
-            zip(of_sphere.items(), equations, strict=True)
-        )
-    }

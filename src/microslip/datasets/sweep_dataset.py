@@ -18,7 +18,7 @@ from microslip.config.quantities import AMPLITUDE, DRIVES, VELOCITY
 from microslip.config.settings import Configuration, Sweep
 from microslip.datasets import netcdf, theory_limits
 from microslip.datasets.catalogue import FORMS
-from microslip.datasets.variables import TYPES, described, rows_of
+from microslip.datasets.variables import columns, described, rows_of
 from microslip.foundation import named_files, source_digest
 from microslip.foundation.canonical import canonical_json
 from microslip.scene.by_name import motion_named
@@ -51,20 +51,29 @@ def build(
     ValueError
         If the number of records differs from the number of requests.
     """
-    sweep, rest = configuration.sweeps[name], iter(records)
+    sweep = configuration.sweeps[name]
     motion, pressure = solver_names(sweep)
+    versions: set[str] = set()
+
+    def read() -> Iterator[dict]:
+        for record in records:
+            versions.add(canonical_json(record["versions"]))
+            yield record
+
+    rest = read()
     size = math.prod(len(sweep.axes[dim]) for dim in sweep.dims)
-    columns, versions = _columns(sweep, size, islice(rest, size))
+    kinds = [] if sweep.velocity else ["force"]
+    table = rows_of(*kinds, "points", "oscillation" if sweep.amplitude else "steady")
+    values = columns(table.values(), (record["result"] for record in islice(rest, size)), size)
     requests, runs = runs_of(configuration, name), list(rest)
     if len(runs) != len(requests):
         raise ValueError(f"{name}: {len(runs)} single runs")
-    versions |= {canonical_json(record["versions"]) for record in runs}
+    failed = [run for run in runs if run["result"].get("crashed")]
     tolerance = np.nan if sweep.tolerance is None else sweep.tolerance
     about = {"motion": motion, "pressure": pressure, "tolerance": tolerance}
     for role, text in (("motion", motion), ("pressure", pressure)):
         if file := named_files.base_name(text):
             about[f"{role}_file"] = file
-    failed = [record for record in runs if record["result"].get("crashed")]
     if failed:
         reasons = (f"{r['request']['kind']}: {r['result']['reason']}" for r in failed)
         about["single_runs_failed"] = "; ".join(reasons)
@@ -76,14 +85,15 @@ def build(
         axis: (axis, np.array(values)) if axis in sweep.dims else ((), values[0])
         for axis, values in sweep.axes.items()
     }
+    values["reason"][:] = [_shortened(text) for text in values["reason"]]
     shape = [len(sweep.axes[dim]) for dim in sweep.dims]
-    columns = {name: column.reshape(shape) for name, column in columns.items()}
+    values = {one: column.reshape(shape) for one, column in values.items()}
     if "poisson" in sweep.dims:  # changes from the smallest ratio, with summed errors
         for change, row in rows_of("change").items():
-            source, sign = columns[row["source"]], 1.0 if change.endswith("_error") else -1.0
+            source, sign = values[row["source"]], 1.0 if change.endswith("_error") else -1.0
             first = source.take([0], axis=sweep.dims.index("poisson"))
-            columns[change] = source + sign * first
-    of_points = {one: described(one, sweep.dims, values) for one, values in columns.items()}
+            values[change] = source + sign * first
+    of_points = {one: described(one, sweep.dims, column) for one, column in values.items()}
     root = xr.Dataset(theory_limits.variables(sweep) | of_points, coords)
     describe_axes(root, sweep)
     groups = theory_limits.curves(sweep) | ({} if failed else _of_runs(runs))  # see `report`
@@ -105,35 +115,8 @@ GROUPS = {
 """Titles of the groups in a sweep's file.  Each motion has only some of the groups."""
 ENTRIES = {"history": "periods", "transients": "travel"}
 """Entry that identifies the requests of a group of single runs."""
-MISSING = {"float": np.nan, "str": ""}
-"""Values of points without a result by the type of the variable; 0 for the other types."""
 LONGEST_TEXT = 256
 """Maximum number of characters in a text.  A longer text is truncated and ends with dots."""
-
-
-def _columns(
-    sweep: Sweep, size: int, points: Iterable[dict]
-) -> tuple[dict[str, np.ndarray], set[str]]:
-    """Return the values of the variables at all points, in order.
-
-    One record is in memory at a time.  Also returns the versions of the libraries that computed
-    the records, as JSON.  Raises ValueError if the number of records differs from `size`.
-    """
-    groups = [] if sweep.velocity else ["force"]
-    table = rows_of(*groups, "points", "oscillation" if sweep.amplitude else "steady")
-    kinds = {name: row["kind"] for name, row in table.items()}
-    columns: dict[str, np.ndarray] = {
-        name: np.full(size, MISSING.get(kind, 0), TYPES[kind]) for name, kind in kinds.items()
-    }
-    versions, count = set(), 0
-    for count, record in enumerate(points, 1):
-        versions.add(canonical_json(record["versions"]))
-        for name, column in columns.items():
-            if (value := record["result"].get(name)) is not None:
-                column[count - 1] = _shortened(value) if isinstance(value, str) else value
-    if count != size:
-        raise ValueError(f"{count} results for {size} points")
-    return columns, versions
 
 
 def _shortened(text: str) -> str:

@@ -5,7 +5,8 @@ which catalogue.csv describes.  Its columns are:
 
 - group: part of the dataset, or kind of sweep, that has the variable,
 - name, dims, kind, units: name, dimensions (of variables outside the map), type and unit,
-- source: entry of a run that the values are taken from, or variable that a change refers to,
+- source: entry of a result that the values are taken from; if it is empty, the entry with the name
+  of the variable.  For a change: the variable that it refers to,
 - long_name, description: a text that is short enough for the axis of a plot, and a longer one,
 - flag_meanings: meanings of 0 and 1, if these are not "no" and "yes".
 """
@@ -13,7 +14,7 @@ which catalogue.csv describes.  Its columns are:
 from __future__ import annotations
 
 import csv
-from collections.abc import Hashable, Sequence
+from collections.abc import Hashable, Iterable, Mapping, Sequence
 from pathlib import Path
 
 import numpy as np
@@ -25,6 +26,8 @@ first."""
 TYPES: dict[str, type] = {"float": float, "int": np.int32, "bool": bool, "str": object}
 """Types of values by their names in tables.  Any other name of a type is a text with the meanings
 of codes 0, 1, ..., separated by spaces."""
+MISSING = {"float": np.nan, "str": ""}
+"""Values without an entry by the type of the variable; 0 for the other types."""
 
 
 def rows(path: Path) -> list[dict[str, str]]:
@@ -40,6 +43,41 @@ TABLE = {row["name"]: row for row in rows(Path(__file__).with_suffix(".csv"))}
 def rows_of(*groups: str) -> dict[str, dict[str, str]]:
     """Return the rows of variables.csv that belong to some groups, by name, in their order."""
     return {name: row for group in groups for name, row in TABLE.items() if row["group"] == group}
+
+
+def columns(
+    table: Iterable[Mapping[str, str]], entries: Iterable[Mapping], size: int
+) -> dict[str, np.ndarray]:
+    """Return the values of variables along one dimension, by name.
+
+    Parameters
+    ----------
+    table : iterable of mapping
+        Rows of the variables, with their name, kind and source.
+    entries : iterable of mapping
+        Entries of each result.  An entry that is missing or None leaves the value of MISSING.  Only
+        one result is in memory at a time.
+    size : int
+        Length of the dimension.
+
+    Raises
+    ------
+    ValueError
+        If there are fewer results.
+    """
+    sources = {row["name"]: row["source"] or row["name"] for row in table}
+    values: dict[str, np.ndarray] = {
+        row["name"]: np.full(size, MISSING.get(row["kind"], 0), TYPES.get(row["kind"], np.int8))
+        for row in table
+    }
+    count = 0
+    for count, result in enumerate(entries, 1):
+        for name, source in sources.items():
+            if (value := result.get(source)) is not None:
+                values[name][count - 1] = value
+    if count != size:
+        raise ValueError(f"{count} results for {size} points")
+    return values
 
 
 def described(name: str, dims: str | Sequence[Hashable], values: ArrayLike) -> tuple:

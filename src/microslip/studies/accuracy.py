@@ -22,7 +22,7 @@ from numpy.typing import ArrayLike
 
 from microslip.periodic.methods import SHIPPED, method_named
 from microslip.studies import requests as forms
-from microslip.studies.answers import MOTIONS, Answers, Row, names_along, number
+from microslip.studies.answers import MOTIONS, Answers, Row, columns, number
 from microslip.studies.requests import AnyPoint, Point
 from microslip.theory import paper
 
@@ -30,7 +30,7 @@ if TYPE_CHECKING:
     import pandas as pd
     import xarray as xr
 
-    from microslip.config.settings import Accuracy
+    from microslip.config.settings import Accuracy, StudyPoint
 
 CHOICE_TOLERANCES = (1e-2, 1e-3, 1e-4)
 """Tolerances of the timed solves at each point."""
@@ -103,21 +103,15 @@ def requests(study: Accuracy) -> Iterator[tuple[tuple, dict]]:
 
 def values(study: Accuracy, answers: Answers) -> dict[str, Any]:
     """Return the values of the variables."""
-    import pandas as pd
-
     points = [_point(name, point, answers) for name, point in study.points.items()]
-    of_points = zip(points, study.points.values(), strict=True)
-    trials_of = [_trials(study, row, point, answers) for row, point in of_points]
-    runs = pd.concat(trials_of, ignore_index=True)
+    runs = _trials(study, points, answers)
     tolerances = study.map.tolerance[::-1]  # from loose to tight
-    entries = dict(pd.DataFrame(points)) | dict(runs)
+    entries = columns("accuracy", "point", points) | dict(runs)
     entries |= profiles(runs, list(study.points), tolerances) | {"map_tolerance": tolerances}
     for motion in MOTIONS:
         entries |= _map(study, motion, tolerances, answers)
-    if answers.machines:
-        for name in ("cpu", "host", "threads"):
-            entries[f"machine_{name}"] = [machine[name] for machine in answers.machines]
-    return entries
+    machines = columns("accuracy", "machine", answers.machines) if answers.machines else {}
+    return entries | machines
 
 
 def report(dataset: xr.Dataset) -> Iterator[str]:
@@ -132,66 +126,44 @@ def report(dataset: xr.Dataset) -> Iterator[str]:
         )
 
 
-def _point(name: str, point: AnyPoint, answers: Answers) -> Row:
+def _point(name: str, point: StudyPoint, answers: Answers) -> Row:
     """Return the row of a point."""
     if point.amplitude is None:
-        mu, error, source = float(paper.bore_forward(point.velocity)), 0.0, "closed form, Eq 21"
+        result: Row = {"mu_macro": float(paper.bore_forward(point.velocity)), "mu_macro_error": 0.0}
+        source = "closed form, Eq 21"
     else:
         result = answers(forms.reference(point))
-        mu, error = number(result, "mu_macro"), number(result, "mu_macro_error")
         source = f"model {result['model']}, tolerance {forms.reference(point)['tolerance']}"
         source += "" if result["converged"] else f", not met: {result.get('reason') or ''}"
-    place = {f"point_{key}": getattr(point, key) for key in Point._fields}
-    return place | {
-        "point": name,
-        "point_title": getattr(point, "title", None) or name,
-        "reference": mu,
-        "reference_error": error,
-        "reference_source": source,
-    }
+    own = {"point": name, "point_title": point.title or name, "reference_source": source}
+    return result | point.model_dump() | own
 
 
-def _trials(study: Accuracy, place: Row, point: AnyPoint, answers: Answers) -> pd.DataFrame:
-    """Return the trials at one point.  place: row of the point."""
+def _trials(study: Accuracy, points: list[Row], answers: Answers) -> pd.DataFrame:
+    """Return the trials at all points.  points: rows of the points."""
     import pandas as pd
 
-    rows = []
-    for level, request in trials(study, point):
-        row = answers(request)
-        if not row.get("applies", True):
-            continue
-        mu, machine = number(row, "mu_macro"), row.get("machine")
-        rows.append(
-            {
-                "trial_point": place["point"],
-                "trial_model": request.get("model", "auto"),
-                "trial_method": request.get("method", SHIPPED),
-                "trial_level": level,
-                "trial_cells": row.get("cells") or 0,
-                "trial_angles": row.get("angles") or 0,
-                "trial_steps": row.get("steps_per_period") or row.get("steps") or 0,
-                "trial_tolerance": float(request["tolerance"]),
-                "mu_macro": mu,
-                "error": abs(mu - place["reference"]),
-                "seconds": number(row, "seconds"),
-                "effort": number(row, "effort"),
-                "converged": bool(row.get("converged")),
-                "reason": row.get("reason") or "",
-                "trial_machine": answers.machines.index(machine) if machine else -1,
-                "claimed_error": number(row, "mu_macro_error"),
-            }
-        )
-    runs = pd.DataFrame(rows, columns=names_along("trial", "accuracy"))
-    # Errors below the reference's error count as equal.
-    error = np.maximum(runs["error"], place["reference_error"]).where(runs["converged"] == 1)
-    for cost in ("seconds", "effort"):
-        runs[f"front_{cost}"] = on_front(runs[cost], error)
+    rows: list[Row] = []
+    for place, point in zip(points, study.points.values(), strict=True):
+        for level, request in trials(study, point):
+            row = answers(request)
+            if row.get("applies", True):
+                own = {
+                    "trial_point": place["point"],
+                    "trial_model": request.get("model", "auto"),
+                    "trial_method": request.get("method", SHIPPED),
+                    "trial_level": level,
+                    "error": abs(number(row, "mu_macro") - number(place, "mu_macro")),
+                }
+                rows.append(row | own)
+    runs = pd.DataFrame(columns("accuracy", "trial", rows))
+    for place in points:
+        # Errors below the reference's error count as equal.
+        own = runs[(runs["trial_point"] == place["point"]) & runs["converged"]]
+        error = np.maximum(own["error"], number(place, "mu_macro_error"))
+        for cost in ("seconds", "effort"):
+            runs.loc[own.index, f"front_{cost}"] = on_front(own[cost], error)
     return runs
-
-
-BEST = (("", "model", ""), ("_cells", "cells", 0), ("_seconds", "seconds", np.nan))
-"""Variables of a map: suffix of the name, column of the table, and value if no model is within the
-tolerance."""
 
 
 def _map(study: Accuracy, motion: str, tolerances: Sequence[float], answers: Answers) -> dict:
@@ -207,15 +179,14 @@ def _map(study: Accuracy, motion: str, tolerances: Sequence[float], answers: Ans
             cost = number(row, "seconds")
             rows.append((place, request["model"], request["cells"], cost, error))
     table = pd.DataFrame(rows, columns=["place", "model", "cells", "seconds", "error"])
-    axes = {"amplitude": study.map.amplitude[motion], "velocity": study.map.velocity}
-    shape = len(axes["amplitude"]), len(axes["velocity"])
     exact = forms.exact_model(motion, 0.0)
-    best = [cheapest(table, exact, t).reindex(range(shape[0] * shape[1])) for t in tolerances]
-    entries: dict[str, Any] = {f"{motion}_{name}": axis for name, axis in axes.items()}
-    for suffix, column, none in BEST:
-        chosen = [one[column].fillna(none) for one in best]
-        entries[f"{motion}_cheapest{suffix}"] = np.reshape(chosen, (-1, *shape))
-    return entries
+    best = [cheapest(table, exact, t).to_dict("index") for t in tolerances]
+    amplitude, velocity = study.map.amplitude[motion], study.map.velocity
+    shape = len(tolerances), len(amplitude), len(velocity)
+    chosen = [of_place.get(place, {}) for of_place in best for place in range(shape[1] * shape[2])]
+    dims = f"map_tolerance {motion}_amplitude {motion}_velocity"
+    axes = {f"{motion}_amplitude": amplitude, f"{motion}_velocity": velocity}
+    return columns("accuracy", dims, chosen, *shape) | axes
 
 
 # Pareto fronts, cheapest runs and performance profiles

@@ -10,8 +10,9 @@ from typing import Any
 from microslip.foundation.canonical import canonical_json
 
 Row = dict[str, Any]
-"""An answer: the entries of the request and of its result, and the name `key` of the result.
-An entry of the result replaces the entry of the request with the same name."""
+"""An answer: the entries of the request and of its result, the name `key` of the result, the time
+steps in a period, and the index of the computer.  An entry of the result replaces the entry of the
+request with the same name."""
 MOTIONS = ("transverse", "bore")
 """Motions that replace {motion} in the tables of variables and groups."""
 
@@ -42,11 +43,27 @@ class Answers:
         if text not in self.rows:
             record = self._answer(request)
             result = record["result"]
-            self.rows[text] = request, request | result | {"key": record["key"]}
             self.versions.add(canonical_json(record["versions"]))
-            if result.get("machine") not in (None, *self.machines):
-                self.machines.append(result["machine"])
+            if (machine := result.get("machine")) not in (None, *self.machines):
+                self.machines.append(machine)
+            steps = result.get("steps_per_period") or result.get("steps") or request.get("steps")
+            index = self.machines.index(machine) if machine else -1
+            own = {"key": record["key"], "machine": index, "steps": steps}
+            self.rows[text] = request, request | result | own
         return self.rows[text][1]
+
+
+def columns(study: str, dims: str, rows: list[Row], *shape: int) -> dict[str, Any]:
+    """Return the values of all variables of a study with the dimensions `dims`.
+
+    rows: a row for each value, the last dimension fastest.  shape: lengths of the dimensions, if
+    there are several.
+    """
+    from microslip.datasets import variables  # imports NumPy
+
+    own = [row for row in rows_of("variables.csv", study) if row["dims"] == dims]
+    every = variables.columns(own, rows, len(rows))
+    return {name: values.reshape(shape or -1) for name, values in every.items()}
 
 
 def number(row: Row, name: str) -> float:
@@ -66,8 +83,3 @@ def rows_of(table: str, study: str) -> Iterator[dict[str, str]]:
         if row["study"] == study:
             for motion in MOTIONS if "{motion}" in row["dims"] else MOTIONS[:1]:
                 yield {key: text.replace("{motion}", motion) for key, text in row.items()}
-
-
-def names_along(dim: str, study: str) -> list[str]:
-    """Return the names of the variables of a study whose only dimension is `dim`."""
-    return [row["name"] for row in rows_of("variables.csv", study) if row["dims"] == dim]

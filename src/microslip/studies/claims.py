@@ -10,8 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from microslip.studies import evidence, static_limits, verdicts
-from microslip.studies.answers import Answers, Row, number
-from microslip.studies.evidence import COLUMNS
+from microslip.studies.answers import Answers, Row, columns
 from microslip.studies.statements import PARTS, STATEMENTS
 from microslip.theory import hertz, paper
 
@@ -33,7 +32,7 @@ COMMENT = (
 
 def requests(study: Claims) -> Iterator[tuple[tuple, dict]]:
     """Yield each request with its job."""
-    tables = (rows for rows, _ in evidence.sources(study).values())
+    tables = (rows for *_, rows in evidence.sources(study))
     for request in chain.from_iterable(chain.from_iterable(tables)):
         place = request["motion"], request.get("amplitude")
         if request["kind"] == "run":
@@ -46,14 +45,10 @@ def requests(study: Claims) -> Iterator[tuple[tuple, dict]]:
 
 def values(study: Claims, answers: Answers) -> dict[str, Any]:
     """Return the values of the variables."""
-    import pandas as pd
-
     tables = evidence.tables_of(study, answers)
-    checks = pd.concat({name: part.checks(tables) for name, part in PARTS.items()}, names=["part"])
-    entries = _verdicts(checks) | static_limits.values(study, tables)
-    entries |= _patches(study, answers)
-    runs = pd.DataFrame([_run(*run) for run in answers.rows.values()])
-    return entries | dict(runs)
+    entries = _verdicts(tables) | static_limits.values(study, tables) | _patches(study, answers)
+    runs = [_run(*run) for run in answers.rows.values()]
+    return entries | columns("claims", "run", runs)
 
 
 def report(dataset: xr.Dataset) -> Iterator[str]:
@@ -65,38 +60,24 @@ def report(dataset: xr.Dataset) -> Iterator[str]:
 # Statements, parts and checks
 
 
-def _verdicts(checks: pd.DataFrame) -> dict[str, Any]:
+def _verdicts(tables: dict[str, pd.DataFrame]) -> dict[str, Any]:
     """Return the statements, their parts, and the checks of the parts.
 
-    checks: checks of all parts, with the name of the part as the first level of the index.
+    tables: tables of evidence by name.
     """
     parts: list[Row] = []
-    for name, part in PARTS.items():
-        own = checks[checks.index.get_level_values("part") == name]
-        parts.append(
-            {
-                "part": name,
-                "part_claim": part.claim,
-                "part_text": part.text,
-                "part_counts": part.counts,
-                "part_where": verdicts.where(own),
-                "part_shown_by": verdicts.shown_by(own),
-                "part_verdict": verdicts.of_part(own["outcome"]),
-            }
-        )
-        for code, word in enumerate(verdicts.OUTCOMES):
-            parts[-1][f"part_{word}"] = int((own["outcome"] == code).sum())
-    of_claims = [
-        [p["part_verdict"] for p in parts if p["part_claim"] == claim and p["part_counts"]]
-        for claim in STATEMENTS
-    ]
-    return {
+    checks: list[Row] = []
+    for part in PARTS:
+        own = part.checks(tables)
+        parts.append(part._asdict() | verdicts.of_checks(own))
+        checks += own.assign(part=part.part).to_dict("records")
+    entries = columns("claims", "part", parts) | columns("claims", "check", checks)
+    counting = [part for part in parts if part["counts"]]
+    of_claims = [[p["part_verdict"] for p in counting if p["claim"] == one] for one in STATEMENTS]
+    return entries | {
         "claim": list(STATEMENTS),
         "statement": list(STATEMENTS.values()),
-        "verdict": [verdicts.of_claim(codes) for codes in of_claims],
-        **{name: [part[name] for part in parts] for name in parts[0]},
-        "check_part": checks.index.get_level_values("part"),
-        **{f"check_{name}": checks[name] for name in (*COLUMNS, "against", "margin", "outcome")},
+        "verdict": list(map(verdicts.of_claim, of_claims)),
     }
 
 
@@ -108,60 +89,45 @@ def _run(request: dict, row: Row) -> dict[str, Any]:
     error = evidence.friction(row)[1]
     on_rings = "polar" if request["kind"] in ("history", "field", "patches") else ""
     forces = row.get("force_forward")
-    return {
-        "run": row["key"],
+    own = {
+        "motion": request["motion"],
         "run_what": _description(request),
-        "run_motion": request["motion"],
-        "run_velocity": float(request["velocity"]),
-        "run_amplitude": number(request, "amplitude"),
-        "run_poisson": float(request.get("poisson", 0)),
-        "run_model": row.get("model") or request.get("model") or on_rings,
-        "run_cells": row.get("cells") or 0,
-        "run_angles": row.get("angles") or 0,
-        "run_steps": row.get("steps_per_period") or row.get("steps") or 0,
-        "run_tolerance": number(request, "tolerance"),
-        "run_mu_macro": float(forces[-1]) if forces else number(row, "mu_macro"),
+        "run_model": row.get("model") or on_rings,
+        "run_mu_macro": forces[-1] if forces else row.get("mu_macro"),
         "run_error": error if np.isfinite(error) else np.nan,
         "run_converged": row.get("converged", True),
         "run_command": command(request),
     }
+    return {"poisson": 0.0} | row | own
+
+
+SINGLE_RUNS = {
+    "history": ("transient from {start}", "['force_forward'][-1]"),
+    "field": ("steady tractions", ""),
+    "patches": ("tractions over a period", "['least_stick']"),
+    "run": ("single run, method {method}", "['mu_macro']"),
+}
+"""For each kind of single run: a short description, and the part of the result that the command of
+the run prints."""
 
 
 def _description(request: dict) -> str:
     """Return a short description of how a run was computed."""
-    kinds = {
-        "point": "static limit" if request["velocity"] == "0" else "certified point",
-        "history": f"transient from {request.get('start')}",
-        "field": "steady tractions",
-        "patches": "tractions over a period",
-        "run": f"single run, method {request.get('method')}",
-    }
-    return kinds[request["kind"]]
-
-
-SHOWN = {
-    "history": "['force_forward'][-1]",
-    "field": "",
-    "patches": "['least_stick']",
-    "run": "['mu_macro']",
-}
-"""Part of the result that the command of a run prints, by the kind of the request."""
+    if request["kind"] == "point":
+        return "static limit" if request["velocity"] == "0" else "certified point"
+    return SINGLE_RUNS[request["kind"]][0].format(**request)
 
 
 def command(request: dict) -> str:
     """Return a shell command that repeats the computation of a request."""
     kind = request["kind"]
     if kind != "point":
-        shown = f"computed({request}){SHOWN[kind]}"
+        shown = f"computed({request}){SINGLE_RUNS[kind][1]}"
         return f'python -c "from microslip.sweeps.evaluate import computed; print({shown})"'
-    defaults = {"amplitude": None, "poisson": "0", "pressure": "hertz", "model": "auto"}
-    defaults |= {"tolerance": None, "cells": None, "steps": None}
-    options = {"velocity": request["velocity"]} | {
-        name: value
-        for name, usual in defaults.items()
-        if (value := request.get(name, usual)) not in (None, usual)
-    }
-    words = (f"--{name} {value}" for name, value in options.items())
+    names = ["velocity", "amplitude", "poisson", "pressure", "model", "tolerance", "cells", "steps"]
+    usual = {"poisson": "0", "pressure": "hertz", "model": "auto"}
+    options = {name: request.get(name) for name in names}
+    words = (f"--{n} {v}" for n, v in options.items() if v not in (None, usual.get(n)))
     return f"microslip point {request['motion']} {' '.join(words)}"
 
 

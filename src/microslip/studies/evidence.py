@@ -15,7 +15,7 @@ evidence has a line for each row, with the columns
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from functools import partial
 from itertools import product
 from typing import TYPE_CHECKING, Any
@@ -40,7 +40,7 @@ PAPER_SQUARES, PAPER_STEPS = 32, 100
 """Number of squares along a side (as in the paper), and number of steps per period in our run."""
 PAPER_TOLERANCE = 1e-3
 """Tolerance of the stresses in the paper."""
-STEADY_VELOCITIES = (0.1, 0.3, 0.5, 0.8, 1.2, 3.0)
+STEADY = (0.1, 0.3, 0.5, 0.8, 1.2, 3.0)
 TRANSIENT = {"motion": "continuous-bore", "velocity": 0.8, "travel": 10.0}
 """Transient of the continuous bore.  The forward travel is in units of u_lim, twice as far as in
 the paper's Figure 5."""
@@ -97,30 +97,26 @@ def periods(study: Claims) -> list[list[dict]]:
     ]
 
 
-def sources(study: Claims) -> dict[str, tuple[list[list[dict]], Callable[..., dict]]]:
-    """Return the tables that are read from runs, by name.
+def sources(study: Claims) -> Iterator[tuple[str, Callable[..., dict], list[list[dict]]]]:
+    """Yield the tables that are read from runs: name, function and requests.
 
-    A table has rows of requests, and a function that reads a line of evidence from the results of a
-    row.
+    The requests are in rows.  The function reads a line of evidence from the results of a row.
     """
 
     def point(*place: Any, model: str = "auto", cells: int | None = None) -> dict:
         return forms.solve(Point(*place), study.tolerance, model, cells)
 
-    def stiff(amplitude: float, ratio: float) -> list[dict]:
-        one = point("normal:indentation=1", amplitude * ratio, amplitude)
-        return [one | {"pressure": f"power:exponent={n}"} for n in STIFF_EXPONENTS]
-
-    flat = [stiff(*place) for place in product(STIFF_AMPLITUDES, STIFF_RATIOS)]
-    tables: dict[str, tuple[list[list[dict]], Callable[..., dict]]] = {
-        "steady": (
-            [[point("continuous-bore", v, model="polar")] for v in STEADY_VELOCITIES],
-            point_of,
-        ),
-        "flat end": (flat, flat_end_of),
-    }
+    yield "steady", point_of, [[point("continuous-bore", v, model="polar")] for v in STEADY]
+    stiff = [
+        point("normal:indentation=1", a * r, a) for a, r in product(STIFF_AMPLITUDES, STIFF_RATIOS)
+    ]
+    flat = [[one | {"pressure": f"power:exponent={n}"} for n in STIFF_EXPONENTS] for one in stiff]
+    yield "flat end", flat_end_of, flat
     for motion in MOTIONS:
         amplitudes = study.amplitude[motion]
+        moving = [[point(motion, v, a)] for a, v in product(amplitudes, velocities(study))]
+        yield motion, point_of, moving
+        yield f"{motion} closed", point_of, [[point(motion, 0.0, a)] for a in amplitudes]
         limits = [
             [
                 point(motion, 0.0, a),
@@ -130,29 +126,25 @@ def sources(study: Claims) -> dict[str, tuple[list[list[dict]], Callable[..., di
             ]
             for a in static_amplitudes(study, motion)
         ]
-        moving = [[point(motion, v, a)] for a, v in product(amplitudes, velocities(study))]
-        tables[motion] = moving, point_of
-        tables[f"{motion} closed"] = [[point(motion, 0.0, a)] for a in amplitudes], point_of
-        tables[f"{motion} limit"] = limits, limit_of
+        yield f"{motion} limit", limit_of, limits
     largest = study.amplitude["transverse"][-1]
     run = [paper_run("transverse", largest), point("transverse", PAPER_VELOCITY, largest)]
     slides = largest > STATIC_AMPLITUDES["transverse"]  # the whole contact
-    tables["sliding"] = [run] if slides else [], paper_run_of
+    yield "sliding", paper_run_of, [run] if slides else []
     transients = [
         [request_of("history", start=start, cells=n, **TRANSIENT) for n in CELLS]
         for start in STARTS
     ]
     for name in ("force_forward", "torque"):
-        tables[name] = transients, partial(end_of, name)
+        yield name, partial(end_of, name), transients
     fields = [
         [request_of("field", motion="continuous-bore", velocity=v, cells=n) for n in CELLS]
         for v in FIELD_VELOCITIES
     ]
-    for name, read in (("ratio", traction_ratio), ("angle", traction_angle)):
-        tables[name] = fields, partial(both_of, read)
-    for name, read in (("least stick", least_stick), ("lead", lead)):
-        tables[name] = periods(study), partial(both_of, read)
-    return tables
+    yield "ratio", partial(both_of, traction_ratio), fields
+    yield "angle", partial(both_of, traction_angle), fields
+    yield "least stick", partial(both_of, least_stick), periods(study)
+    yield "lead", partial(both_of, lead), periods(study)
 
 
 # Tables of evidence
@@ -163,7 +155,7 @@ def tables_of(study: Claims, answers: Answers) -> dict[str, pd.DataFrame]:
     import pandas as pd
 
     tables = {}
-    for name, (requests, read) in sources(study).items():
+    for name, read, requests in sources(study):
         lines = []
         for some in requests:
             rows = [answers(request) for request in some]

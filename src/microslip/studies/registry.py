@@ -8,13 +8,17 @@ A study is a module with four functions and two texts:
 - report(dataset): lines of text that summarise the dataset;
 - TITLE and COMMENT of the dataset.
 
-The variables of all datasets are in variables.csv, and their groups in groups.csv.  The workflow
-imports the modules at every start, so they import neither the solver nor xarray at the top.
+The variables of all datasets are in variables.csv, and their groups in groups.csv.  The column
+`source` is the entry of a row that the values are taken from (see answers.columns).  If it is
+empty, the entry has the name of the variable.
+
+The workflow imports the modules at every start, so they import neither the solver nor xarray at the
+top.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Iterable, Iterator
 from importlib import import_module
 from types import ModuleType
 from typing import TYPE_CHECKING
@@ -44,34 +48,19 @@ def pieces(study: str, settings: Settings) -> list[list[dict]]:
 def build(
     configuration: Configuration, study: str, records: Iterable[dict]
 ) -> tuple[xr.Dataset, dict[str, xr.Dataset]]:
-    """Build the dataset of a study, and the datasets of its groups by name."""
-    return divided(undivided(configuration, study, lookup(records)), study)
-
-
-def divided(dataset: xr.Dataset, study: str) -> tuple[xr.Dataset, dict[str, xr.Dataset]]:
-    """Divide the dataset of a study into its root and the datasets of its groups."""
-    from microslip.datasets import netcdf
-
-    rows = rows_of("groups.csv", study)
-    groups = {row["group"]: (row["title"], tuple(row["dims"].split())) for row in rows}
-    return netcdf.divide(dataset, groups)
-
-
-def undivided(
-    configuration: Configuration, study: str, answer: Callable[[dict], dict]
-) -> xr.Dataset:
-    """Build the dataset of a study with the variables of all groups.
+    """Build the dataset of a study, and the datasets of its groups by name.
 
     The settings are stored as an attribute in JSON.
 
-    answer: function that returns the record of a request.
+    records: records of all requests of the study, in any order.
     """
     import xarray as xr
 
-    from microslip.datasets import sweep_dataset
+    from microslip.datasets import netcdf, sweep_dataset
     from microslip.datasets.variables import variable
 
-    module, settings, answers = _module(study), configuration.studies[study], Answers(answer)
+    module, settings = _module(study), configuration.studies[study]
+    answers = Answers(lookup(records))
     values = module.values(settings, answers)
     variables = {}
     for row in rows_of("variables.csv", study):
@@ -84,7 +73,8 @@ def undivided(
     own = settings.model_dump()
     more |= {"tolerance": own["tolerance"]} if "tolerance" in own else {}
     attributes = sweep_dataset.provenance(module.TITLE, own, answers.versions, **more)
-    return xr.Dataset(variables, attrs=attributes)
+    dataset = xr.Dataset(variables, attrs=attributes)
+    return netcdf.divide(dataset, rows_of("groups.csv", study))
 
 
 def report(dataset: xr.Dataset, study: str) -> Iterator[str]:

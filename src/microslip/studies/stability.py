@@ -15,7 +15,7 @@ import numpy as np
 from microslip.foundation.canonical import number as text_of_number
 from microslip.periodic.methods import SHIPPED, declared, method_named, split
 from microslip.studies import requests as forms
-from microslip.studies.answers import Answers, Row, number
+from microslip.studies.answers import Answers, Row, columns, number
 from microslip.studies.requests import Point
 
 if TYPE_CHECKING:
@@ -34,8 +34,6 @@ UNSOLVED = "a step was left unsolved"
 """First words of `reason` if a run reached the iteration limit close to the solution of a step."""
 OUTCOMES = ("not_applicable", "converged", "slow", "wrong", "diverged")
 NOT_APPLICABLE, CONVERGED, SLOW, WRONG, DIVERGED = range(len(OUTCOMES))
-NUMBERS = {"mu_macro": "mu_macro", "claimed_error": "mu_macro_error", "work": "work"}
-"""Variables of the dataset, and their entries in the result of a probe."""
 
 TITLE = "Where methods for the friction of a vibrated Hertz contact fail"
 COMMENT = "The outcome of a method is judged by the distance from the reference of the case."
@@ -133,36 +131,31 @@ def outcome(
 def values(study: Stability, answers: Answers) -> dict[str, Any]:
     """Return the values of the variables."""
     every, blocks = cases(study), study.axes
-    truths = [answers(reference(study, block, value)) for _, block, value in every]
-    mu = np.array([number(truth, "mu_macro") for truth in truths])
-    error = np.array([number(truth, "mu_macro_error") for truth in truths])
-    imposed = [bool(block.cells or block.steps) for _, block, _ in every]
-    results: list[list[Row]] = []
+    rows: list[Row] = []
+    for name, block, value in every:
+        own = {"case_axis": name, "case_value": value, "case_label": f"{value:g}"}
+        rows.append(answers(reference(study, block, value)) | own)
+    probes: list[Row] = []
     for method in study.methods:
-        probes = [probe(study, method, block, value) for _, block, value in every]
-        results.append([{"applies": False} if one is None else answers(one) for one in probes])
-    numbers = {
-        name: np.array([[number(result, key) for result in row] for row in results])
-        for name, key in NUMBERS.items()
-    }
-    outcomes = [
-        [outcome(*four) for four in zip(row, mu, error, imposed, strict=True)] for row in results
-    ]
-    return numbers | {
-        "outcome": outcomes,
-        "reason": [[result.get("reason") or "" for result in row] for row in results],
-        "error": np.abs(numbers["mu_macro"] - mu),
-        "method": study.methods,
-        "method_summary": [method_named(method).summary for method in study.methods],
-        "reference": mu,
-        "reference_error": error,
-        "axis": list(blocks),
-        "axis_label": [block.title or block.quantity for block in blocks.values()],
-        "axis_note": [block.note for block in blocks.values()],
-        "case_axis": [name for name, *_ in every],
-        "case_value": [value for *_, value in every],
-        "case_label": [f"{value:g}" for *_, value in every],
-    }
+        for (_, block, value), row in zip(every, rows, strict=True):
+            request = probe(study, method, block, value)
+            result = {"applies": False} if request is None else answers(request)
+            mu, error = number(row, "mu_macro"), number(row, "mu_macro_error")
+            code = outcome(result, mu, error, bool(block.cells or block.steps))
+            off = abs(number(result, "mu_macro") - mu)
+            probes.append(result | {"outcome": code, "error": off})
+    results = columns("stability", "method case", probes, len(study.methods), len(every))
+    return (
+        columns("stability", "case", rows)
+        | results
+        | {
+            "method": study.methods,
+            "method_summary": [method_named(method).summary for method in study.methods],
+            "axis": list(blocks),
+            "axis_label": [block.title or block.quantity for block in blocks.values()],
+            "axis_note": [block.note for block in blocks.values()],
+        }
+    )
 
 
 def report(dataset: xr.Dataset) -> Iterator[str]:

@@ -18,10 +18,11 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
+from microslip.datasets.catalogue import FORMS
 from microslip.datasets.variables import rows
 from microslip.studies import verdicts
 from microslip.studies.static_limits import asymptote
-from microslip.theory import oscillating_load, paper
+from microslip.theory import oscillating_load
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -67,12 +68,15 @@ class Part(NamedTuple):
         """
         checks = tables[self.evidence]
         checks = checks.query(self.lines) if self.lines else checks
-        checks = checks.assign(limit=self.limit)
-        checks = checks.assign(against=FORMULAS[self.formula])
         # An error of the value can change the distances from two formulas, so it counts twice.
-        errors = 2.0 if self.margin.startswith("nearer than eq") else 1.0
-        checks = checks.assign(margin=MARGINS[self.margin], error=errors * checks["error"])
-        return checks.assign(outcome=verdicts.outcomes(checks["margin"], checks["error"]))
+        errors = 2.0 if self.margin.startswith("nearer than Eq") else 1.0
+        return checks.assign(
+            limit=self.limit,
+            against=FORMULAS[self.formula],
+            margin=MARGINS[self.margin],
+            error=errors * checks["error"],
+            outcome=lambda own: verdicts.outcomes(own["margin"], own["error"]),
+        )
 
 
 Numbers = Callable[["pd.DataFrame"], Any]
@@ -84,21 +88,18 @@ def _of(formula: Callable, *columns: str) -> Numbers:
 
 
 FORMULAS = {
-    "eq6": _of(paper.large_amplitude_transverse, "velocity", "amplitude"),
-    "eq7": _of(paper.static_slider, "amplitude"),
-    "eq11": _of(paper.static_transverse, "amplitude"),
-    "eq21": _of(paper.bore_forward, "velocity"),
-    "eq22": _of(paper.bore_torque, "velocity"),
-    "eq29": _of(paper.large_amplitude_bore, "velocity"),
-    "eq33": _of(paper.static_bore, "amplitude"),
-    "printed": _of(paper.static_bore_printed, "amplitude"),
+    form.equation: _of(form.function, *form.arguments)
+    for forms in FORMS.values()
+    for form in forms.values()
+    if form.equation
+} | {
     "asymptote": _of(asymptote, "amplitude"),
-    "eq37": _of(oscillating_load.sum_of_powers, "amplitude", "velocity"),
-    "eq38": _of(oscillating_load.single_power, "amplitude", "velocity"),
+    "Eq 37": _of(oscillating_load.sum_of_powers, "amplitude", "velocity"),
+    "Eq 38": _of(oscillating_load.single_power, "amplitude", "velocity"),
     "other": _of(np.asarray, "other"),
     "limit": _of(np.asarray, "limit"),
 }
-"""References of values by name."""
+"""References of values: closed forms by their equation, and others by name."""
 
 
 def _distance(checks: pd.DataFrame, reference: Any = None) -> Any:
@@ -112,8 +113,8 @@ MARGINS: dict[str, Numbers] = {
     "within share of value": lambda c: c["limit"] * c["value"] - _distance(c),
     "within share of against": lambda c: c["limit"] * c["against"] - _distance(c),
     "nearer than other": lambda c: np.abs(c["other"] - c["against"]) - _distance(c),
-    "nearer than eq7": lambda c: _distance(c, FORMULAS["eq7"](c)) - _distance(c),
-    "nearer than eq38": lambda c: _distance(c, FORMULAS["eq38"](c)) - _distance(c),
+    "nearer than Eq 7": lambda c: _distance(c, FORMULAS["Eq 7"](c)) - _distance(c),
+    "nearer than Eq 38": lambda c: _distance(c, FORMULAS["Eq 38"](c)) - _distance(c),
 }
 """Margins of checks by name.  A margin is positive where the part holds."""
 
@@ -128,5 +129,5 @@ def _part(row: dict[str, str]) -> Part:
 FOLDER = Path(__file__).parent
 STATEMENTS = {int(row["claim"]): row["text"] for row in rows(FOLDER / "statements.csv")}
 """The statements by number."""
-PARTS = {part.part: part for part in map(_part, rows(FOLDER / "parts.csv"))}
-"""The parts of all statements by name."""
+PARTS = tuple(map(_part, rows(FOLDER / "parts.csv")))
+"""The parts of all statements."""

@@ -10,7 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from itertools import groupby
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -22,7 +22,7 @@ OUTCOMES = ("open", "holds", "fails")
 OPEN, HOLDS, FAILS = range(len(OUTCOMES))
 VERDICTS = ("not_decided", "holds", "holds_in_part", "does_not_hold")
 NOT_DECIDED, WHOLLY, PARTLY, NOT = range(len(VERDICTS))
-WORDS = ("not decided", "holds", "holds in part", "does not hold")
+WORDS = tuple(name.replace("_", " ") for name in VERDICTS)
 """Verdicts in words."""
 
 
@@ -36,12 +36,10 @@ def outcomes(margin: ArrayLike, error: ArrayLike) -> np.ndarray:
     return np.where(decided, np.where(margin > 0, HOLDS, FAILS), OPEN)
 
 
-def of_part(outcome: ArrayLike) -> int:
+def of_part(outcome: Iterable[int]) -> int:
     """Return the verdict on a part from the outcomes of its checks, an index into VERDICTS."""
-    holds, fails = (bool(np.any(np.equal(outcome, code))) for code in (HOLDS, FAILS))
-    if holds:
-        return PARTLY if fails else WHOLLY
-    return NOT if fails else NOT_DECIDED
+    distinct = set(outcome)
+    return _verdict(HOLDS in distinct, FAILS in distinct)
 
 
 def of_claim(parts: Iterable[int]) -> int:
@@ -51,11 +49,27 @@ def of_claim(parts: Iterable[int]) -> int:
     not.  Otherwise, one undecided part leaves the statement undecided.
     """
     distinct = set(parts)
-    if PARTLY in distinct or {WHOLLY, NOT} <= distinct:
-        return PARTLY
-    if NOT_DECIDED in distinct or not distinct:
-        return NOT_DECIDED
-    return distinct.pop()
+    verdict = _verdict(bool({WHOLLY, PARTLY} & distinct), bool({NOT, PARTLY} & distinct))
+    return NOT_DECIDED if NOT_DECIDED in distinct and verdict != PARTLY else verdict
+
+
+def _verdict(holds: bool, fails: bool) -> int:
+    return (NOT_DECIDED, WHOLLY, NOT, PARTLY)[holds + 2 * fails]
+
+
+def of_checks(checks: pd.DataFrame) -> dict[str, Any]:
+    """Return the variables of a part that follow from its checks.
+
+    checks: table with the columns outcome, margin, run, amplitude and velocity.
+    """
+    counts = {
+        f"part_{word}": (checks["outcome"] == code).sum() for code, word in enumerate(OUTCOMES)
+    }
+    return counts | {
+        "part_where": where(checks),
+        "part_shown_by": shown_by(checks),
+        "part_verdict": of_part(checks["outcome"]),
+    }
 
 
 def shown_by(checks: pd.DataFrame) -> str:
