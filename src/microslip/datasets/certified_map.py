@@ -15,11 +15,12 @@ from collections.abc import Iterable, Iterator
 
 import numpy as np
 import xarray as xr
+from numpy.typing import ArrayLike
 
 from microslip.config.settings import Configuration
 from microslip.datasets import sweep_dataset
 from microslip.datasets.interpolation import BORDERS, COORDINATES
-from microslip.datasets.variables import described
+from microslip.datasets.variables import TABLE, described
 from microslip.foundation.canonical import canonical_json
 from microslip.sweeps import map_refinement
 from microslip.sweeps.batch import lookup
@@ -53,21 +54,20 @@ def build(
     index = {node: i for i, node in enumerate(points)}
     places = [coordinates.place(node) for node in points]
     values, errors = np.array([answers[node] for node in points]).T
-    variables: dict[str, tuple] = {
-        "mu_macro": ("point", values),
-        "mu_macro_error": ("point", errors),
-    }
+    variables: dict[str, ArrayLike] = {"mu_macro": values, "mu_macro_error": errors}
     ends = np.array(cells.cells)  # (cell, lower or upper, direction)
     for direction, own in zip(coordinates.directions, ends.T, strict=True):
-        variables |= zip(BORDERS[direction], (("cell", end) for end in own), strict=True)
+        variables |= zip(BORDERS[direction], own, strict=True)
     nodes = [map_refinement.nodes_of(cell, degrees) for cell in cells.cells]
-    cell_nodes = [[index[node] for node in own] for own in nodes]
-    variables |= {"cell_error": ("cell", cells.errors), "cell_node": (("cell", "node"), cell_nodes)}
+    variables["cell_error"] = cells.errors
+    variables["cell_node"] = [[index[node] for node in own] for own in nodes]
     # Poisson's ratio and velocity are scalars, unless they are directions of the map.
     axes: dict = {"velocity": ((), 0.0), "poisson": ((), sweep.poisson[0])}
     for direction, axis in zip(coordinates.directions, zip(*places, strict=True), strict=True):
         axes[direction] = "point", np.array(axis)
-    dataset = xr.Dataset({name: described(name, *one) for name, one in variables.items()}, axes)
+    dims = {name: TABLE[name]["dims"].split() or "point" for name in variables}
+    every = {name: described(TABLE[name], variables[name], dims[name]) for name in variables}
+    dataset = xr.Dataset(every, axes)
     sweep_dataset.describe_axes(dataset, sweep)
     motion, pressure = solver_names(sweep)
     about = sweep_dataset.provenance(

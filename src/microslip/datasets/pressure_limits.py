@@ -48,10 +48,12 @@ def formulas_under(motion: str, name: str) -> dict[str, ClosedForm]:
         forms[STATIC] = replace(of_sphere[STATIC], function=lambda a: 1.0 - curve(a))
     elif STATIC in of_sphere:
         exact = ZONE, of_sphere[STATIC]
-        # An elliptic stick zone carries the same fraction of the load.
-        functions = [form.function for form in exact if pressure.hertzian and motion != "bore"]
+        functions: tuple[Callable, ...] = ()
         if pressure.is_indenter:
-            functions = [*_of_indenter(motion, pressure)]
+            functions = _of_indenter(motion, pressure)
+        elif pressure.hertzian and motion != "bore":
+            # An elliptic stick zone carries the same fraction of the load.
+            functions = ZONE.function, of_sphere[STATIC].function
         for form, function in zip(exact, functions, strict=False):
             forms[form.name] = replace(form, function=_each(function))
     return forms

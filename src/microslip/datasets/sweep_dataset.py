@@ -18,7 +18,7 @@ from microslip.config.quantities import AMPLITUDE, DRIVES, VELOCITY
 from microslip.config.settings import Configuration, Sweep
 from microslip.datasets import netcdf, theory_limits
 from microslip.datasets.catalogue import FORMS
-from microslip.datasets.variables import columns, described, rows_of
+from microslip.datasets.variables import TABLE, columns, described, rows_of
 from microslip.foundation import named_files, source_digest
 from microslip.foundation.canonical import canonical_json
 from microslip.scene.by_name import motion_named
@@ -93,7 +93,7 @@ def build(
             source, sign = values[row["source"]], 1.0 if change.endswith("_error") else -1.0
             first = source.take([0], axis=sweep.dims.index("poisson"))
             values[change] = source + sign * first
-    of_points = {one: described(one, sweep.dims, column) for one, column in values.items()}
+    of_points = {one: described(TABLE[one], values[one], sweep.dims) for one in values}
     root = xr.Dataset(theory_limits.variables(sweep) | of_points, coords)
     describe_axes(root, sweep)
     groups = theory_limits.curves(sweep) | ({} if failed else _of_runs(runs))  # see `report`
@@ -139,8 +139,8 @@ def _of_runs(runs: list[dict]) -> dict[str, dict]:
     variables: dict[str, dict] = {}
     for group, own in of_group.items():
         for name, row in rows_of(group).items():
-            dims, values = row["dims"].split(), [run[row["source"]] for run in own]
-            one = described(name, dims, values if "start" in dims else values[0])
+            values = [run[row["source"]] for run in own]
+            one = described(row, values if "start" in row["dims"].split() else values[0])
             variables.setdefault(group, {})[name] = one
     return variables
 

@@ -9,7 +9,7 @@ import numpy as np
 from microslip.config.settings import Sweep
 from microslip.datasets import catalogue
 from microslip.datasets.catalogue import ClosedForm
-from microslip.datasets.variables import described, variable
+from microslip.datasets.variables import TABLE, described, variable
 from microslip.sweeps.request import solver_names
 
 CURVE_POINTS = 241
@@ -67,7 +67,7 @@ def curves(sweep: Sweep) -> dict:
         along, fine = f"{first}_curve", _fine(first, axes[0])
         values = form.function(fine, *(axis[-1] for axis in axes[1:]))
         at = f", at amplitude {axes[1][-1]:g}" if others else ""
-        group = groups.setdefault(f"{along}s", {along: described(along, (along,), fine)})
+        group = groups.setdefault(f"{along}s", {along: described(TABLE[along], fine, (along,))})
         text = f"{form.description or form.long_name}{at}"
         group[f"{name}_curve"] = variable((along,), values, form.long_name, description=text)
     return groups

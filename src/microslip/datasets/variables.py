@@ -80,10 +80,15 @@ def columns(
     return values
 
 
-def described(name: str, dims: str | Sequence[Hashable], values: ArrayLike) -> tuple:
-    """Return a variable of variables.csv as a tuple for xarray.Dataset."""
-    row = TABLE[name]
-    texts = {key: row[key] for key in ("flag_meanings", "description") if row[key]}
+def described(
+    row: Mapping[str, str], values: ArrayLike, dims: str | Sequence[Hashable] | None = None
+) -> tuple:
+    """Return the variable of a row of a table as a tuple for xarray.Dataset.
+
+    dims: dimensions, if they are not in the row.
+    """
+    dims = row["dims"].split() if dims is None else dims
+    texts = {key: row[key] for key in ("flag_meanings", "description") if row.get(key)}
     return variable(dims, values, row["long_name"], row["kind"], row["units"], **texts)
 
 

@@ -57,16 +57,13 @@ def build(
     import xarray as xr
 
     from microslip.datasets import netcdf, sweep_dataset
-    from microslip.datasets.variables import variable
+    from microslip.datasets.variables import described
 
     module, settings = _module(study), configuration.studies[study]
     answers = Answers(lookup(records))
     values = module.values(settings, answers)
-    variables = {}
-    for row in rows_of("variables.csv", study):
-        if (name := row["name"]) in values:
-            about = row["long_name"], row["kind"], row["units"]
-            variables[name] = variable(row["dims"].split(), values[name], *about)
+    table = {row["name"]: row for row in rows_of("variables.csv", study)}
+    variables = {name: described(table[name], values[name]) for name in table if name in values}
     # The keys also depend on the sources of the methods.
     keys = sorted({row["key"] for _, row in answers.rows.values()})
     more = {"results_digest": sha256("\n".join(keys)), "comment": module.COMMENT}

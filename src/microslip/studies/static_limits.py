@@ -118,26 +118,20 @@ def _table(motion: str, limit: pd.DataFrame, march: pd.DataFrame, slow: pd.DataF
     paper, with a line for each amplitude.
     """
     limit, march, slow = (table.set_index("amplitude") for table in (limit, march, slow))
-    exact, own = limit["value"], limit["paper"]
     amplitude = limit.index.to_numpy(float)
-    formulas = {n: FORMS[motion][form].function(amplitude) for n, form in FORMULAS[motion].items()}
+    entries = {n: FORMS[motion][form].function(amplitude) for n, form in FORMULAS[motion].items()}
     with np.errstate(invalid="ignore", divide="ignore"):
-        lost = np.where(formulas["zone"] > 0.0, 1.0 - exact / formulas["zone"], np.nan)
-    return formulas | {
-        "amplitude": amplitude,
-        "limit": exact,
-        "limit_error": limit["error"],
+        share = 1.0 - limit["value"] / entries["zone"]
+    entries |= {"amplitude": amplitude, "lost": np.where(entries["zone"] > 0.0, share, np.nan)}
+    for name, table in {"limit": limit, "march": march, "slow": slow}.items():
+        entries |= {name: table["value"], f"{name}_error": table["error"]}
+    return entries | {
         "limit_squares": limit["squares"],
-        "march": march["value"],
-        "march_error": march["error"],
-        "slow": slow["value"],
-        "slow_error": slow["error"],
-        "paper": own,
-        "paper_shift": own - exact,
-        "from_velocity": slow["value"] - exact,
+        "squares_shift": limit["squares"] - limit["value"],
+        "paper": limit["paper"],
+        "paper_shift": limit["paper"] - limit["value"],
+        "from_velocity": slow["value"] - limit["value"],
         "from_velocity_error": slow["error"] + limit["error"],
-        "from_resolution": own - slow["value"],
+        "from_resolution": limit["paper"] - slow["value"],
         "from_resolution_error": slow["error"],
-        "squares_shift": limit["squares"] - exact,
-        "lost": lost,
     }
