@@ -12,7 +12,7 @@ import xarray as xr
 
 from microslip.datasets import interpolation
 from microslip.datasets.interpolation import ANY, AXES, SAME
-from microslip.datasets.variables import ANCILLARY, variable
+from microslip.datasets.variables import ANCILLARY, described
 from microslip.foundation.errors import InputError
 
 ALLOWED = "allowed is a finite number, or several"
@@ -93,8 +93,9 @@ class Map:
         value.attrs[ANCILLARY] = f"{name}_error"
         error.attrs = {"long_name": f"bound of the error of {name}", "units": "1"}
         answer = xr.Dataset({name: value, f"{name}_error": error})
+        scalars = [n for n in numbers if n not in answer.coords]
         answer = answer.assign_coords(
-            {n: variable((), number, n) for n, number in numbers.items() if n not in answer.coords}
+            {n: described({"long_name": n}, numbers[n], ()) for n in scalars}
         )
         names = ("motion", "pressure")
         return answer.assign_attrs({key: data.attrs[key] for key in names if key in data.attrs})

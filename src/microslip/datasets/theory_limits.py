@@ -9,7 +9,7 @@ import numpy as np
 from microslip.config.settings import Sweep
 from microslip.datasets import catalogue
 from microslip.datasets.catalogue import ClosedForm
-from microslip.datasets.variables import TABLE, described, variable
+from microslip.datasets.variables import TABLE, described
 from microslip.sweeps.request import solver_names
 
 CURVE_POINTS = 241
@@ -49,8 +49,8 @@ def variables(sweep: Sweep) -> dict:
         values = form.function(*np.meshgrid(*axes))
         dims = tuple(dim for dim in form.arguments[::-1] if dim in sweep.dims)
         values = np.reshape(values, [len(sweep.axes[dim]) for dim in dims])
-        about: dict = {"description": form.description} if form.description else {}
-        limits[form.name] = variable(dims, values, form.long_name, **about)
+        about = {"long_name": form.long_name, "description": form.description}
+        limits[form.name] = described(about, values, dims)
     return limits
 
 
@@ -69,7 +69,8 @@ def curves(sweep: Sweep) -> dict:
         at = f", at amplitude {axes[1][-1]:g}" if others else ""
         group = groups.setdefault(f"{along}s", {along: described(TABLE[along], fine, (along,))})
         text = f"{form.description or form.long_name}{at}"
-        group[f"{name}_curve"] = variable((along,), values, form.long_name, description=text)
+        about = {"long_name": form.long_name, "description": text}
+        group[f"{name}_curve"] = described(about, values, (along,))
     return groups
 
 

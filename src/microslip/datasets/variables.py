@@ -83,33 +83,27 @@ def columns(
 def described(
     row: Mapping[str, str], values: ArrayLike, dims: str | Sequence[Hashable] | None = None
 ) -> tuple:
-    """Return the variable of a row of a table as a tuple for xarray.Dataset.
-
-    dims: dimensions, if they are not in the row.
-    """
-    dims = row["dims"].split() if dims is None else dims
-    texts = {key: row[key] for key in ("flag_meanings", "description") if row.get(key)}
-    return variable(dims, values, row["long_name"], row["kind"], row["units"], **texts)
-
-
-def variable(
-    dims: str | Sequence[Hashable],
-    values: ArrayLike,
-    long_name: str,
-    kind: str = "float",
-    units: str = "1",
-    **more: str,
-) -> tuple:
     """Return a variable as a tuple for xarray.Dataset.
 
-    kind: key of TYPES, or the meanings of codes; units: unit of numbers; more: additional
-    attributes.
+    Parameters
+    ----------
+    row : mapping of str to str
+        Row of a table, or some of its entries: long_name, kind (by default "float"), units (by
+        default "1"), description and flag_meanings.
+    values : array_like
+        Values of the variable.
+    dims : str or sequence, optional
+        Dimensions, if they are not in the row.
     """
-    about: dict = {"long_name": long_name}
+    kind, units = row.get("kind", "float"), row.get("units", "1")
+    about: dict = {"long_name": row["long_name"]}
     if kind == "bool" or kind not in TYPES:  # stored as bytes; xarray reads bool as bool
-        meanings = "no yes" if kind == "bool" else kind
+        meanings = row.get("flag_meanings") or ("no yes" if kind == "bool" else kind)
         codes = np.arange(len(meanings.split()), dtype=np.int8)
         about |= {"flag_values": codes, "flag_meanings": meanings}
     elif kind != "str" and units:
         about["units"] = units
-    return dims, np.array(values).astype(TYPES.get(kind, np.int8)), about | more
+    if row.get("description"):
+        about["description"] = row["description"]
+    dims = row["dims"].split() if dims is None else dims
+    return dims, np.array(values).astype(TYPES.get(kind, np.int8)), about
