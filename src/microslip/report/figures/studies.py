@@ -341,7 +341,7 @@ def static(dataset: xr.Dataset) -> Figure:
 def _friction(axes: Axes, dataset: xr.Dataset, motion: str) -> None:
     """Draw lines for the limit and the formulas, and markers for the points and the paper's run."""
     amplitude = dataset[f"{motion}_curve_amplitude"].values
-    for variable, (form, _) in {"limit": (STATIC, None), **FORMULAS[motion]}.items():
+    for variable, form in {"limit": STATIC, **FORMULAS[motion]}.items():
         (color, ls), known = look.LIMITS[form], FORMS[motion][form]
         ink: look.Ink = {"color": color, "ls": ls, "label": known.equation or known.label}
         axes.plot(amplitude, dataset[f"{motion}_curve_{variable}"], gid=variable, **ink)
