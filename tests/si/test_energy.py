@@ -61,21 +61,3 @@ def test_without_an_effect_of_the_vibration_the_energy_is_that_of_the_drag(motio
     assert result.wear_volume_per_cycle_m3 == pytest.approx(volume, rel=1e-3)
     depth = volume / (math.pi * result.contact_radius_m**2)
     assert result.wear_depth_per_cycle_m == pytest.approx(depth, rel=1e-3)
-
-
-def test_the_energy_at_rest_is_that_of_mindlin_and_deresiewicz():
-    """The loop of a sphere with the amplitude L mu F of the force dissipates
-    9 (2 - nu) (mu F)^2 / (10 G a) (1 - (1 - L)^(5/3) - 5 L / 6 (1 + (1 - L)^(2/3))).
-
-    This is the formula of Mindlin and Deresiewicz (1953).
-    """
-    soft = {"young": "1 MPa", "nu": 0.0, "radius": "5 mm", "load": "1 mN", "mu": 0.3}
-    moving = {"speed": 0.0, "amplitude": "0.3 um", "frequency": "1 Hz"}
-    result = microslip.predict("transverse", **soft, **moving)
-    size = result.amplitude
-    force = 1.0 - (1.0 - size) ** 1.5
-    factor = 9.0 * 2.0 * (0.3 * 1e-3) ** 2 / (10.0 * 0.5e6 * result.contact_radius_m)
-    rest = 1.0 - force
-    bracket = 1.0 - rest ** (5 / 3) - 5.0 * force / 6.0 * (1.0 + rest ** (2 / 3))
-    assert 0.0 < size < 1.0
-    assert result.energy_per_cycle_J == pytest.approx(factor * bracket, rel=1e-6)

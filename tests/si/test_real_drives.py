@@ -1,12 +1,12 @@
 """Contacts in SI units under a force or on a spring: groups, scaling laws, limits."""
 
 import math
-from types import SimpleNamespace
 
 import pytest
 from stubs.si_contact import contact as contact_of
 
 import microslip
+from microslip.answer.refine import UNKNOWN
 from microslip.foundation.arguments import LARGEST_BODY
 from microslip.foundation.errors import InputError
 from microslip.si import solve
@@ -154,19 +154,24 @@ def test_a_force_within_the_error_of_its_threshold_is_not_converged(side):
     assert "undecided within the error" in str(result)
 
 
-def test_an_unknown_displacement_of_a_contact_that_stays_has_its_reason(monkeypatch):
+def test_a_force_that_the_solver_gives_up_on_has_no_outcome(monkeypatch):
+    def given_up(motion, velocity, *changes, **settings):
+        result = microslip.solve(motion, velocity, *changes, **settings)
+        lost = {"mean_velocity": UNKNOWN, "converged": False, "reason": "lost on the way"}
+        return result if velocity == 0.0 else result.changed(**lost)
+
+    monkeypatch.setattr(solve, "solve", given_up)
+    request = SIDEWAYS | {"amplitude": "0.1 um", "force": "2.9 N", "tolerance": 0.1}
+    result = microslip.predict("transverse", **request)
+    assert result.outcome is None and math.isnan(result.speed_m_s)
+    assert "NOT CONVERGED: speed: lost on the way" in str(result)
+
+
+def test_an_unknown_displacement_of_a_contact_that_stays_has_its_reason():
     requests = SIDEWAYS | {"amplitude": stroke(0.5), "force": 1.0}
     heavy = microslip.predict("transverse", **requests, mass="1 mg")
     assert (heavy.outcome, heavy.displacement_m) == ("stays", None)
     assert "unknown: computed for a contact without mass only" in str(heavy)
-
-    def endless(*changes, **settings):
-        return SimpleNamespace(converged=False, reason="lost on the way")
-
-    monkeypatch.setattr("microslip.answer.force.shakedown", endless)
-    light = microslip.predict("transverse", **requests)
-    assert (light.outcome, light.displacement_reason) == ("stays", "lost on the way")
-    assert "unknown: lost on the way" in str(light)
 
 
 def test_a_contact_without_mass_goes_along_with_what_shakes_it_along_the_force():

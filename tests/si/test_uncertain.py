@@ -124,17 +124,8 @@ def test_a_draw_without_a_result_of_the_solver_hides_no_limit_of_the_force():
     """The contact runs away if mu is below 0.09, 1.2 deviations below its value."""
     settings = JOINT | {"mu": "0.15 +- 0.05", "amplitude": 0.0, "force": "90 N"}
     result = microslip.predict("transverse", **settings)
-    assert result.probability_runs_away == pytest.approx(0.1151, abs=1e-3)
+    assert abs(result.probability_runs_away - 0.11507) <= result.probability_runs_away_error < 1e-3
     assert math.isinf(result.speed_spread_m_s) and "nan" not in str(result)
-
-
-@pytest.mark.filterwarnings("error")
-def test_a_steady_spin_gives_way_to_any_force_that_is_drawn():
-    settings = SPIN | {"speed": None, "force": "1 N +- 0.9 N"}
-    result, again = (microslip.predict("continuous-bore", **settings) for _ in range(2))
-    assert (result.probability_stays, result.safety_factor_high) == (0.0, 0.0)
-    assert result.probability_runs_away == pytest.approx(0.0131, abs=1e-3)  # 2 / 0.9 deviations
-    assert result.to_dict() == again.to_dict()  # equal inputs have equal draws
 
 
 def test_a_force_that_may_vanish_has_an_unbounded_safety_factor():

@@ -142,9 +142,6 @@ class Value:
     def __add__(self, other: Value) -> Value:
         return Value(self.value + other.value, self.error + other.error)
 
-    def __sub__(self, other: Value) -> Value:
-        return self + -1.0 * other
-
 
 @cache
 def column(name: str, unit: str, kind: str = "value") -> str:

@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from microslip.si.contact import Contact, contact_of
-from microslip.si.inputs import INPUTS, Inputs, read_inputs
+from microslip.si.inputs import INPUTS, read_inputs
 from microslip.si.output import OUTPUTS, Prediction, Value
 from microslip.si.search import LOAD, find_reduction
 from microslip.si.solve import answer_of, simplifications
@@ -90,8 +90,8 @@ def checked_contact(motion: Any, **given: Any) -> Contact:
 
 def predict_contact(contact: Contact) -> Prediction:
     """The Prediction for a contact of `checked_contact`.  Raises InputError."""
-    inputs, search = contact.inputs, contact.inputs.search
-    given = _input_values(inputs)
+    inputs, search, about = contact.inputs, contact.inputs.search, _about(contact)
+    given = about["input_values"]
     if search:
         contact, root = find_reduction(inputs)
         given[search] = replace(root, unit=given[search].unit)
@@ -112,9 +112,8 @@ def predict_contact(contact: Contact) -> Prediction:
     speed = values["speed"].value if "speed" in values else contact.inputs.speed
     return replace(
         answer,
-        **_about(inputs),
+        **about,
         values={name: values[name] for name in OUTPUTS if name in values},
-        input_values=given,
         pressure=contact.pressure,
         remarks=tuple(_remarks(contact, answer)),
         warnings=tuple(warnings_of(contact, speed)),
@@ -124,17 +123,16 @@ def predict_contact(contact: Contact) -> Prediction:
 
 def unsolved(contact: Contact, reason: str) -> Prediction:
     """The Prediction for a search without a solution.  It has no outputs."""
-    values, search = _input_values(contact.inputs), str(contact.inputs.search)
-    values[search] = Value(math.nan, math.nan, unit=values[search].unit)
-    return Prediction(**_about(contact.inputs), input_values=values, reason=reason)
+    about, search = _about(contact), str(contact.inputs.search)
+    about["input_values"][search] = Value(math.nan, math.nan, unit=contact.inputs.unit(search))
+    return Prediction(**about, reason=reason)
 
 
-def _about(inputs: Inputs) -> dict[str, Any]:
-    return {"motion": str(inputs.kind.name), "inputs": inputs.texts, "search": inputs.search}
-
-
-def _input_values(inputs: Inputs) -> dict[str, Value]:
-    return {n: Value(one.si, None, unit=inputs.unit(n)) for n, one in inputs.quantities.items()}
+def _about(contact: Contact) -> dict[str, Any]:
+    """The inputs of a Prediction."""
+    inputs, about = contact.inputs, {"motion": str(contact.kind.name)}
+    values = {n: Value(x.si, None, unit=inputs.unit(n)) for n, x in inputs.quantities.items()}
+    return about | {"inputs": inputs.texts, "search": inputs.search, "input_values": values}
 
 
 def outputs(contact: Contact, answer: Prediction) -> dict[str, Value]:
@@ -164,7 +162,7 @@ def factors_of(contact: Contact, answer: Prediction) -> dict[str, Any]:
     still, period = contact.mu * contact.load * mean_load, 2.0 * math.pi / contact.omega
     speed = Value(inputs.speed) if inputs.force is None else velocity * unit
     factors: dict[str, Any] = contact.drive(mean_load) | known
-    factors |= {"sliding_friction": still, "force_reduction": Value(1.0) - friction}
+    factors |= {"sliding_friction": still, "force_reduction": Value(1.0) + -1.0 * friction}
     factors |= {"millimetre": 1e-3, "per_area": 1.0 / contact.area}
     if contact.kind.unit == "rad" and np.all(inputs.amplitude == 0.0):
         factors["velocity"] = None
@@ -193,7 +191,7 @@ def factors_of(contact: Contact, answer: Prediction) -> dict[str, Any]:
         whole = known["dissipation"] * (still * contact.u_lim / (period * mean_load))
         # The balance contains the drag at the velocity of the answer, which is smaller than the
         # requested one if that is outside the range of the solver.
-        power = whole - friction * velocity * (still * unit)
+        power = whole + friction * velocity * (-still * unit)
         total = replace(drag + power, error=np.maximum(whole.error, drag.error))
     else:
         return factors

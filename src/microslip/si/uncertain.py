@@ -12,7 +12,7 @@ the inputs if there are at most as many.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from dataclasses import replace
 from functools import partial
 from itertools import pairwise
@@ -74,16 +74,16 @@ class _Line(NamedTuple):
     at: Callable[[float], tuple[Inputs, float]]
     nodes: list[tuple[float, float, dict[str, float]]]
 
-    def add(self, level: float, solve: Callable[[Inputs], dict[str, float]]) -> None:
-        """Add a node at a level.  If this level has no values, a level nearer to the centre is
-        used."""
-        for one in (factor * level for factor in NEARER):
-            try:
-                inputs, place = self.at(one)
-                self.nodes.append((one, place, solve(inputs)))
-            except (InputError, ArithmeticError):  # outside the range of the theory or the solver
-                continue
-            return
+    def add(self, solve: Callable[[Inputs], dict[str, float]], *levels: float) -> None:
+        """Add nodes at levels.  If a level has no values, a level nearer to the centre is used."""
+        for level in levels:
+            for one in (factor * level for factor in NEARER):
+                try:
+                    inputs, place = self.at(one)
+                    self.nodes.append((one, place, solve(inputs)))
+                    break
+                except (InputError, ArithmeticError):  # outside the range of the theory
+                    continue
 
     def values(self, name: str) -> np.ndarray:
         """Values of all draws: interpolated between the nodes, constant outside, and NaN where the
@@ -125,7 +125,10 @@ class Draws:
         self.contact = Contact(contact.inputs.at(**drawn))
         middle = _numbers(contact, answer, search)
         limit = None if search else middle.pop("static", None)
-        known = self._total(middle, self._lines(middle), LEVELS, _solution)
+        lines = self._lines(middle)
+        for line in lines:
+            line.add(_solution, *LEVELS)
+        known = _total(middle, lines)
         if limit is not None:
             known["static"] = self._static(limit)
         if search is not None:
@@ -156,24 +159,6 @@ class Draws:
             drawn[name] = np.clip(one.si + normal[..., k] * one.deviation, low, high)
         return drawn
 
-    def _total(
-        self,
-        central: dict[str, float],
-        lines: list[_Line],
-        levels: Sequence[float],
-        solve: Callable[[Inputs], dict[str, float]],
-        refine: Callable[[_Line], None] = lambda line: None,
-    ) -> dict[str, np.ndarray]:
-        """The central values and their changes along all lines.  refine: adds more nodes."""
-        totals = {name: np.full(DRAWS, value) for name, value in central.items()}
-        for line in lines:
-            for level in levels:
-                line.add(level, solve)
-            refine(line)
-            for name, value in central.items():
-                totals[name] += line.values(name) - value
-        return totals
-
     def _static(self, central: float) -> np.ndarray:
         """The static limit for all draws.  Points are added where it vanishes and where it is close
         to the force."""
@@ -186,20 +171,19 @@ class Draws:
                 return {"static": static_limit(contact).mu_macro}
             return {"static": 1.0 if contact.amplitude <= 0.0 else 0.0}
 
-        def refine(line: _Line) -> None:
+        for line in lines:
+            line.add(limit, *STATIC_LEVELS)
             for _ in range(REFINEMENTS):
                 sizes = sorted((level, values["static"]) for level, _, values in line.nodes)
                 pairs = pairwise(sizes)
                 ends = [(a, b) for (a, x), (b, y) in pairs if (x > VANISHING) != (y > VANISHING)]
                 if ends:
-                    line.add(0.5 * sum(ends[0]), limit)
+                    line.add(limit, 0.5 * sum(ends[0]))
             for _ in range(0 if force is None else REFINEMENTS):
                 distance = np.abs(line.values("static") - force)
                 closest = np.argpartition(distance, DRAWS // CLOSEST)[: DRAWS // CLOSEST]
-                line.add(float(np.median(line.levels[closest])), limit)
-
-        total = self._total({"static": central}, lines, STATIC_LEVELS, limit, refine)
-        return np.clip(total["static"], 0.0, 1.0)
+                line.add(limit, float(np.median(line.levels[closest])))
+        return np.clip(_total({"static": central}, lines)["static"], 0.0, 1.0)
 
     def _groups(self, contact: Contact, static: bool) -> np.ndarray:
         """Groups of a contact relative to the centre, shape (draws, groups)."""
@@ -246,6 +230,14 @@ class Draws:
             nodes = [(0.0, along(0.0)[1], central)]
             lines.append(_Line(scores[:, axis], levels[:, axis], along, nodes))
         return lines
+
+
+def _total(central: dict[str, float], lines: list[_Line]) -> dict[str, np.ndarray]:
+    """The central values and their changes along all lines."""
+    return {
+        name: np.full(DRAWS, value) + sum(line.values(name) - value for line in lines)
+        for name, value in central.items()
+    }
 
 
 def _numbers(contact: Contact, answer: Prediction, search: str | None) -> dict[str, float]:
