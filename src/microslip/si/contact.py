@@ -249,7 +249,13 @@ class Contact:
         groups |= self.drive()
         return {name: one for name, one in groups.items() if one is not None}
 
-    def refusals(self) -> Iterator[tuple[str, Any, str]]:
+    def check(self) -> None:
+        """Raise InputError for a contact outside Hertz's theory or the range of the solver."""
+        for name, is_refused, allowed in self._refusals():
+            if is_refused:
+                raise self.inputs.error(name, allowed)
+
+    def _refusals(self) -> Iterator[tuple[str, Any, str]]:
         """The input, whether it is refused, and what is allowed: the limits of Hertz's theory and
         of the solver."""
         inputs, a, smallest = self.inputs, self.contact_radius, self.smallest_radius
@@ -297,13 +303,15 @@ class Contact:
 
 def contact_of(inputs: Inputs) -> Contact:
     """The checked contact of scalar inputs.  Raises InputError."""
-    numbers = {name: np.float64(one.si) for name, one in inputs.quantities.items()}
-    with np.errstate(all="ignore"):  # numbers that are not finite are refused
-        contact = Contact(inputs.at(**numbers))
-        for name, is_refused, allowed in contact.refusals():
-            if is_refused:
-                raise inputs.error(name, allowed)
-    return Contact(inputs)
+    try:
+        contact = Contact(inputs)
+        contact.check()
+    except ArithmeticError:  # NumPy's numbers become infinite, which is refused
+        numbers = {name: np.float64(one.si) for name, one in inputs.quantities.items()}
+        with np.errstate(all="ignore"):
+            contact = Contact(inputs.at(**numbers))
+            contact.check()
+    return contact
 
 
 def curvatures(ratio: Any) -> tuple[Any, Any]:

@@ -265,7 +265,7 @@ class Inputs:
         quantities = dict(self.quantities)
         for name, value in si.items():
             quantities[name] = replace(quantities.get(name, Quantity(0.0, "")), si=value)
-        return replace(self, quantities=quantities)
+        return replace(self, quantities=quantities) if si else self
 
     def error(self, name: str, allowed: str) -> InputError:
         """The InputError for an input, with its value as the user wrote it."""
@@ -283,10 +283,14 @@ class Inputs:
         """The quantities with an uncertainty."""
         return {name: one for name, one in self.quantities.items() if one.deviation}
 
-    @cached_property
+    @property
     def bodies(self) -> tuple[Material, Material]:
         """The body and the counterbody."""
-        return self._body("")[0], self._body("counter_")[0]
+        return self._bodies[0][0], self._bodies[1][0]
+
+    @cached_property
+    def _bodies(self) -> tuple[tuple[Material, str], ...]:
+        return self._body(""), self._body("counter_")
 
     def _body(self, side: str) -> tuple[Material, str]:
         """A body and its text.  side: "counter_" for the counterbody, otherwise empty."""
@@ -310,7 +314,8 @@ class Inputs:
         """The inputs as the user wrote them, in the order of the printed answer."""
         own = {n: str(x) for n, x in self.given.items()}
         own |= {n: one.text for n, one in self.quantities.items() if n in own}
-        own["counterbody"] = self._body("counter_")[1]
+        texts = {"motion": f"{self.motion}: the sphere {self.kind.description}"}
+        texts["body"], own["counterbody"] = (text for _, text in self._bodies)
         if "map" in own:
             own["map"] = "friction from a map"
         if "contact_radius" in own:
@@ -321,8 +326,6 @@ class Inputs:
             own["counter_radius"] += ", hollow"
         if self.kind.stroke is not None:
             own["amplitude"] += " times the samples"
-        texts = {"motion": f"{self.motion}: the sphere {self.kind.description}"}
-        texts["body"] = self._body("")[1]
         return texts | {n: own[n] for n in INPUTS if n in own and n not in OF_BODIES}
 
 
@@ -411,12 +414,12 @@ def _refusals(
         size = "a pressure, which needs a contact_radius in place of radii"
     steady = f"for a motion that oscillates; {motion} is steady"
     without, only_with = "allowed only without ", "allowed only with a "
-    sized, drive = names & {"contact_radius", "pressure"}, names & {"force", "drive_stiffness"}
+    sizes, drive = names & {"contact_radius", "pressure"}, names & {"force", "drive_stiffness"}
     no_map, no_drive = "force drive_stiffness wear_coefficient", "drive_stiffness mass damping"
     yield " ".join(others), True, f"{motion or 'a contact without a motion'} has none"
     yield "frequency", file and file.frequency, f"{without}a column time, which contains it"
     yield "map", file, f"{without}a motion from a file: no map has its unit of the amplitude"
-    yield "radius counter_radius radius_across", sized, without + size
+    yield "radius counter_radius radius_across", sizes, without + size
     yield "radius_across", "counter_radius" in names, f"{without}a counter_radius"
     yield "force", "speed" in names, "allowed is a force or a speed, not both"
     yield no_drive, kind.steady, f"allowed only {steady}"

@@ -150,6 +150,12 @@ def column(name: str, unit: str, kind: str = "value") -> str:
     return "_".join([name, *[kind] * (kind != "value"), *words])
 
 
+@cache
+def _attributes(name: str, unit: str, kind: str) -> dict[str, str]:
+    """Attributes of a column in datasets."""
+    return {"units": unit or "1", "long_name": f"{name.replace('_', ' ')}, {kind}"}
+
+
 def input_column(name: str, unit: str, kind: str = "value") -> str:
     """Name of the column of an input, such as speed_m_s."""
     factor = name == "amplitude" and not unit
@@ -213,40 +219,39 @@ class Prediction:
         """The counterbody in words."""
         return self.inputs["counterbody"]
 
-    def columns(self) -> dict[str, tuple[Any, dict[str, str]]]:
-        """All columns by name: the value, and the attributes of a number in datasets.  The value
-        and the error of every output are present, None if they do not apply; spread, low and high
-        are present if an input is uncertain."""
-        names = (*TEXTS, *REASONS, "converged")
-        columns: dict[str, tuple[Any, dict]] = {name: (getattr(self, name), {}) for name in names}
-        columns["inputs"] = dict(self.inputs), {}
-        columns |= {name: (list(getattr(self, name)), {}) for name in LISTS}
+    def columns(self) -> tuple[dict[str, Any], dict[str, dict[str, str]]]:
+        """All columns by name, and the attributes of those with numbers.  The value and the error
+        of every output are present, None if they do not apply; spread, low and high are present if
+        an input is uncertain."""
+        columns = {name: getattr(self, name) for name in (*TEXTS, *REASONS, "converged")}
+        columns |= {name: list(getattr(self, name)) for name in LISTS}
+        columns["inputs"], attributes = dict(self.inputs), {}
         rows: list[tuple] = [(input_column, n, one, ()) for n, one in self.input_values.items()]
         for name, output in OUTPUTS.items():
             one = self.values.get(name, Value(None, None, unit=output.unit))
             rows.append((column, name, one, KINDS[:2]))
         for key, name, one, always in rows:
             for kind in KINDS:
-                number, title = getattr(one, kind), key(name, one.unit, kind)
-                is_new = columns.get(title, (None,))[0] is None  # the speed is an input or output
-                if is_new and (number is not None or kind in always):
-                    text = f"{name.replace('_', ' ')}, {kind}"
-                    columns[title] = number, {"units": one.unit or "1", "long_name": text}
-        return columns
+                number = getattr(one, kind)
+                if number is not None or kind in always:
+                    title = key(name, one.unit, kind)
+                    columns.setdefault(title, number)  # the speed is an input or an output
+                    attributes[title] = _attributes(name, one.unit, kind)
+        return columns, attributes
 
     def to_dict(self) -> dict[str, Any]:
-        """The values of `columns`."""
-        return {name: value for name, (value, _) in self.columns().items()}
+        """The columns by name."""
+        return self.columns()[0]
 
     def to_xarray(self) -> xr.Dataset:
         """The numbers as variables with units, and the texts as attributes."""
         import xarray as xr
 
-        columns = self.columns()
-        variables = {n: ((), x, about) for n, (x, about) in columns.items() if about}
+        columns, attributes = self.columns()
+        variables = {n: ((), columns[n], about) for n, about in attributes.items()}
         variables = {name: one for name, one in variables.items() if one[1] is not None}
-        texts = {name: columns[name][0] or "" for name in (*TEXTS, *REASONS)}
-        texts |= {name: "; ".join(columns[name][0]) for name in ("warnings", "not_checked")}
+        texts = {name: columns[name] or "" for name in (*TEXTS, *REASONS)}
+        texts |= {name: "; ".join(columns[name]) for name in ("warnings", "not_checked")}
         texts["inputs"] = "; ".join(f"{name}: {text}" for name, text in self.inputs.items())
         variables["converged"] = ((), self.converged, {})
         return xr.Dataset(variables, attrs={"record": "Prediction"} | texts)

@@ -149,7 +149,8 @@ def outputs(contact: Contact, answer: Prediction) -> dict[str, Value]:
             product = Value(product)
             if np.all(np.isnan(product.value)):
                 continue
-        value, error = (x if np.ndim(x) else float(x) for x in (product.value, product.error))
+        pair = product.value, product.error
+        value, error = (x if getattr(x, "shape", ()) else float(x) for x in pair)
         values[name] = Value(value, error, unit=output.unit)
     return values
 

@@ -44,6 +44,8 @@ PRINTED |= {"force_threshold": "threshold N"}
 PRINTED |= {f"probability_{one}": one for one in ("stays", "moves", "runs_away")}
 """Headings of the outputs in a printed table."""
 WIDTH = 13
+MISSING: tuple[dict[str, Any], dict[str, dict[str, str]]] = {"converged": False}, {}
+"""Columns of a contact without a prediction, and their attributes."""
 
 
 @dataclass(frozen=True)
@@ -251,9 +253,9 @@ def predictions(cases: Cases, *, need_all: bool = False) -> Iterator[Prediction 
         except InputError as error:
             checked.append(error)
     wrong = {k: one for k, one in enumerate(checked) if not isinstance(one, Contact)}
-    refused = [(k, one) for k, one in wrong.items() if isinstance(one, InputError)]
-    if refused and (need_all or len(wrong) == len(checked)):
-        first, problem = refused[0]
+    errors = [(k, one) for k, one in wrong.items() if isinstance(one, InputError)]
+    if errors and (need_all or len(wrong) == len(checked)):
+        first, problem = errors[0]
         same = len(wrong) == len(checked) and len(set(map(str, checked))) == 1
         if same and problem.argument not in cases.columns:
             raise problem
@@ -283,14 +285,11 @@ def dataset_of(cases: Cases, answers: Answers) -> xr.Dataset:
     }
     axes = axes or {"case": np.arange(len(answers))}
     shape = [len(values) for _, _, values in cases.axes.values()] or [len(answers)]
-    rows: list[dict[str, tuple]] = [
-        one.columns() if isinstance(one, Prediction) else {"converged": (False, {})}
-        for one in answers
-    ]
-    about = {name: attributes for row in rows for name, (_, attributes) in row.items()}
+    pairs = [one.columns() if isinstance(one, Prediction) else MISSING for one in answers]
+    about = {name: one for _, attributes in pairs for name, one in attributes.items()}
     columns: dict[str, list[Any]] = {
-        name: [_cell(row.get(name, (None,))[0], bool(attributes)) for row in rows]
-        for name, attributes in about.items()
+        name: [_cell(row.get(name), name in about) for row, _ in pairs]
+        for name in dict.fromkeys(name for row, _ in pairs for name in row)
         if name not in ("motion", "inputs", *axes)
     }
     for name, values in cases.columns.items() if not cases.axes else ():
