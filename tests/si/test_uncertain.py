@@ -126,6 +126,8 @@ def test_a_draw_without_a_result_of_the_solver_hides_no_limit_of_the_force():
     result = microslip.predict("transverse", **settings)
     assert abs(result.probability_runs_away - 0.11507) <= result.probability_runs_away_error < 1e-3
     assert math.isinf(result.speed_spread_m_s) and "nan" not in str(result)
+    rare = microslip.predict("transverse", **settings | {"mu": "0.15 +- 0.012"})  # 5 deviations
+    assert abs(rare.probability_runs_away - 2.9e-7) <= rare.probability_runs_away_error < 1e-3
 
 
 def test_a_force_that_may_vanish_has_an_unbounded_safety_factor():
