@@ -303,12 +303,12 @@ class Contact:
 
 def contact_of(inputs: Inputs) -> Contact:
     """The checked contact of scalar inputs.  Raises InputError."""
-    try:
-        contact = Contact(inputs)
-        contact.check()
-    except ArithmeticError:  # NumPy's numbers become infinite, which is refused
-        numbers = {name: np.float64(one.si) for name, one in inputs.quantities.items()}
-        with np.errstate(all="ignore"):
+    with np.errstate(all="ignore"):  # numbers that are not finite are refused
+        try:
+            contact = Contact(inputs)
+            contact.check()
+        except ArithmeticError:  # NumPy's numbers become infinite
+            numbers = {name: np.float64(one.si) for name, one in inputs.quantities.items()}
             contact = Contact(inputs.at(**numbers))
             contact.check()
     return contact

@@ -224,8 +224,8 @@ class Prediction:
         of every output are present, None if they do not apply; spread, low and high are present if
         an input is uncertain."""
         columns = {name: getattr(self, name) for name in (*TEXTS, *REASONS, "converged")}
-        columns |= {name: list(getattr(self, name)) for name in LISTS}
         columns["inputs"], attributes = dict(self.inputs), {}
+        columns |= {name: list(getattr(self, name)) for name in LISTS}
         rows: list[tuple] = [(input_column, n, one, ()) for n, one in self.input_values.items()]
         for name, output in OUTPUTS.items():
             one = self.values.get(name, Value(None, None, unit=output.unit))
