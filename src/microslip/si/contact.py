@@ -13,7 +13,6 @@ from functools import cached_property, reduce
 from typing import Any
 
 import numpy as np
-from scipy.special import ellipe, ellipk
 
 from microslip.foundation.arguments import LARGEST
 from microslip.scene.by_name import motion_named, pressure_named
@@ -71,7 +70,8 @@ class Contact:
     """
 
     def __init__(self, inputs: Inputs):
-        self.inputs, self.kind, self.bodies = inputs, inputs.kind, inputs.bodies
+        self.inputs, self.kind = inputs, inputs.kind
+        self.bodies = [body for body, _ in inputs.bodies]
         self.mu, self.load, self.steady = inputs.mu, inputs.load, inputs.kind.steady
         self.E_star = 1.0 / sum((1.0 - one.poisson**2) / one.young for one in self.bodies)
         compliances = [2.0 * (1.0 + one.poisson) / one.young for one in self.bodies]
@@ -87,7 +87,7 @@ class Contact:
             self.radius, indents = a**3 / sphere, shape.is_indenter or shape.hertzian
             stiffness, largest, area = shape.G_star, shape.largest, shape.area
             if shape.hertzian and not shape.is_round:
-                over, cube = curvatures(shape.ratio)  # type: ignore[attr-defined]
+                over, cube, _ = hertz_ellipse(shape.ratio)  # type: ignore[attr-defined]
             longer = self.radius / cube
         else:
             self.radii = tuple(r for r in (inputs.radius, inputs.counter_radius) if r is not None)
@@ -97,8 +97,7 @@ class Contact:
                 self.radii += (inputs.radius_across,)
                 longer = np.maximum(self.radius, inputs.radius_across)
                 self.ratio = ratio_of_axes(np.minimum(self.radius, inputs.radius_across) / longer)
-                over, cube = curvatures(self.ratio)
-                stiffness *= ellipk(1.0 - self.ratio**2) / ellipk(0.0)
+                over, cube, stiffness = hertz_ellipse(self.ratio)
             with np.errstate(invalid="ignore"):  # NaN for a hollow smaller than the sphere
                 a = np.power(sphere * longer * cube, 1.0 / 3.0)
             a = a if np.ndim(a) else float(a)
@@ -314,21 +313,27 @@ def contact_of(inputs: Inputs) -> Contact:
     return contact
 
 
-def curvatures(ratio: Any) -> tuple[Any, Any]:
-    """Curvatures of bodies whose contact is Hertz's ellipse with the ratio b/a of the semi-axes.
+def hertz_ellipse(ratio: Any) -> tuple[Any, Any, Any]:
+    """Hertz's contact on an ellipse with the ratio b/a of the semi-axes.
 
     Returns
     -------
     tuple of array
-        The smaller curvature divided by the larger one; a^3, divided by 3 F R / (4 E*) with the
-        larger radius R of relative curvature (K. L. Johnson, Contact Mechanics, 4.2).
+        The smaller curvature of the bodies divided by the larger one; a^3, divided by 3 F R / (4
+        E*) with the larger radius R of relative curvature (K. L. Johnson, Contact Mechanics, 4.2);
+        G* in working units, see scene.hertz.Ellipse.
     """
+    from scipy.special import ellipe, ellipk  # late: refusals do not need SciPy
+
     m = np.where(ratio == 1.0, 0.5, 1.0 - ratio**2)
     first, second = ellipk(m), ellipe(m)
     # 1/(2 R) = p0/E* b/(a^2 m) (K - E) along the long axis, with p0 = 3 F/(2 pi a b)
     over = ratio**2 * (first - second) / (second - ratio**2 * first)
-    cube = 4.0 / math.pi * (first - second) / m
-    return np.where(ratio == 1.0, 1.0, over), np.where(ratio == 1.0, 1.0, cube)
+    values = (over, 4.0 / math.pi * (first - second) / m, 1.5 / math.pi * first)
+    circle = (1.0, 1.0, hertz.G_STAR)
+    pairs = zip(circle, values, strict=True)
+    over, cube, stiffness = (np.where(ratio == 1.0, *pair) for pair in pairs)
+    return over, cube, stiffness
 
 
 def ratio_of_axes(over: Any) -> Any:
@@ -340,7 +345,7 @@ def ratio_of_axes(over: Any) -> Any:
     with np.errstate(invalid="ignore"):
         for _ in range(60):  # bisection of log(b/a); the curvatures' ratio increases with b/a
             middle = 0.5 * (low + high)
-            below = curvatures(np.exp(middle))[0] < over
+            below = hertz_ellipse(np.exp(middle))[0] < over
             low, high = np.where(below, middle, low), np.where(below, high, middle)
         ratio = np.where(over >= 1.0 - ROUND, 1.0, np.exp(0.5 * (low + high)))
     return ratio if np.ndim(ratio) else float(ratio)

@@ -283,13 +283,9 @@ class Inputs:
         """The quantities with an uncertainty."""
         return {name: one for name, one in self.quantities.items() if one.deviation}
 
-    @property
-    def bodies(self) -> tuple[Material, Material]:
-        """The body and the counterbody."""
-        return self._bodies[0][0], self._bodies[1][0]
-
     @cached_property
-    def _bodies(self) -> tuple[tuple[Material, str], ...]:
+    def bodies(self) -> tuple[tuple[Material, str], ...]:
+        """The body and the counterbody, with their texts."""
         return self._body(""), self._body("counter_")
 
     def _body(self, side: str) -> tuple[Material, str]:
@@ -315,7 +311,7 @@ class Inputs:
         own = {n: str(x) for n, x in self.given.items()}
         own |= {n: one.text for n, one in self.quantities.items() if n in own}
         texts = {"motion": f"{self.motion}: the sphere {self.kind.description}"}
-        texts["body"], own["counterbody"] = (text for _, text in self._bodies)
+        texts["body"], own["counterbody"] = (text for _, text in self.bodies)
         if "map" in own:
             own["map"] = "friction from a map"
         if "contact_radius" in own:
@@ -365,7 +361,7 @@ def read_inputs(motion: Any, **given: Any) -> Inputs:
         if one.unit is not None and name in known
     }
     inputs = Inputs(kind, motion, quantities, search, known)
-    if all(body.rigid for body in inputs.bodies):
+    if all(body.rigid for body, _ in inputs.bodies):
         raise inputs.error("material", "allowed is an elastic body if the counterbody is rigid")
     return inputs
 
