@@ -401,9 +401,11 @@ def disc(
 
 
 def unit_range(axes: Axes) -> None:
-    """Set the vertical range of a panel to 0 to 1, extended to all that is drawn."""
-    low, high = axes.dataLim.intervaly
-    low, high = np.floor(5 * min(low, 0.0)) / 5, np.ceil(5 * max(high, 1.0)) / 5
+    """Set the vertical range of a panel to 0 to 1, extended to all points and lines with an id."""
+    lines = [np.ravel(line.get_ydata()) for line in axes.get_lines() if line.get_gid()]
+    values = np.concatenate([np.array([0.0, 1.0]), *lines])
+    values = values[np.isfinite(values)]
+    low, high = np.floor(5 * values.min()) / 5, np.ceil(5 * values.max()) / 5
     margin = 0.04 * (high - low)
     axes.set_ylim(low - margin, high + margin)
     axes.yaxis.set_major_locator(ticker.MultipleLocator(0.2))
