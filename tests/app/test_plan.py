@@ -54,17 +54,20 @@ def test_another_way_to_write_a_motion_computes_nothing():
 
 
 def test_an_edit_of_a_builder_or_of_the_script_renames_what_it_makes(monkeypatch):
-    before = plan()
-    digest = source_digest.of_builder
+    axes = {"velocity": [0.1, 10], "amplitude": [0, 1]}
+    sure = {"sure": axes | {"motion": "bore", "error": 0.01}}
+    before, digest = plan(sure), source_digest.of_builder
+    parts = {"studies": {*STUDIES, "profile"}, "sweeps/map_refinement.py": {"sure"}}
+    for part, names in parts.items():
 
-    def edited(*files):
-        return "edited" if "studies" in files else digest(*files)
+        def edited(*files, part=part):
+            return "edited" if part in files else digest(*files)
 
-    monkeypatch.setattr(source_digest, "of_builder", edited)
-    assert changed(before, plan()) == {*STUDIES, "profile"}
+        monkeypatch.setattr(source_digest, "of_builder", edited)
+        assert changed(before, plan(sure)) == names
     monkeypatch.setattr(source_digest, "of_builder", digest)
     monkeypatch.setattr(source_digest, "of_script", lambda path: "edited")
-    assert changed(before, plan()) == before.products.keys()
+    assert changed(before, plan(sure)) == before.products.keys()
 
 
 def test_the_look_of_figures_counts_for_all_of_them():
