@@ -25,9 +25,7 @@ from functools import cache
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from scipy.interpolate import CubicSpline, RectBivariateSpline
-from scipy.optimize import minimize_scalar
-from scipy.stats import chi2, f
+import scipy  # imports its modules when they are used, which refusals do not need
 
 from microslip.answer.point import solve
 from microslip.foundation.arguments import LARGEST
@@ -446,7 +444,7 @@ def _of_solver(rows: Rows, motion: str, poisson: float, tolerance: float) -> Fri
     sizes = np.linspace(math.log(LEAST) - 0.1, math.log(MOST) + 0.1, SIZES)
     paces = np.linspace(low, high, max(4, math.ceil(1.0 + RATIOS * (high - low) / math.log(10.0))))
     nodes = [[point(r * a, a, **COARSE)[0] for r in np.exp(paces)] for a in np.exp(sizes)]
-    spline = RectBivariateSpline(sizes, paces, np.array(nodes), s=0)
+    spline = scipy.interpolate.RectBivariateSpline(sizes, paces, np.array(nodes), s=0)
 
     def friction(velocity: np.ndarray, amplitude: np.ndarray, rough: bool = False) -> np.ndarray:
         if rough:
@@ -502,11 +500,12 @@ class Profile:
         self.x = np.linspace(math.log(low), math.log(high), NODES)
         curves, last = _curves(friction, lengths, self.x[:, None]), np.full(2, np.inf)
         for _ in range(MOST_PASSES + 1):
-            self.macro = CubicSpline(self.x, curves)
+            self.macro = scipy.interpolate.CubicSpline(self.x, curves)
             k = int(np.argmin(self.squares(self.x)))
             bounds = self.x[max(k - 1, 0)], self.x[min(k + 1, NODES - 1)]
             form = {"method": "bounded", "options": {"xatol": 1e-9}}
-            self.best = float(minimize_scalar(self.squares, bounds=bounds, **form).x)
+            best = scipy.optimize.minimize_scalar(self.squares, bounds=bounds, **form)
+            self.best = float(best.x)
             now = np.array([self.best, math.log(self.mu(self.best)[0])])
             if np.abs(now - last).max() <= SETTLED:
                 break
@@ -529,7 +528,8 @@ class Profile:
         An end is infinite if the interval reaches the end of the table."""
         near = self.best + (self.x[-1] - self.x[0]) * np.linspace(-1.0, 1.0, NODES) ** 7
         grid = np.unique(np.clip([self.x, near], self.x[0], self.x[-1]))
-        roots = CubicSpline(grid, self.squares(grid) - allowed).roots(extrapolate=False)
+        curve = scipy.interpolate.CubicSpline(grid, self.squares(grid) - allowed)
+        roots = curve.roots(extrapolate=False)
         low, high = roots[roots < self.best], roots[roots > self.best]
         return max(low, default=-math.inf), min(high, default=math.inf)
 
@@ -552,7 +552,8 @@ def _fitted(about: dict[str, Any], friction: Friction, bodies: dict[str, Any], l
     at, free, macro = profile.best, len(weight) - 2, profile.macro(profile.best)
     mu, squares, _ = map(float, profile.mu(at))
     off = mu * profile.weight * profile.errors
-    noise = chi2.ppf(level, 1) if known else f.ppf(level, 1, free) * squares / free
+    stats = scipy.stats
+    noise = stats.chi2.ppf(level, 1) if known else stats.f.ppf(level, 1, free) * squares / free
     rounding = 1e-12 * float(profile.y @ profile.y)
     allowed = squares + max(float(noise), float(np.mean(off**2)), rounding)
     ends = profile.ends(allowed)
@@ -586,7 +587,7 @@ def _fitted(about: dict[str, Any], friction: Friction, bodies: dict[str, Any], l
         sides = [f" {n} {values[x]:.3g} {si}" for n, x in keys.items() if values[x] is not None]
         which = f"any {_title(name)}{''.join(sides)}"
         reason = f"the rows determine mu alone: {which} fits them as well"
-    if known and free and (chance := float(chi2.sf(squares, free))) < UNLIKELY:
+    if known and free and (chance := float(scipy.stats.chi2.sf(squares, free))) < UNLIKELY:
         problem = f"the residuals are larger than the errors of the rows allow (p = {chance:.1g})"
         doubt = "the theory does not describe these rows, or the errors are too small"
         doubts.append(f"{problem}: {doubt}")
