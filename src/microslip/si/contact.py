@@ -8,7 +8,6 @@ are assumed to be uncoupled.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
 from functools import cached_property, reduce
 from typing import Any
 
@@ -250,54 +249,52 @@ class Contact:
 
     def check(self) -> None:
         """Raise InputError for a contact outside Hertz's theory or the range of the solver."""
-        for name, is_refused, allowed in self._refusals():
-            if is_refused:
+
+        def refuse(name: str, is_wrong: Any, allowed: str) -> None:
+            if is_wrong:
                 raise self.inputs.error(name, allowed)
 
-    def _refusals(self) -> Iterator[tuple[str, Any, str]]:
-        """The input, whether it is refused, and what is allowed: the limits of Hertz's theory and
-        of the solver."""
         inputs, a, smallest = self.inputs, self.contact_radius, self.smallest_radius
         finite = all(0.0 < one < math.inf for one in (a, self.u_lim, self.load / a**2))
         if self.radii:
             second = "radius_across" if inputs.radius_across is not None else "counter_radius"
             own = "counter_radius" if inputs.counter_radius is not None else "radius"
-            yield own, inputs.counter_radius == 0.0, "allowed is a radius other than 0"
+            refuse(own, inputs.counter_radius == 0.0, "allowed is a radius other than 0")
             allowed = "allowed is a hollow with a larger radius than the sphere"
-            yield own, 1.0 / self.radius <= 0.0, allowed
-            yield own, not 0.0 < self.radius < math.inf, OUT_OF_RANGE
+            refuse(own, 1.0 / self.radius <= 0.0, allowed)
+            refuse(own, not 0.0 < self.radius < math.inf, OUT_OF_RANGE)
             allowed = f"the contact would be an ellipse of ratio {self.ratio:.2g}; allowed is "
-            yield second, self.ratio < SMALLEST_RATIO, f"{allowed}{SMALLEST_RATIO:g} or more"
+            refuse(second, self.ratio < SMALLEST_RATIO, f"{allowed}{SMALLEST_RATIO:g} or more")
             allowed = "by Hertz's theory, which is for contacts much smaller than either body, the "
             allowed += f"contact radius would be {a:.3g} m, {a / smallest:.2g} of this radius; "
-            name, allowed = "radius" if smallest == abs(self.radii[0]) else second, allowed
             allowed += f"allowed is less than {LARGEST_RATIO:g}"
-            yield name, a >= LARGEST_RATIO * smallest, allowed
+            name = "radius" if smallest == abs(self.radii[0]) else second
+            refuse(name, a >= LARGEST_RATIO * smallest, allowed)
             allowed = f"with these bodies and radii, {OUT_OF_RANGE}"
-            yield "load", not (finite and 0.0 < self.indentation < math.inf), allowed
+            refuse("load", not (finite and 0.0 < self.indentation < math.inf), allowed)
         else:
-            yield "contact_radius", not (finite and self.largest_pressure > 0.0), OUT_OF_RANGE
+            refuse("contact_radius", not (finite and self.largest_pressure > 0.0), OUT_OF_RANGE)
         if inputs.search is not None or self.kind is AT_REST:
             return
         most, amplitudes = LARGEST["amplitude"], {} if self.kind.stroke else self.amplitudes
         still = self.kind.several and amplitudes and not any(amplitudes.values())
         allowed = "allowed is a value above 0 if no other amplitude is above 0"
-        yield next(iter(self.kind.needed), ""), still, allowed
+        refuse(next(iter(self.kind.needed), ""), still, allowed)
         allowed = f"allowed is at most {most:g} times the load"
-        yield "load_amplitude", amplitudes.get("load", 0.0) > most, allowed
+        refuse("load_amplitude", amplitudes.get("load", 0.0) > most, allowed)
         if not self.steady:
             unit = f"the {self.u_lim:.3g} m at which the whole contact slides"
             if self.kind.unit == "rad":
                 unit = "the angle at which the stick radius is half the contact radius"
             allowed = f"{self.amplitude:.3g} times {unit}; allowed is at most {most:g} times"
-            yield "amplitude", not self.amplitude <= most, allowed
+            refuse("amplitude", not self.amplitude <= most, allowed)
         groups = self.drive() | ({} if inputs.speed is None else {"speed": self.velocity})
         for name, group in groups.items():
             allowed = f"divided by that of the contact it is {OUT_OF_RANGE}"
-            yield INPUT_OF.get(name, name), not math.isfinite(group), allowed
+            refuse(INPUT_OF.get(name, name), not math.isfinite(group), allowed)
         allowed = "allowed is a speed above 0 for a longitudinal motion with a spring"
         springs = self.kind.name == "longitudinal" and inputs.drive_stiffness
-        yield "speed", springs and inputs.speed == 0.0, allowed
+        refuse("speed", springs and inputs.speed == 0.0, allowed)
 
 
 def contact_of(inputs: Inputs) -> Contact:

@@ -4,7 +4,7 @@ files, their checks, help texts and reference page."""
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from functools import cached_property, partial
 from typing import TYPE_CHECKING, Any, NamedTuple
@@ -347,14 +347,7 @@ def read_inputs(motion: Any, **given: Any) -> Inputs:
     for name in given.keys() - INPUTS.keys():
         hint = f"{near_miss(name, INPUTS)}allowed are {', '.join(INPUTS)}"
         raise InputError(name, given[name], hint)
-    known = kind.defaults | given
-    missing = [n for n in SEARCHED if n not in known and n in (*kind.needed, "speed", "load")]
-    for names, is_refused, allowed in _refusals(motion, kind, given, missing):
-        for name in names.split():
-            if is_refused and name in given:
-                raise InputError(name, given[name], allowed)
-    search = missing[0] if "reduction" in given else None
-    _refuse_missing(motion, kind, known, search)
+    search, known = _check(motion, kind, given), kind.defaults | given
     quantities = {
         name: read_quantity(name, known[name], kind.input(name))
         for name, one in INPUTS.items()
@@ -394,13 +387,17 @@ def read_quantity(name: str, value: Any, one: Input) -> Quantity:
     return quantity
 
 
-def _refusals(
-    motion: Any, kind: Kind, given: Mapping[str, Any], missing: Sequence[str]
-) -> Iterator[tuple[str, object, str]]:
-    """Inputs, whether they are refused, and what is allowed: the contradictions between inputs.
+def _check(motion: Any, kind: Kind, given: Mapping[str, Any]) -> str | None:
+    """Raise InputError for inputs that contradict each other or are missing.
 
-    missing: inputs that a reduction could replace.
+    Returns the input that a reduction replaces.
     """
+
+    def refuse(arguments: str, is_wrong: object, allowed: str) -> None:
+        for name in arguments.split():
+            if is_wrong and name in given:
+                raise InputError(name, given[name], allowed)
+
     names, file, moves = given.keys(), kind.stroke, kind is not AT_REST
     groups = ("bodies", "load", "drive", "output") if moves else ("bodies", "load")
     own = {*kind.needed, *kind.optional, "reduction"} if moves else set()
@@ -412,39 +409,39 @@ def _refusals(
     without, only_with = "allowed only without ", "allowed only with a "
     sizes, drive = names & {"contact_radius", "pressure"}, names & {"force", "drive_stiffness"}
     no_map, no_drive = "force drive_stiffness wear_coefficient", "drive_stiffness mass damping"
-    yield " ".join(others), True, f"{motion or 'a contact without a motion'} has none"
-    yield "frequency", file and file.frequency, f"{without}a column time, which contains it"
-    yield "map", file, f"{without}a motion from a file: no map has its unit of the amplitude"
-    yield "radius counter_radius radius_across", sizes, without + size
-    yield "radius_across", "counter_radius" in names, f"{without}a counter_radius"
-    yield "force", "speed" in names, "allowed is a force or a speed, not both"
-    yield no_drive, kind.steady, f"allowed only {steady}"
-    yield "drive_stiffness damping", "force" in names, f"{without}a force"
-    yield "mass", not drive, f"{only_with}force or a drive_stiffness"
-    yield "damping", "drive_stiffness" not in names, f"{only_with}drive_stiffness"
-    yield "material", names & {"young", "nu"}, f"{without}young and nu"
-    yield no_map, "map" in names, f"{without}a map"
-    yield "reduction", drive, f"{without}a force and a drive_stiffness"
+    refuse(" ".join(others), True, f"{motion or 'a contact without a motion'} has none")
+    refuse("frequency", file and file.frequency, f"{without}a column time, which contains it")
+    refuse("map", file, f"{without}a motion from a file: no map has its unit of the amplitude")
+    refuse("radius counter_radius radius_across", sizes, without + size)
+    refuse("radius_across", "counter_radius" in names, f"{without}a counter_radius")
+    refuse("force", "speed" in names, "allowed is a force or a speed, not both")
+    refuse(no_drive, kind.steady, f"allowed only {steady}")
+    refuse("drive_stiffness damping", "force" in names, f"{without}a force")
+    refuse("mass", not drive, f"{only_with}force or a drive_stiffness")
+    refuse("damping", "drive_stiffness" not in names, f"{only_with}drive_stiffness")
+    refuse("material", names & {"young", "nu"}, f"{without}young and nu")
+    refuse(no_map, "map" in names, f"{without}a map")
+    refuse("reduction", drive, f"{without}a force and a drive_stiffness")
+    known = given.keys() | kind.defaults.keys()
+    missing = [n for n in SEARCHED if n not in known and n in (*kind.needed, "speed", "load")]
     has = f"not allowed: {motion} has {'several amplitudes' if kind.several else 'no amplitude'}"
-    yield "reduction", not kind.unit and missing != ["speed"], has
+    refuse("reduction", not kind.unit and missing != ["speed"], has)
     allowed = "allowed only without the amplitude, the speed or the load, which it determines"
-    yield "reduction", not missing, allowed
+    refuse("reduction", not missing, allowed)
     allowed = f"it determines one quantity, but {' and '.join(missing)} are missing"
-    yield "reduction", len(missing) > 1, allowed
-
-
-def _refuse_missing(motion: Any, kind: Kind, given: Mapping[str, Any], search: str | None) -> None:
-    """Raise InputError if inputs are missing."""
+    refuse("reduction", len(missing) > 1, allowed)
+    search = missing[0] if "reduction" in given else None
     needed = {"mu": "needed", "load": "needed"} | dict.fromkeys(kind.needed, f"{motion} needs it")
-    if kind is not AT_REST and "force" not in given:
+    if moves and "force" not in given:
         needed["speed"] = "needed, or a force"
-    if given.keys() & {"contact_radius", "pressure"}:
+    if sizes:
         needed["contact_radius"] = "needed with a pressure: half the longer side of the contact"
     else:
         needed["radius"] = "needed, or a contact_radius"
     if "material" not in given:
         needed |= {"young": "needed, or a material", "nu": "needed"}
-    first, *others = [n for n in needed if n not in given and n != search] or [""]
+    first, *others = [n for n in needed if n not in known and n != search] or [""]
     if first:
         also = f"; also missing: {', '.join(others)}" if others else ""
         raise InputError(first, None, f"{needed[first]}{also}")
+    return search

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
-from typing import Any, NamedTuple
+from typing import Any
 
 from microslip.foundation.errors import InputError
 from microslip.foundation.number_text import number_text
@@ -34,30 +34,6 @@ class _SolverFailureError(Exception):
     """The solver has no result at a point of the search."""
 
 
-class _Line(NamedTuple):
-    """The unknown as a function of a place, along which friction decreases.
-
-    The unknown is unit * exp(power * place), in its SI unit.
-
-    Attributes
-    ----------
-    unit, power : float
-        See above.
-    low, start, high : float
-        First place, initial guess of the bracket's upper end, and last place.
-    """
-
-    unit: float
-    power: float
-    low: float
-    start: float
-    high: float
-
-    def size(self, place: float) -> float:
-        """The unknown in its SI unit."""
-        return self.unit * math.exp(self.power * place)
-
-
 def find_reduction(inputs: Inputs) -> tuple[Contact, Value]:
     """The contact with the smallest amplitude, the largest speed or the largest load that gives the
     reduction, and this quantity in its SI unit.
@@ -70,15 +46,19 @@ def find_reduction(inputs: Inputs) -> tuple[Contact, Value]:
 
     name, share, tolerance = str(inputs.search), inputs.reduction, inputs.tolerance or TOLERANCE
     _check_share(inputs, share, tolerance)
-    line, unit = _line(inputs, name, share), inputs.unit(name)
+    (scale, power, low, high, last_place), unit = _line(inputs, name, share), inputs.unit(name)
     least, towards = ("smallest", "up") if name == "amplitude" else ("largest", "down")
     last: Any = None
     error, reductions = 0.0, []
 
+    def size(place: float) -> float:
+        """The unknown in its SI unit."""
+        return scale * math.exp(power * place)
+
     def excess(place: float) -> float:
         """mu_macro minus the requested mu_macro."""
         nonlocal last, error
-        last = Contact(inputs.at(**{name: line.size(place)}))
+        last = Contact(inputs.at(**{name: size(place)}))
         answer = solve_at(last, last.velocity, tolerance)
         friction, error = answer.mu_macro, answer.mu_macro_error
         if not math.isfinite(friction):
@@ -93,31 +73,30 @@ def find_reduction(inputs: Inputs) -> tuple[Contact, Value]:
         return NoSolutionError("reduction", inputs.given["reduction"], allowed)
 
     try:
-        if excess(line.low) < 0.0:
-            end = f"the {least} {name} of the search, {line.size(line.low):.2g}"
+        if excess(low) < 0.0:
+            end = f"the {least} {name} of the search, {size(low):.2g}"
             raise refusal(end, f": {number_text(*reductions[0])}")
-        high = line.start
         if name == "speed" and excess(math.inf) > 0.0:
-            high = line.high
+            high = last_place
         while excess(high) > 0.0:
-            if high >= line.high:
-                end = f"no {name} of the search, {towards} to {line.size(high):.2g}"
+            if high >= last_place:
+                end = f"no {name} of the search, {towards} to {size(high):.2g}"
                 raise refusal(end, f" than {number_text(*max(reductions))}")
-            high = min(high + math.log(2.0), line.high)
-        place = brentq(excess, line.low, high, xtol=0.1 * tolerance)
+            high = min(high + math.log(2.0), last_place)
+        place = brentq(excess, low, high, xtol=0.1 * tolerance)
         here, error_here = excess(place), error
         slopes = [excess(place - STEP) - here, here - excess(place + STEP)]
     except _SolverFailureError:
         return last, Value(getattr(last.inputs, name), math.nan)
     steep = [slope / STEP for slope in slopes if slope > 0.0]
     place_error = (abs(here) + error_here) / min(steep) if steep else math.inf
-    size = line.size(place)
+    root = size(place)
     try:
-        contact = contact_of(replace(inputs, search=None).at(**{name: size}))
+        contact = contact_of(replace(inputs, search=None).at(**{name: root}))
     except InputError as problem:
-        allowed = f"it takes a {name} of {size:.3g} {unit}; {problem}"
+        allowed = f"it takes a {name} of {root:.3g} {unit}; {problem}"
         raise inputs.error("reduction", allowed) from None
-    return contact, Value(size, abs(line.power) * size * place_error)
+    return contact, Value(root, abs(power) * root * place_error)
 
 
 def _check_share(inputs: Inputs, share: float, tolerance: float) -> None:
@@ -134,25 +113,31 @@ def _check_share(inputs: Inputs, share: float, tolerance: float) -> None:
             raise inputs.error(name, f"allowed with a reduction is {allowed}")
 
 
-def _line(inputs: Inputs, name: str, share: float) -> _Line:
-    """The line of a search."""
+def _line(inputs: Inputs, name: str, share: float) -> tuple[float, float, float, float, float]:
+    """The unknown as scale * exp(power * place), along which friction decreases with the place.
+
+    Returns
+    -------
+    tuple of float
+        Scale, power, first place, initial guess of the bracket's upper end, and last place.
+    """
     low, high = (math.log(one) for one in AMPLITUDES)
     spins = inputs.kind.unit == "rad"
     if name == "amplitude":  # a place is the logarithm of the dimensionless amplitude
         contact = Contact(inputs.at(amplitude=0.0))
         unit = contact.u_lim / (contact.contact_radius if spins else 1.0)
-        return _Line(unit, 1.0, low, 0.0, high)
+        return unit, 1.0, low, 0.0, high
     if name == "speed":  # a place is minus the logarithm of the speed
         contact = Contact(inputs.at(speed=0.0))
         unit = contact.speed_unit
         if not (contact.steady or spins):
             unit *= max(1.0, float(contact.amplitude))  # the speed of the vibration
         slow, fast = (-math.log(one) for one in SPEEDS)
-        return _Line(unit, -1.0, fast, 0.0, slow)
+        return unit, -1.0, fast, 0.0, slow
     # A place is the logarithm of the dimensionless amplitude, which is a power of the load with a
     # negative exponent.  Under a large load nothing slips, and under a small load the dimensionless
     # velocity of a bore is large.  The reduction is largest in between.  Small steps from large
     # loads downwards find the first load with the requested reduction.
     first, second = (float(Contact(inputs.at(load=f * LOAD)).amplitude) for f in (1.0, 8.0))
     power = math.log(8.0) / math.log(second / first)
-    return _Line(LOAD * first**-power, power, low, math.log(0.01 * share), high)
+    return LOAD * first**-power, power, low, math.log(0.01 * share), high

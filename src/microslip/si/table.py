@@ -252,12 +252,10 @@ def predictions(cases: Cases, *, need_all: bool = False) -> Iterator[Prediction 
             checked.append(cases.errors.get(case) or checked_contact(cases.motion, **given))
         except InputError as error:
             checked.append(error)
-    wrong = {k: one for k, one in enumerate(checked) if not isinstance(one, Contact)}
-    errors = [(k, one) for k, one in wrong.items() if isinstance(one, InputError)]
-    if errors and (need_all or len(wrong) == len(checked)):
+    errors = [(k, one) for k, one in enumerate(checked) if isinstance(one, InputError)]
+    if errors and (need_all or not any(isinstance(one, Contact) for one in checked)):
         first, problem = errors[0]
-        same = len(wrong) == len(checked) and len(set(map(str, checked))) == 1
-        if same and problem.argument not in cases.columns:
+        if problem.argument not in cases.columns and len(set(map(str, checked))) == 1:
             raise problem
         place = f"{'at' if cases.axes else 'in'} {cases.names[first]}"
         raise InputError(problem.argument, problem.value, f"{place}: {problem.allowed}")
