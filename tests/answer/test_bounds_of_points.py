@@ -4,7 +4,6 @@ import os
 import signal
 import threading
 
-import numpy as np
 import pytest
 from stubs.new_process import output
 
@@ -24,22 +23,6 @@ def test_a_point_that_would_take_hours_ends_as_not_converged():
     assert not result.converged and result.exhausted == "work"
     assert result.reason.startswith("the work that the point may take, 5e+05, is spent")
     assert 5e5 < result.effort.work < 6e5  # at most one march more
-    again = microslip.solve(*SLOW, tolerance=1e-6, most_work=5e5)
-    assert again.effort == result.effort
-    assert np.array_equal(again.mu_macro, result.mu_macro, equal_nan=True)
-
-
-@pytest.mark.slow
-def test_what_is_known_by_then_is_told():
-    """The value before the limit is within its error of the value without a limit."""
-    whole = microslip.solve("transverse", 0.02, 0.95, tolerance=1e-4)
-    part = microslip.solve(
-        "transverse", 0.02, 0.95, tolerance=1e-4, most_work=0.9 * whole.effort.work
-    )
-    assert whole.converged and not part.converged
-    assert whole.mu_macro_error < part.mu_macro_error < 0.1
-    assert abs(part.mu_macro - whole.mu_macro) <= part.mu_macro_error + whole.mu_macro_error
-    assert f"{part.mu_macro_error:.1e}" in part.reason
 
 
 def test_the_time_limit_ends_a_point_and_says_so():
@@ -56,9 +39,6 @@ def test_compilation_does_not_count(tmp_path):
     environment = {"NUMBA_CACHE_DIR": str(tmp_path)}
     assert output(f"import microslip; print({point}.converged)", **environment) == "True\n"
     assert list(tmp_path.rglob("*.nbi"))
-
-
-# Ctrl-C
 
 
 MARCHES = {

@@ -4,13 +4,12 @@ import math
 
 import pytest
 from scipy.integrate import quad
+from stubs.agreement import assert_agree
 
 import microslip
 from microslip.scene.by_name import pressure_named
 from microslip.theory import hertz, masing
 from microslip.theory.indenters import torsion_energy
-
-INDENTERS = ("hertz", "power:exponent=1", "power:exponent=8", "punch:flat=0.5")
 
 
 def mindlin_deresiewicz(force):
@@ -19,18 +18,13 @@ def mindlin_deresiewicz(force):
     return 24.0 / 5.0 * (1.0 - rest ** (5 / 3)) - 4.0 * force * (1.0 + rest ** (2 / 3))
 
 
-@pytest.mark.parametrize("amplitude", [1e-3, 0.1, 0.5, 1.0, 3.0])
+@pytest.mark.parametrize("amplitude", [1e-3, 0.5, 1.0, 3.0])
 def test_a_loop_of_a_sphere(amplitude):
     """Beyond u_lim both strokes of the loop are longer, under full friction."""
     longer = max(amplitude - 1.0, 0.0)
     force = hertz.mindlin_force(min(amplitude, 1.0))
     exact = mindlin_deresiewicz(force) + 4.0 * longer
     assert masing.loop_energy(amplitude) == pytest.approx(exact, rel=1e-9)
-
-
-def test_a_small_loop_has_the_cube_of_its_amplitude():
-    """Mindlin and Deresiewicz: L^3 / 27 times 4 for small forces, with L = 3 A / 2."""
-    assert masing.loop_energy(1e-4) == pytest.approx(0.5 * 1e-12, rel=1e-3)
 
 
 @pytest.mark.parametrize("amplitude", [0.01, 0.5, 1.0, 4.0])
@@ -48,15 +42,35 @@ def test_a_loop_of_torsion(amplitude, poisson):
     assert torsion_energy(sphere, angle, poisson) == pytest.approx(loop, rel=1e-7, abs=1e-9)
 
 
+def assert_energies_agree(one, other):
+    apart = abs(one.dissipated_energy - other.dissipated_energy)
+    assert apart <= one.dissipated_energy_error + other.dissipated_energy_error
+
+
+CLOSED = [
+    *(
+        (motion, model, 0.0, 0.6, pressure)
+        for motion, model in (("transverse", "radial"), ("bore", "polar"))
+        for pressure in ("hertz", "power:exponent=1", "punch:flat=0.5")
+    ),
+    ("longitudinal", "radial", 0.2, 0.7, "hertz"),
+    # the bounds of fast sliding
+    ("transverse", "radial", 40.0, 1.0, "hertz"),
+    ("bore", "polar", 20.0, 1.0, "hertz"),
+]
+
+
 @pytest.mark.slow
-@pytest.mark.parametrize("pressure", INDENTERS)
-@pytest.mark.parametrize(("motion", "model"), [("transverse", "radial"), ("bore", "polar")])
-def test_runs_agree_with_the_static_limit_in_closed_form(motion, model, pressure):
-    exact = microslip.solve(motion, 0.0, 0.6, pressure=pressure)
-    result = microslip.solve(motion, 0.0, 0.6, pressure=pressure, model=model)
+@pytest.mark.parametrize(("motion", "model", "velocity", "amplitude", "pressure"), CLOSED)
+def test_runs_agree_with_closed_forms(motion, model, velocity, amplitude, pressure):
+    place = {"velocity": velocity, "amplitude": amplitude, "pressure": pressure}
+    exact = microslip.solve(motion, **place)
+    result = microslip.solve(
+        motion, **place, model=model, tolerance=1e-4 if velocity > 1.0 else 1e-3
+    )
     assert exact.model == "closed-form"
-    apart = abs(result.dissipated_energy - exact.dissipated_energy)
-    assert apart <= result.dissipated_energy_error + exact.dissipated_energy_error
+    assert_agree(exact, result)
+    assert_energies_agree(exact, result)
     assert result.dissipated_energy_error < 0.02 * exact.dissipated_energy
 
 
@@ -70,17 +84,6 @@ def test_a_slow_motion_dissipates_the_loop_of_mindlin_and_deresiewicz(model):
     way = 2.0 * math.pi * velocity
     assert exact < result.dissipated_energy + result.dissipated_energy_error
     assert result.dissipated_energy - result.dissipated_energy_error < exact + 2.0 * way
-
-
-@pytest.mark.parametrize(
-    ("motion", "model", "velocity"), [("transverse", "radial", 40.0), ("bore", "polar", 20.0)]
-)
-def test_runs_agree_with_the_bounds_of_fast_sliding(motion, model, velocity):
-    exact = microslip.solve(motion, velocity, 1.0)
-    result = microslip.solve(motion, velocity, 1.0, model=model, tolerance=1e-4)
-    assert exact.model == "closed-form"
-    apart = abs(result.dissipated_energy - exact.dissipated_energy)
-    assert apart <= result.dissipated_energy_error + exact.dissipated_energy_error
 
 
 @pytest.mark.slow

@@ -10,7 +10,6 @@ from scipy.optimize import brentq
 import microslip
 from microslip.contact.contact import FORWARD, forward_slip
 from microslip.contact.path import make_path, phases_between
-from microslip.foundation.errors import InputError
 from microslip.foundation.number_text import number_text
 from microslip.periodic.discretise import Resolution, contact_of
 from microslip.scene.by_name import motion_named
@@ -22,12 +21,9 @@ EIGHT = "elliptic:forward_cycles=2,phase=0"
 def rigid_eight(velocity):
     """Friction of a rigid contact on a figure of eight of amplitude 1."""
 
-    def rates(t):
-        return 2.0 * np.cos(2.0 * t), np.cos(t)
-
     def forward(t):
-        ahead, aside = rates(t)
-        return (velocity + ahead) / np.hypot(velocity + ahead, aside)
+        ahead, aside = velocity + 2.0 * np.cos(2.0 * t), np.cos(t)
+        return ahead / np.hypot(ahead, aside)
 
     inside = np.linspace(0.0, 2.0 * np.pi, 9)[1:-1]
     return quad(forward, 0.0, 2.0 * np.pi, points=inside, limit=400)[0] / (2.0 * np.pi)
@@ -77,16 +73,6 @@ def test_no_load_by_a_heavy_body_without_a_force():
     assert abs(free.velocity - line.no_load_velocity) <= errors + swing
 
 
-@pytest.mark.slow
-def test_friction_grows_through_zero_velocity():
-    """At negative velocities the contact resists more than at the stall."""
-    force = [microslip.solve(EIGHT, v, 1.0).mu_macro for v in (-0.5, -0.1, 0.1, 0.5)]
-    assert np.all(np.diff(force) > 0.0)
-    assert force[0] < -microslip.propulsion(EIGHT, 1.0).stall_force
-    fast = microslip.solve(EIGHT, -3.0, 0.1)
-    assert fast.mu_macro == pytest.approx(-1.0, abs=1e-2)
-
-
 def test_marched_back_without_a_mirror():
     """A plain march on a backward path, from the stress-free contact."""
     velocity, phases = -0.3, phases_between((-0.5 * np.pi, 0.5 * np.pi, 1.5 * np.pi), 64)
@@ -111,19 +97,19 @@ def test_a_small_oscillation_propels_nothing():
     assert result.stall_force == result.no_load_velocity == 0.0
     ahead = microslip.solve(EIGHT, 0.0, 0.5, tolerance=1e-2)
     back = microslip.solve("elliptic:forward_cycles=2,phase=180", 0.0, 0.5, tolerance=1e-2)
-    for force, error in (
-        (-back.mu_macro, back.mu_macro_error),
-        (ahead.mu_macro, ahead.mu_macro_error),
-    ):
-        assert number_text(force, error) in result.reason
+    assert number_text(-back.mu_macro, back.mu_macro_error) in result.reason
+    assert number_text(ahead.mu_macro, ahead.mu_macro_error) in result.reason
 
 
-def test_a_search_that_would_take_too_long_ends():
-    late = microslip.propulsion(EIGHT, 1.0, time_limit=1e-9)
-    assert not late.converged and "the time limit of 1e-09 s is over" in late.reason
-    idle = microslip.propulsion(EIGHT, 1.0, most_work=1e3)
-    assert not idle.converged
-    assert "the work that the point may take, 1e+03, is spent" in idle.reason
-    assert np.isinf(idle.stall_force_error) and np.isinf(late.no_load_velocity_error)
-    with pytest.raises(InputError, match="most_work = 0: allowed is a number above 0"):
-        microslip.propulsion(EIGHT, 1.0, most_work=0)
+@pytest.mark.parametrize(
+    ("bound", "reason"),
+    [
+        ({"time_limit": 1e-9}, "the time limit of 1e-09 s is over"),
+        ({"most_work": 1e3}, "the work that the point may take, 1e+03, is spent"),
+    ],
+    ids=str,
+)
+def test_a_search_that_would_take_too_long_ends(bound, reason):
+    result = microslip.propulsion(EIGHT, 1.0, **bound)
+    assert not result.converged and reason in result.reason
+    assert np.isinf(result.stall_force_error) and np.isinf(result.no_load_velocity_error)

@@ -35,7 +35,7 @@ BAD = [
     *(("solve", "poisson", {"poisson": one}) for one in (-0.01, 0.51, None, *NUMBERS)),
     *(("solve", "model", {"model": one}) for one in ("best", "", None, ["radial"], {}, 3)),
     ("solve", "model", {"model": "radial", "poisson": 0.1}),
-    ("solve", "model", {"model": "slider", "motion": "bore"}),
+    *(("solve", "model", {"model": one, "motion": "bore"}) for one in ("slider", "mdr", "radial")),
     *(("solve", "tolerance", {"tolerance": one}) for one in (0.0, 1e-9, 1.0, None, *NUMBERS)),
     ("solve", "tolerance", {"tolerance": None, "cells": 16}),
     *(("solve", "cells", {"cells": one}) for one in (0, 2, 7, 8.0, *NUMBERS)),
@@ -63,7 +63,7 @@ BAD = [
     ("history", "start", {"start": "sticking"}),
     ("history", "start", {"start": "full-rotation"}),
     *(("history", name, {name: 0}) for name in ("cells", "steps", "periods", "travel")),
-    ("history", "drive", {"motion": FORCED, **ALONE}),
+    *((name, "drive", {"motion": FORCED, **ALONE}) for name in ("history", "period")),
     ("period", "motion", STEADY),
     *(("period", name, {name: 0.0}) for name in ("velocity", "amplitude")),
     *(("period", name, {name: 7}) for name in ("cells", "angles", "steps")),
@@ -90,6 +90,8 @@ BAD = [
     ("iwan", "pressure", {"pressure": "ring"}),
     ("iwan", "pressure", {"pressure": "ellipse", "poisson": 0.3}),
     ("iwan", "elements", {"elements": 0}),
+    ("iwan", "tolerance", {"tolerance": 0.0}),
+    ("iwan", "poisson", {"poisson": 0.6}),
     ("iwan", "elements", {"elements": 4, "tolerance": 0.1}),
 ]
 

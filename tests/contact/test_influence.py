@@ -5,12 +5,12 @@ Complex notation: q = lateral + i forward.
 
 import numpy as np
 import pytest
+from contact.test_models import fitted_order
 from scipy.special import ellipe, ellipkm1
 
 from microslip.contact.contact import forces
 from microslip.contact.influence import (
     coupling_kernels,
-    elliptic_integrals,
     modes_for,
     ring_influence,
     toroidal_kernels,
@@ -71,14 +71,6 @@ def integrals(r, s):
     """K and E for the complementary modulus |r - s| / (r + s)."""
     square = (abs(r - s) / (r + s)) ** 2
     return ellipkm1(square), ellipe(1 - square)
-
-
-def test_elliptic_integrals():
-    moduli = np.geomspace(1e-12, 1, 50)
-    for kc in (moduli, moduli[40:]):  # the number of steps depends on the smallest modulus
-        computed = np.empty((2, len(kc)))
-        elliptic_integrals(kc, *computed)
-        assert computed == pytest.approx(np.array([ellipkm1(kc**2), ellipe(1 - kc**2)]), rel=1e-12)
 
 
 @pytest.mark.parametrize(("r", "s"), RADII)
@@ -214,11 +206,6 @@ def test_polar_operator_is_the_half_space_integral(rotates, nu, rng):
         assert fitted_order(cells, errors) == pytest.approx(2.0, abs=0.3)
 
 
-def fitted_order(counts, errors):
-    """Order of convergence: minus the slope of log(error) over log(count)."""
-    return -np.polyfit(np.log(counts), np.log(errors), 1)[0]
-
-
 # Tractions whose displacement is known
 
 
@@ -238,6 +225,3 @@ def test_flat_punch_traction_displaces_the_disc_uniformly(nu):
         assert np.abs(displacement[1, :, inside]).max() < errors[-1]
     assert errors[-1] < 1e-3
     assert fitted_order(cells, errors) == pytest.approx(2.0, abs=0.5)
-
-
-# Squares

@@ -11,13 +11,11 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from microslip.contact.contact import forces, forward_slip, project
+from microslip.contact.contact import energy_norm, forces, forward_slip, rigid_displacement
 from microslip.contact.modes import PolarContact
 from microslip.contact.path import EULER, SDIRK2, half_period_phases, make_path
 from microslip.contact.reduced import slider_contact
-from microslip.contact.registry import MODELS
-from microslip.contact.ring_contact import RadialContact, RingContact
-from microslip.contact.splitting import PENALTIES, best_penalty
+from microslip.contact.ring_contact import RadialContact
 from microslip.contact.squares import CartesianContact
 from microslip.periodic.discretise import Resolution
 from microslip.periodic.search import Goal, PeriodMap, find_periodic_state
@@ -31,7 +29,7 @@ def at_rest(contact):
     return np.zeros((2, *contact.forward_position.shape))
 
 
-def through(motions, integrator=EULER):
+def through(motions):
     """Path along straight lines through rows of (forward, lateral, angle)."""
     motions = np.asarray(motions, dtype=float)
     phase = np.arange(len(motions))
@@ -39,7 +37,7 @@ def through(motions, integrator=EULER):
     def displacement(t):
         return tuple(np.interp(t, phase, column) for column in motions.T)
 
-    return make_path(displacement, phase, integrator)
+    return make_path(displacement, phase, EULER)
 
 
 def fitted_order(counts, errors):
@@ -68,11 +66,9 @@ def mindlin_deresiewicz(turns, points=8):
 
 
 ONE_WAY = {
-    "radial": (lambda n: RadialContact.resolved(n), [8, 16, 32, 64]),
     "radial, focused": (lambda n: RadialContact.resolved(n, 0.5), [8, 16, 32, 64]),
     "polar": (lambda n: PolarContact(n, 4, False), [8, 16, 32, 64]),
     "cartesian": (lambda n: CartesianContact(n), [8, 12, 16, 24]),
-    "cartesian, odd": (lambda n: CartesianContact(n), [9, 13, 17, 25]),
 }
 
 
@@ -97,7 +93,6 @@ def test_forces_are_those_of_mindlin_and_deresiewicz(name):
 
 TWIST = {
     "polar": (lambda n, nu: PolarContact(n, 4, True, nu), [8, 16, 32]),
-    "polar, focused": (lambda n, nu: PolarContact(n, 4, True, nu, 0.5), [8, 16, 32]),
     "cartesian": (lambda n, nu: CartesianContact(n, nu), [8, 12, 16, 24]),
 }
 
@@ -142,28 +137,10 @@ def test_rigid_rotation_is_eq_29(velocity):
 # Models against each other
 
 
-def half_period(motion, velocity, amplitude, nu, steps, integrator=SDIRK2):
-    def displacement(phase):
-        return motion.displacement(phase, velocity, amplitude, nu)
-
-    return make_path(displacement, half_period_phases(steps, 0.4), integrator)
-
-
-@pytest.mark.parametrize("integrator", [EULER, SDIRK2], ids=lambda method: method.name)
-def test_radial_is_polar_in_translation_without_coupling(integrator):
-    rings, angles = 10, 4
-    radial, polar = RadialContact.resolved(rings, 0.6), PolarContact(rings, angles, False, 0.0, 0.6)
-    path = half_period(Transverse(), 0.1, 0.8, 0.0, 24, integrator)
-    start = [0.9 * project(np.ones((2, n, rings)), radial.bound) for n in (1, angles)]
-    one, other = radial.march(path, start[0], 1e-10), polar.march(path, start[1], 1e-10)
-    assert other.forces[:, :2] == pytest.approx(one.forces[:, :2], abs=1e-8)
-    assert other.state == pytest.approx(np.tile(one.state, (1, angles, 1)), abs=1e-6)
-
-
 @pytest.mark.parametrize("nu", [0.0, 0.3])
 @pytest.mark.parametrize(
     ("motion", "velocity", "amplitude"),
-    [(Transverse(), 0.2, 1.2), (Bore(), 0.2, 1.0), (Bore(), 0.5, 2.0)],
+    [(Transverse(), 0.2, 1.2), (Bore(), 0.5, 2.0)],
 )
 def test_cartesian_converges_to_polar(motion, velocity, amplitude, nu):
     """At equal steps, so that only the discretisation in space differs."""
@@ -186,63 +163,6 @@ def test_cartesian_converges_to_polar(motion, velocity, amplitude, nu):
 # One step
 
 
-def operator(contact):
-    """Matrix of the influence operator on flattened states."""
-    shape = at_rest(contact).shape
-    units = np.eye(int(np.prod(shape)))
-    return np.stack([contact.displacement(u.reshape(shape)).ravel() for u in units], axis=1)
-
-
-def rigid(contact, motion):
-    """Rigid displacement (forward, lateral) of every point."""
-    forward, lateral, angle = motion
-    return np.stack(
-        [forward + angle * contact.lateral_position, lateral - angle * contact.forward_position]
-    )
-
-
-def residual(contact, q, slip):
-    """Residual of Coulomb's law, a force, from a second implementation."""
-    return np.sum(
-        contact.weight
-        * np.hypot(*(project(q + slip / contact.compliance, contact.bound) - q))
-        * (contact.bound > 0)
-    )
-
-
-def larger_residual(contact):
-    """Largest ratio of the residual of Coulomb's law to the residual of the step solver.
-
-    The splitting stops at a distance d between tractions that satisfy elasticity and tractions
-    within the bound.  The slip of the latter has the error A d; besides, the penalty differs from
-    the compliance."""
-    matrix = np.abs(operator(contact))
-    weight = np.broadcast_to(contact.weight, (2, *contact.forward_position.shape)).ravel()
-    scale = np.broadcast_to(contact.compliance, (2, *contact.forward_position.shape)).ravel()
-    elastic = ((weight / scale) @ matrix / weight).max()
-    if not isinstance(contact, RingContact):
-        return 1.0 + elastic
-    penalty = PENALTIES.max() * best_penalty(contact.compliance, len(contact.bound))
-    return max(1.0, float(np.max(penalty / contact.compliance))) + elastic
-
-
-def assert_coulomb(contact, q, slip, tolerance):
-    """Assert |q| <= g to the last bits, and slip only on the bound in the direction of the
-    traction."""
-    size, speed = np.hypot(*q), np.hypot(*slip) * (contact.bound > 0)
-    assert np.all(size <= contact.bound * (1 + 4e-16))
-    assert residual(contact, q, slip) <= larger_residual(contact) * tolerance
-    # largest slip of a point whose residual is at most the tolerance
-    off = tolerance * contact.compliance / contact.weight
-    slips = speed > 100 * off
-    # points with much more slip are on the bound and slip in the direction of the traction
-    bound = np.broadcast_to(contact.bound, size.shape)
-    assert size[slips] == pytest.approx(bound[slips], rel=1e-12)
-    lag = bound * speed - (q * slip).sum(axis=0)
-    allowed = 2.1 * off * (2 * bound + speed / contact.compliance)
-    assert np.all(lag[slips] <= np.broadcast_to(allowed, size.shape)[slips])
-
-
 SMALL = {
     "radial": (lambda: RadialContact.resolved(6), "translation", 1e-11),
     "slider": (slider_contact, "translation", 1e-12),
@@ -250,7 +170,6 @@ SMALL = {
     "polar, coupled translation": (lambda: PolarContact(5, 4, False, 0.5), "translation", 1e-10),
     "polar, rotation": (lambda: PolarContact(5, 4, True, 0.0), "mirror", 1e-10),
     "polar, coupled rotation": (lambda: PolarContact(5, 4, True, 0.4, 0.5), "mirror", 1e-10),
-    "cartesian": (lambda: CartesianContact(6), "any", 1e-8),
     "cartesian, coupled": (lambda: CartesianContact(6, 0.4), "any", 1e-8),
 }
 
@@ -278,73 +197,64 @@ def motions_from(increments, free):
 @given(increments=STEPS)
 def test_every_step_obeys_coulomb_and_balances_energy(name, increments):
     """Slip and energy of backward Euler steps are computed from the operator and the motion, not by
-    the solver."""
+    the solver.  A point dissipates at most its bound times its slip, so that the balance holds only
+    if every point that slips is on its bound and slips along its traction."""
     contact, symmetry, tolerance = small(name)
     q = at_rest(contact)
     motions = motions_from(increments, FREE[symmetry])
     for before, after in pairwise(motions):
         march = contact.march(through([before, after]), q, tolerance)
         assert march.residual <= tolerance
+        assert np.all(np.hypot(*march.state) <= contact.bound * (1 + 4e-16))
         sums = np.array([forces(contact, q), forces(contact, march.state)])
         if isinstance(contact, PolarContact):  # by symmetry of the disc
             sums[:, 1 if contact.rotates else 2] = 0.0
         assert march.forces == pytest.approx(sums, abs=1e-12)
         change = march.state - q
-        slip = rigid(contact, after - before) - contact.displacement(change)
-        assert_coulomb(contact, march.state, slip, tolerance)
+        slip = rigid_displacement(contact, after - before) - contact.displacement(change)
 
         def over_area(a, b):
             return np.sum(contact.weight * (a * b).sum(axis=0))
 
-        work = march.forces.mean(axis=0) @ (after - before)
-        stored = 0.5 * over_area(march.state, contact.displacement(march.state))
-        stored -= 0.5 * over_area(q, contact.displacement(q))
-        # dissipation by Coulomb's law; half a step earlier the traction was smaller by change / 2
+        # at the end of a step the tractions do more work than on average
+        work = march.forces[1] @ (after - before)
+        stored = over_area(march.state, contact.displacement(change))
         dissipation = np.sum(contact.weight * contact.bound * np.hypot(*slip))
         rounding = 1e-13 + 20 * tolerance * (1 + np.abs(after - before).sum())
-        balance = stored + dissipation - 0.5 * over_area(change, slip)
-        assert work == pytest.approx(balance, abs=rounding)
-        # numerical dissipation of backward Euler: end tractions do more work than mean tractions
-        numerical = march.forces[1] @ (after - before) - stored - dissipation
-        assert numerical >= -rounding
-        assert numerical == pytest.approx(
-            0.5 * over_area(change, contact.displacement(change)), abs=rounding
-        )
+        assert work == pytest.approx(stored + dissipation, abs=rounding)
         q = march.state
 
 
 @pytest.mark.parametrize("name", SMALL)
-def test_equal_marches_give_equal_bits(name):
+def test_equal_marches_give_equal_bits_whatever_march_leads_them(name):
+    """Another march as a first guess changes the effort only."""
     contact, symmetry, _ = small(name)
-    path = through([[0, 0, 0], np.array([0.4, 0.3, 0.8]) * FREE[symmetry]])
-    one, other = (contact.march(path, forward_slip(contact), 1e-6) for _ in range(2))
+    ends = np.array([0.4, 0.3, 0.8]) * FREE[symmetry]
+    path, start = through(np.outer(np.linspace(0.0, 1.0, 7), ends)), forward_slip(contact)
+    one, other = (contact.march(path, start, 1e-9) for _ in range(2))
     assert np.array_equal(one.fields, other.fields) and np.array_equal(one.forces, other.forces)
+    led = contact.march(path, start, 1e-9, previous=one)
+    assert led.iterations < one.iterations or one.iterations == one.solves
+    assert energy_norm(contact, led.state - one.state) < 1e-6
 
 
 # Order of the integrators
 
 
 SMOOTH = {
-    "slider": (slider_contact, Transverse(), 1.0, 1.5),
-    "radial": (lambda: RadialContact.resolved(8), Transverse(), 0.5, 2.0),
-    "polar": (lambda: PolarContact(6, 4, True, 0.3), Bore(), 0.5, 2.0),
-    "cartesian": (lambda: CartesianContact(8, 0.3), Bore(), 0.5, 2.0),
+    "radial": (lambda: RadialContact.resolved(8), Transverse()),
+    "polar": (lambda: PolarContact(6, 4, True, 0.3), Bore()),
 }
 
 
-@cache
-def smooth(name):
-    """The entry with its contact, which is created once."""
-    build, *rest = SMOOTH[name]
-    return build(), *rest
-
-
-@pytest.mark.parametrize("name", ["radial", "polar"])
+@pytest.mark.parametrize("name", SMOOTH)
 def test_order_of_the_integrators_in_the_periodic_mean(name):
-    contact, motion, velocity, amplitude = smooth(name)
+    build, motion = SMOOTH[name]
+    contact = build()
 
     def mean(steps, integrator):
-        path = half_period(motion, velocity, amplitude, 0.3, steps, integrator)
+        phases = half_period_phases(steps, 0.4)
+        path = make_path(lambda t: motion.displacement(t, 0.5, 2.0, 0.3), phases, integrator)
         start, goal = forward_slip(contact), Goal(1e-7, 1e-9)
         result = find_periodic_state(PeriodMap(contact, path), start, goal)
         assert result.converged
@@ -355,10 +265,3 @@ def test_order_of_the_integrators_in_the_periodic_mean(name):
     for integrator in (EULER, SDIRK2):
         errors = [mean(n, integrator) - reference for n in steps]
         assert fitted_order(steps, errors) == pytest.approx(integrator.order, abs=0.25)
-
-
-def test_models_refuse_what_they_cannot_resolve():
-    refuses = MODELS["radial"].refuses
-    assert refuses(Problem(Bore(), 1.0, 1.0)) and refuses(Problem(Transverse(), 1.0, 1.0, 0.1))
-    assert MODELS["slider"].refuses(Problem(Bore(), 1.0, 1.0))
-    assert not any(model.refuses(Problem(Transverse(), 1.0, 1.0)) for model in MODELS.values())

@@ -5,32 +5,8 @@ import pytest
 from scipy.integrate import quad, solve_ivp
 
 import microslip
-from microslip.contact.path import EULER, make_path
-from microslip.contact.reduced import mdr_contact
 from microslip.scene.hertz import HERTZ
-from microslip.theory import hertz, paper
-
-
-def straight(displacements):
-    """Path through lateral displacements (u_lim), one Euler step each."""
-    displacements = np.asarray(displacements, dtype=float)
-
-    def displacement(phase):
-        lateral = np.interp(phase, np.arange(len(displacements)), displacements)
-        return 0.0 * phase, lateral, 0.0 * phase
-
-    return make_path(displacement, np.arange(len(displacements)), EULER)
-
-
-@pytest.mark.parametrize("u", [0.1, 0.4, 0.75, 0.99, 1.5])
-def test_springs_in_a_row_load_like_the_half_space(u):
-    """The force is that of Cattaneo and Mindlin, with an error of second order in the number of
-    springs."""
-    for cells in (16, 64):
-        contact = mdr_contact(cells)
-        march = contact.march(straight([0.0, u]), np.zeros((2, 1, cells)), 1e-13)
-        expected = hertz.mindlin_force(min(u, 1.0))
-        assert march.forces[-1, 1] == pytest.approx(expected, abs=0.5 / cells**2)
+from microslip.theory import paper
 
 
 @pytest.mark.parametrize("amplitude", [0.25, 0.5, 0.75])
@@ -58,10 +34,3 @@ def test_a_bristle_solves_its_differential_equation(velocity, amplitude):
     solved = solve_ivp(rate, (0.0, times[-1]), [1.0, 0.0], t_eval=times, rtol=1e-9, atol=1e-11)
     expected = np.trapezoid(solved.y[0], times) / (2 * np.pi)
     assert result.converged and abs(result.mu_macro - expected) <= result.mu_macro_error
-
-
-@pytest.mark.parametrize("model", ["dahl", "mdr"])
-def test_what_has_no_extension_cannot_turn(model):
-    for motion, amplitude in (("bore", 1.0), ("continuous-bore", None)):
-        with pytest.raises(ValueError, match="model"):
-            microslip.solve(motion, 0.5, amplitude, model=model)

@@ -7,13 +7,7 @@ from reference_march import solved_stage
 from scipy.integrate import dblquad
 
 from microslip.contact.contact import coulomb_residual, project
-from microslip.contact.convolution import (
-    PATIENCE,
-    convolve,
-    influence,
-    square_convolution,
-    workspace,
-)
+from microslip.contact.convolution import convolve, influence, square_convolution, workspace
 from microslip.contact.squares import CartesianContact, DescentSolver
 from microslip.theory.hertz import G_STAR
 
@@ -65,7 +59,7 @@ def test_influence_is_the_integral_of_cerrutis_solution(half_widths):
 
 
 @pytest.mark.parametrize("nu", NUS)
-@pytest.mark.parametrize("cells", [2, 3, 4, 5, 7, 9, 12, 14, 16])
+@pytest.mark.parametrize("cells", [2, 3, 7, 12])
 def test_convolution_is_linear_and_equal_to_the_direct_sum(cells, nu, rng):
     """Tractions are nonzero in all cells, including corners, where a cyclic convolution would
     differ."""
@@ -75,74 +69,22 @@ def test_convolution_is_linear_and_equal_to_the_direct_sum(cells, nu, rng):
     assert out == pytest.approx(direct_sum(cells, nu, state), abs=1e-13)
 
 
-@pytest.mark.parametrize("cells", [3, 4, 7])
-def test_loads_of_cells_are_integrals_of_the_bound(cells):
-    contact = CartesianContact(cells)
-    half, load = contact.widths[0] / 2, contact.weight * contact.bound
-    assert load.sum() == pytest.approx(1.0, abs=1e-14)
-    for i, j in [(0, 0), (0, 1), (0, cells // 2), (1, 1)]:
-        y, x = contact.forward_position[i, j], contact.lateral_position[i, j]
-
-        def chord(s, sign, x=x):
-            return min(max(sign * np.sqrt(max(1 - s * s, 0.0)), x - half), x + half)
-
-        expected, _ = dblquad(
-            lambda t, s: 1.5 / np.pi * np.sqrt(max(1 - s * s - t * t, 0.0)),
-            y - half,
-            y + half,
-            lambda s: chord(s, -1),
-            lambda s: chord(s, 1),
-        )
-        assert load[i, j] == pytest.approx(expected, abs=1e-7)
-
-
 # One step
 
 
-def plain_step(contact, nu, b):
-    """Tractions of a step, from a plain solver with the dense matrix of direct sums."""
-    cells = len(contact.bound)
-    units = np.eye(2 * cells**2).reshape(-1, 2, cells, cells)
-    matrix = np.stack([direct_sum(cells, nu, unit).ravel() for unit in units], axis=1)
-    return solved_stage(matrix, b, contact.bound, np.zeros_like(b))
-
-
-def solved(contact, b, start, tolerance, patience=PATIENCE):
-    """Solve a step; returns (tractions, slip, residual, iterations)."""
-    q, slip, iterations, residual, _ = DescentSolver(contact, tolerance, patience).solve(b, start)
-    return q, slip, residual, iterations
-
-
 @pytest.mark.parametrize("nu", NUS)
-@pytest.mark.parametrize("size", [0.03, 0.3, 1.0, 5.0])
+@pytest.mark.parametrize("size", [0.03, 0.3, 5.0])
 @pytest.mark.parametrize("cells", [5, 6])
 def test_step_is_that_of_a_plain_solver(cells, size, nu, rng):
+    """The plain solver has the dense matrix of direct sums."""
     contact = CartesianContact(cells, nu)
+    units = np.eye(2 * cells**2).reshape(-1, 2, cells, cells)
+    matrix = np.stack([direct_sum(cells, nu, unit).ravel() for unit in units], axis=1)
     b = size * rng.normal(size=(2, cells, cells))
     start = project(rng.normal(size=b.shape), contact.bound)
-    expected = plain_step(contact, nu, b)
-    q, slip, residual, _ = solved(contact, b, start, 1e-13)
+    q, slip, _, residual, _ = DescentSolver(contact, 1e-13).solve(b, start)
     assert residual <= 1e-13
-    assert q == pytest.approx(expected, abs=1e-11)
+    assert q == pytest.approx(solved_stage(matrix, b, contact.bound, 0.0 * b), abs=1e-11)
     assert slip == pytest.approx(b - direct_sum(cells, nu, q), abs=1e-13)
-
-
-@pytest.mark.parametrize("nu", NUS)
-@pytest.mark.parametrize("size", [1e-3, 0.1, 1.0, 30.0])
-def test_steps_are_solved_down_to_rounding(size, nu, rng):
-    """The residual agrees with coulomb.coulomb_residual."""
-    contact = CartesianContact(16, nu)
-    before = project(rng.normal(size=(2, 16, 16)) * contact.bound, contact.bound)
-    forward, lateral, angle = size * rng.normal(size=3)
-    b = contact.displacement(before)
-    b += np.stack(
-        [forward + angle * contact.lateral_position, lateral - angle * contact.forward_position]
-    )
-    q, slip, residual, iterations = solved(contact, b, before, 1e-12)
-    assert residual <= 1e-12
-    assert iterations < 250
     total = coulomb_residual(q, slip, contact.bound, contact.weight, contact.compliance)
     assert total == pytest.approx(residual, abs=1e-14)
-
-
-# Marches

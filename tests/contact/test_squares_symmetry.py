@@ -26,8 +26,8 @@ KINDS = {
 }
 """Number of images of a square, symmetry of the motion, and Poisson's ratio."""
 MOTIONS = {
-    "quarter": ("transverse", "longitudinal", LOOP),
-    "half turn": ("transverse", "longitudinal", LOOP),
+    "quarter": ("longitudinal", LOOP),
+    "half turn": ("transverse", LOOP),
     "mirror image": ("bore", "continuous-bore"),
     "mirror image at nu = 0": ("bore",),
 }
@@ -70,11 +70,9 @@ def path_of(name, nu, steps=12, velocity=0.1):
     return make_path(lambda t: motion.displacement(t, velocity, amplitude, nu), phase)
 
 
-@pytest.mark.parametrize("cells", [2, 4, 6, 8, 10, 12, 14, 18])
+@pytest.mark.parametrize("cells", [2, 6, 12, 18])
 @pytest.mark.parametrize("kind", KINDS)
 def test_convolution_is_the_direct_sum_over_all_squares(kind, cells, rng):
-    """Padded lengths are 1, 3, 6, 8, 9, 12, 16 and 18 for a quarter, and 3, 8, 12, 16, 24, 27 and
-    36 for a half.  They include all kinds of butterflies and odd lengths."""
     images, symmetry, nu = KINDS[kind]
     operator = square_convolution(cells, nu, images=images, symmetry=symmetry)[0]
     state = some_state(kind, cells, rng)
@@ -86,17 +84,6 @@ def test_convolution_is_the_direct_sum_over_all_squares(kind, cells, rng):
         part[:] = rng.normal(size=part.shape)
     convolve(operator, scratch, state, again)
     assert np.array_equal(again, out)
-
-
-@pytest.mark.parametrize("cells", [4, 8, 12])
-@pytest.mark.parametrize("kind", KINDS)
-def test_largest_eigenvalue_of_such_fields_is_bounded_closely(kind, cells):
-    for contact in both(kind, cells):
-        shape = (2, *contact.bound.shape)
-        units = np.eye(np.prod(shape)).reshape(-1, *shape)
-        matrix = np.stack([contact.displacement(unit).ravel() for unit in units])
-        largest = np.linalg.eigvalsh(matrix)[-1]
-        assert largest < contact.largest < 2.5 * largest
 
 
 @pytest.mark.parametrize("kind", KINDS)
@@ -115,8 +102,6 @@ def test_squares_count_for_their_images(kind, rng):
     energies = energy_norm(every, full), energy_norm(fewer, state)
     assert energies[1] == pytest.approx(energies[0], rel=1e-13)
     assert np.array_equal(whole(kind, fewer.mirrored(state)), every.mirrored(full))
-    rooms = [workspace(contact.convolution)[0].nbytes for contact in (every, fewer)]
-    assert rooms[1] <= 0.6 * rooms[0]
 
 
 @pytest.mark.parametrize("pressure", ["hertz", ELLIPSE, "ring:inner=0.4"])
@@ -134,57 +119,40 @@ def test_a_march_is_that_of_all_squares(kind, motion, pressure):
     assert np.array_equal(again.state, other.state) and np.array_equal(again.forces, other.forces)
 
 
-def images_of(motion, nu, cells=8, pressure="hertz"):
+def images_of(motion, nu, cells=8, pressure=HERTZ):
     """Number of images of the contact that the registry builds."""
-    contact = MODELS["cartesian"].build(
-        Problem(
-            motion_named(motion),
-            1.0,
-            None if motion == "continuous-bore" else 1.0,
-            nu,
-            pressure_named(pressure),
-        ),
-        cells,
-        1,
-        None,
-    )
-    assert contact.bound.size * contact.images == cells**2
-    return contact.images
+    place = (1.0, 1.0) if motion_named(motion).periodic else (1.0, None)
+    problem = Problem(motion_named(motion), *place, nu, pressure)
+    return MODELS["cartesian"].build(problem, cells, 1, None).images
 
 
 def test_fewer_squares_do_only_where_symmetry_lets_them():
     assert images_of("transverse", 0.0) == images_of(LOOP, 0.0) == 4
     assert images_of("transverse", 0.3) == images_of(LOOP, 0.3) == 2
-    assert (
-        images_of("bore", 0.0) == images_of("bore", 0.3) == images_of("continuous-bore", 0.0) == 2
-    )
+    assert images_of("bore", 0.0) == images_of("bore", 0.3) == images_of("continuous-bore", 0) == 2
     assert images_of("transverse-bore", 0.0) == 1
     assert images_of("transverse", 0.0, cells=7) == images_of("bore", 0.3, cells=7) == 1
 
 
-PLACES = {
-    ((0, 3), (7, 3)): {(TURN, 0.0): 1, (MIRROR, 0.3): 2},
-    ((0, 3), (0, 4)): {(TURN, 0.0): 1, (MIRROR, 0.3): 1},
-    ((0, 3), (7, 4)): {(TURN, 0.0): 2, (MIRROR, 0.3): 1},
-    ((1, 3), (1, 4), (6, 3), (6, 4)): {(TURN, 0.0): 4, (MIRROR, 0.0): 2},
-}
-"""Squares with more load than their images -> number of images for each motion."""
-
-
-@pytest.mark.parametrize("places", PLACES)
-@pytest.mark.parametrize("more", [1e-8, 0.5])
-def test_the_pressure_has_a_say(places, more):
-    """A difference between loads removes a symmetry, unless it is a rounding error."""
-
-    def contact_of(more, symmetry, nu):
+@pytest.mark.parametrize(
+    ("places", "images"),
+    [  # squares with more load than others -> images of translations, and of rotations
+        (((0, 3),), (1, 1)),
+        (((0, 3), (7, 3)), (1, 2)),
+        (((0, 3), (7, 4)), (2, 1)),
+        (((1, 3), (1, 4), (6, 3), (6, 4)), (4, 2)),
+    ],
+)
+def test_a_difference_between_loads_removes_a_symmetry_unless_it_is_of_rounding(places, images):
+    def images_with(more):
         class Uneven(Hertz):
             def cell_loads(self, cells):
                 loads = super().cell_loads(cells)
                 loads[tuple(zip(*places, strict=True))] += more * loads.max()
                 return loads
 
-        return CartesianContact(8, nu, Uneven(), symmetry)
+        pressure = Uneven()
+        return images_of("transverse", 0.0, 8, pressure), images_of("bore", 0.3, 8, pressure)
 
-    for (symmetry, nu), images in PLACES[places].items():
-        assert contact_of(more, symmetry, nu).images == images
-        assert contact_of(1e-13, symmetry, nu).images == (4 if (symmetry, nu) == (TURN, 0.0) else 2)
+    assert images_with(1e-8) == images_with(0.5) == images
+    assert images_with(1e-13) == (4, 2)

@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+from microslip.contact.influence import ring_influence
 from microslip.contact.modes import PolarContact
 from microslip.contact.path import SDIRK2, make_path
 
@@ -35,3 +36,13 @@ def test_a_motion_with_a_symmetry_is_marched_as_on_half_of_the_disc(nu, rotates)
     assert marches[1].state[:, :ANGLES] == pytest.approx(marches[0].state, abs=allowed)
     assert marches[1].forces == pytest.approx(marches[0].forces, abs=allowed)
     assert np.hypot(*marches[1].state).max() <= disc.bound.max() * (1.0 + 1e-12)
+
+
+@pytest.mark.parametrize("contact", [PolarContact(RINGS, ANGLES, True, 0.3), whole(0.3)])
+def test_the_shortest_wave_is_not_coupled(contact):
+    """Its cosine, forward, is 0 at all points; its sine, lateral, alternates between the points."""
+    near, _ = ring_influence(contact.rings.psi, ANGLES + 1, True)
+    wave = np.zeros((2, *contact.forward_position.shape))
+    wave[1] = ((-1.0) ** np.arange(wave.shape[1]))[:, None]
+    expected = wave * near[ANGLES].sum(axis=1)
+    assert contact.displacement(wave) == pytest.approx(expected, abs=1e-9)

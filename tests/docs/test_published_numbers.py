@@ -17,21 +17,6 @@ def disagreements(comparisons):
     return [one.what for one in comparisons if not one.agrees]
 
 
-@pytest.mark.parametrize(
-    ("difference", "error", "printed"),
-    [
-        (0.0, 0.0, "0"),
-        (-2.2e-16, 0.0, "0"),  # rounding, which depends on the processor
-        (-3.1e-9, 7e-6, "0"),
-        (-3.1e-9, 0.0, "-3.1e-09"),
-        (0.5, 7e-6, "5.0e-01"),
-    ],
-)
-def test_a_difference_below_its_error_or_of_rounding_is_printed_as_0(difference, error, printed):
-    comparison = numbers.Comparison("friction", 0.4, 0.4 + difference, 1e-4, error)
-    assert comparison.row()["difference"] == printed
-
-
 @pytest.mark.slow
 @pytest.mark.parametrize("case", CASES, ids=of_case)
 def test_contact_on_its_own_elements_to_the_last_printed_digit(case):

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from microslip.contact.contact import energy_norm, forward_slip
-from microslip.contact.path import EULER, SDIRK2, half_period_phases, make_path
+from microslip.contact.path import half_period_phases, make_path
 from microslip.contact.registry import MODELS
 from microslip.periodic import discretise
 from microslip.periodic.discretise import Resolution, contact_of
@@ -23,19 +23,16 @@ CASES = {
     "radial": ("radial", Transverse(), 0.0, 8, 1),
     "polar, translation": ("polar", Transverse(), 0.3, 5, 4),
     "polar, rotation": ("polar", Bore(), 0.0, 5, 4),
-    "polar, coupled rotation": ("polar", Bore(), 0.3, 5, 4),
-    "cartesian, translation": ("cartesian", Transverse(), 0.0, 6, 1),
-    "cartesian, rotation": ("cartesian", Bore(), 0.3, 6, 1),
+    "cartesian": ("cartesian", Bore(), 0.3, 6, 1),
 }
 """Model, motion, nu, cells and angles of each case."""
+SLOW, FAST = (0.1, 1.0), (1.0, 0.5)
 POINTS = {
-    "slider": [(1.0, 2.0), (0.1, 0.5), (0.005, 0.8)],
-    "radial": [(1.0, 0.5), (0.1, 1.0), (0.02, 2.0), (0.005, 0.5), (1e-3, 0.2)],
-    "polar, translation": [(1.0, 0.5), (0.1, 1.0), (0.02, 2.0), (0.02, 0.5), (0.005, 0.2)],
-    "polar, rotation": [(1.0, 0.5), (0.1, 1.0), (0.02, 2.0), (0.02, 0.5), (0.03, 0.1)],
-    "polar, coupled rotation": [(1.0, 0.5), (0.05, 1.0), (0.02, 0.2)],
-    "cartesian, translation": [(1.0, 0.5), (0.1, 1.0)],
-    "cartesian, rotation": [(1.0, 0.5), (0.1, 1.0)],
+    "slider": [(1.0, 2.0), (0.005, 0.8)],
+    "radial": [FAST, SLOW, (0.02, 2.0), (0.005, 0.5), (1e-3, 0.2)],
+    "polar, translation": [SLOW, (0.02, 0.5), (0.005, 0.2)],
+    "polar, rotation": [SLOW, (0.02, 2.0), (0.03, 0.1)],
+    "cartesian": [FAST, SLOW],
 }
 
 
@@ -45,7 +42,7 @@ def contact_at(name, velocity, amplitude):
     return MODELS[model].build(problem, cells, angles, problem.focus)
 
 
-def path_of(name, velocity, amplitude, integrator=SDIRK2, whole=False):
+def path_of(name, velocity, amplitude, whole=False):
     """Path over half a period, or over a whole period with the same steps."""
     _, motion, nu, _, _ = CASES[name]
     phase = half_period_phases(STEPS)
@@ -55,7 +52,7 @@ def path_of(name, velocity, amplitude, integrator=SDIRK2, whole=False):
     def displacement(t):
         return motion.displacement(t, velocity, amplitude, nu)
 
-    return make_path(displacement, phase, integrator)
+    return make_path(displacement, phase)
 
 
 def plain_march(contact, path, state, change, most=20_000):
@@ -88,16 +85,14 @@ def test_found_state_is_that_of_the_plain_march(name, velocity, amplitude):
     assert energy_norm(contact, run.state - state) < 30 * TOLERANCE
 
 
-@pytest.mark.parametrize("integrator", [EULER, SDIRK2], ids=lambda method: method.name)
 @pytest.mark.parametrize("name", CASES)
-def test_second_half_of_the_period_mirrors_the_first(name, integrator):
+def test_second_half_of_the_period_mirrors_the_first(name):
     """A march over the whole period makes no use of the symmetry."""
-    motion, point = CASES[name][1], POINTS[name][1]
-    contact, path = contact_at(name, *point), path_of(name, *point, integrator)
+    motion, contact, path = CASES[name][1], contact_at(name, *SLOW), path_of(name, *SLOW)
     cycle = PeriodMap(contact, path)
     result = find_periodic_state(cycle, forward_slip(contact), Goal(TOLERANCE, STEP_TOLERANCE))
     assert result.converged
-    whole = path_of(name, *point, integrator, whole=True)
+    whole = path_of(name, *SLOW, whole=True)
     march = contact.march(whole, result.start, STEP_TOLERANCE)
     assert energy_norm(contact, march.state - result.start) < 3 * TOLERANCE
     first, second = march.forces[: STEPS + 1], march.forces[STEPS:]
@@ -105,14 +100,13 @@ def test_second_half_of_the_period_mirrors_the_first(name, integrator):
     turning = 2 if motion.rotates else 1  # the force or torque along the oscillation
     assert second[:, turning] == pytest.approx(-first[:, turning], abs=3 * TOLERANCE)
     assert np.abs(first[:, turning]).max() > 0.1
-    assert whole.mean(march.forces)[0] == pytest.approx(
-        path.mean(result.march.forces)[0], abs=TOLERANCE
-    )
+    mean = path.mean(result.march.forces)[0]
+    assert whole.mean(march.forces)[0] == pytest.approx(mean, abs=TOLERANCE)
 
 
 @pytest.mark.parametrize("name", CASES)
 def test_verdict_is_that_of_the_plain_map(name):
-    contact, path = contact_at(name, *POINTS[name][1]), path_of(name, *POINTS[name][1])
+    contact, path = contact_at(name, *SLOW), path_of(name, *SLOW)
     start = forward_slip(contact)
     enough = find_periodic_state(PeriodMap(contact, path), start, Goal(TOLERANCE, STEP_TOLERANCE))
     assert enough.converged and enough.residual <= enough.distance <= TOLERANCE
@@ -138,17 +132,14 @@ def test_run_reports_what_was_not_reached(monkeypatch):
         assert "no periodic state" in run.reason and run.distance > TOLERANCE
 
 
-@pytest.mark.parametrize("amplitude", [0.2, 0.5, 0.9, 1.5])
+@pytest.mark.parametrize("amplitude", [0.2, 0.9, 1.5])
 def test_rings_converge_down_to_very_small_velocities(amplitude):
     """The friction approaches the static limit from above."""
-    means = []
-    for velocity in (1e-3, 1e-4, 1e-5):
-        problem = Problem(Transverse(), velocity, amplitude, 0.0)
-        run = simulate(problem, "radial", Resolution(24, 1, 24), TOLERANCE)
-        assert run.converged and run.periods < 20
-        means.append(run.mu)
-    assert means[0] > means[1] > means[2]
-    assert means[2] == pytest.approx(paper.static_limit_transverse(amplitude), abs=3e-3)
+    problems = (Problem(Transverse(), 10.0**power, amplitude, 0.0) for power in (-3, -4, -5))
+    runs = [simulate(one, "radial", Resolution(24, 1, 24), TOLERANCE) for one in problems]
+    assert all(run.converged and run.periods < 20 for run in runs)
+    assert runs[0].mu > runs[1].mu > runs[2].mu
+    assert runs[2].mu == pytest.approx(paper.static_limit_transverse(amplitude), abs=3e-3)
 
 
 @pytest.mark.parametrize(("velocity", "amplitude"), [(1e-3, 0.05), (3e-4, 0.5)])
@@ -167,8 +158,6 @@ def test_slow_motions_of_small_amplitude_are_not_taken_for_periodic_too_early(ve
     [
         # undamped Newton corrections cycle or diverge
         (1.34e-6, 0.867, 35, 78),
-        (1.45e-6, 0.903, 17, 78),
-        (5.67e-6, 0.412, 52, 26),
         (7.12e-6, 0.739, 9, 77),
         (1.14e-5, 0.518, 58, 53),
         # almost full stick; full slip
@@ -191,7 +180,6 @@ def test_rings_converge_at_the_ends_of_the_parameters(velocity, amplitude, rings
 @pytest.mark.parametrize(
     ("model", "angles", "problem"),
     [
-        ("radial", 1, Problem(Transverse(), 0.3, 1.5, 0.0)),
         ("radial", 1, Problem(Transverse(), 1e-6, 0.5, 0.0)),
         ("radial", 1, Problem(Transverse(), 1e-3, 1.1, 0.0, drive=Spring(0.5))),
         ("polar", 4, Problem(Transverse(), 0.1, 1.0, 0.3)),
@@ -210,15 +198,10 @@ def test_a_run_of_fewer_rings_as_first_guess_changes_nothing(model, angles, prob
         assert after.values[name] == pytest.approx(value, abs=5 * tolerance)
 
 
-def radial_run(velocity, amplitude, rings, steps, tolerance=1e-6, guess=None):
-    problem = Problem(Transverse(), velocity, amplitude, 0.0)
-    return simulate(problem, "radial", Resolution(rings, 1, steps), tolerance, guess)
-
-
-@pytest.mark.parametrize("steps", [16, 48])
-def test_all_effort_is_counted(steps):
+def test_all_effort_is_counted():
     """A step has two stages, a ring two tractions, and a period two marches."""
-    run = radial_run(0.01, 0.5, 8, steps)
+    steps, problem = 16, Problem(Transverse(), 0.01, 0.5, 0.0)
+    run = simulate(problem, "radial", Resolution(8, 1, steps), 1e-6)
     assert run.effort.solves == 2 * run.periods * 2 * steps
     assert run.effort.work == 16 * run.effort.solves
     assert run.effort.updates == 16 * run.effort.iterations >= run.effort.work

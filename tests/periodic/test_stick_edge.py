@@ -5,9 +5,7 @@ import pytest
 
 import microslip
 from microslip.contact.rings import Focus, make_rings
-from microslip.periodic.discretise import Resolution
-from microslip.periodic.run import Budget, Settings, Spent
-from microslip.periodic.simulate import simulate
+from microslip.periodic.run import Budget, Spent
 from microslip.periodic.static_limit import (
     FINE_RESOLUTION,
     FINE_TOLERANCE,
@@ -29,9 +27,6 @@ def focus_of(motion, velocity, amplitude, model, pressure="hertz"):
     return edge_focus(
         Problem(motion_named(motion), velocity, amplitude, 0.0, pressure_named(pressure)), model
     )
-
-
-# The edges
 
 
 def test_a_circle_sticks_less_than_a_line_that_is_as_long():
@@ -70,22 +65,18 @@ def test_finer_rings_find_the_stick_radius_of_mindlin_from_what_coarse_ones_say(
     assert result == pytest.approx([exact], abs=5e-4)
 
 
-# Grading towards several radii
-
-
-@pytest.mark.parametrize("count", [4, 7, 12, 48])
+@pytest.mark.parametrize("count", [4, 48])
 @pytest.mark.parametrize("pressure", ["hertz", RING])
 def test_an_edge_lies_on_every_radius_and_widths_grow_away_from_it(count, pressure):
     focus = Focus((0.6, 0.9), 0.8)
-    edges = np.sin(make_rings(count, focus, pressure_named(pressure)).psi)
+    psi = make_rings(count, focus, pressure_named(pressure)).psi
+    edges = np.sin(psi)
     places = [int(np.argmin(np.abs(edges - radius))) for radius in focus.radii]
     assert len(edges) == count + 1 and np.all(np.diff(edges) > 0.0)
     assert edges[places] == pytest.approx(focus.radii, abs=1e-14)
-    if count >= 12:
-        widths = np.diff(make_rings(count, focus).psi)
-        for radius in focus.radii:
-            at = int(np.argmin(np.abs(np.sin(make_rings(count, focus).psi) - radius)))
-            assert widths[at] < widths[at + 1] and widths[at - 1] < widths[at - 2]
+    widths = np.diff(psi)
+    for at in places if count > 4 and pressure == "hertz" else ():
+        assert widths[at] < widths[at + 1] and widths[at - 1] < widths[at - 2]
 
 
 @pytest.mark.parametrize("radii", [(), (0.9, 0.6), (0.5, 0.5), (-0.1,), (0.5, 1.1)])
@@ -94,49 +85,21 @@ def test_radii_without_order_or_outside_are_refused(radii):
         make_rings(8, Focus(radii, 0.5))
 
 
-# Effect on the error
-
-
-def limit(cells, focus=None):
-    problem = Problem(motion_named("transverse"), 0.0, 0.55, 0.0, pressure_named(RING))
-    settings = Settings(focus=focus)
-    return simulate(problem, "radial", Resolution(cells, 1, 4), 1e-6, settings=settings).mu
-
-
-@pytest.mark.parametrize(("motion", "amplitude"), [("elliptic", 0.4), ("normal:lateral=1", 0.2)])
-def test_the_limit_on_a_loop_looks_for_the_edge_once(motion, amplitude):
-    """A search at every resolution gives the same limit."""
-    problem = Problem(motion_named(motion), 0.0, amplitude, 0.0)
-    focus, resolution = edge_focus(problem, "radial"), Resolution(48, 1, 192)
-    by_itself, radii = stick_edges(problem, "radial", resolution, 1e-5)
-    static = simulate(problem, "radial", resolution, 1e-5, settings=Settings(focus=focus))
-    assert focus.radii == pytest.approx(radii, abs=5e-3)
-    assert static.mu == pytest.approx(by_itself[-1].mu, abs=5e-4)
-    assert len(by_itself) > 1 and static.effort.solves < sum(run.effort.solves for run in by_itself)
-
-
-# Budget of the search
-
-SWEPT = "normal:lateral=1,angle=1"
-"""A motion whose static limit starts with a search for the stick zone."""
-
-
-@pytest.mark.parametrize("bound", [{"most_work": 1.0}, {"time_limit": 1e-9}], ids=list)
-def test_bounds_of_a_point_hold_for_the_search_of_its_edges(bound):
-    calls, spent = [], "work" if "most_work" in bound else "time"
-    result = microslip.solve(SWEPT, 0.0, 0.4375, progress=calls.append, **bound)
+@pytest.mark.parametrize(
+    ("spent", "bound"), [("work", {"most_work": 1.0}), ("time", {"time_limit": 1e-9})]
+)
+def test_bounds_of_a_point_hold_for_the_search_of_its_edges(spent, bound):
+    calls, place = [], ("normal:lateral=1,angle=1", 0.0, 0.4375)  # it starts with a search
+    result = microslip.solve(*place, progress=calls.append, **bound)
     assert calls == [SWEPT_RESOLUTION]  # no other run has started
     assert not result.converged and np.isnan(result.mu_macro)
-    assert result.exhausted == spent
-    assert "there is no error estimate yet" in result.reason
+    assert result.exhausted == spent and "there is no error estimate yet" in result.reason
 
 
 def test_the_work_of_a_search_counts_whether_it_was_done_before_or_not():
     problem = Problem(motion_named("elliptic"), 0.0, 0.4321, 0.0)
-    first, later, calls = Budget(), Budget(), []
-    focus = edge_focus(problem, "radial", first, calls.append)
-    assert len(calls) >= 1 and first.taken.work > 0
-    assert edge_focus(problem, "radial", later, calls.append) == focus
-    assert later.taken == first.taken
+    first, later = Budget(), Budget()
+    assert edge_focus(problem, "radial", first) == edge_focus(problem, "radial", later)
+    assert first.taken == later.taken and first.taken.work > 0
     with pytest.raises(Spent, match="the work that the point may take"):
         edge_focus(problem, "radial", Budget(most_work=first.taken.work - 1))

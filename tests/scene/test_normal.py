@@ -2,37 +2,29 @@
 
 import numpy as np
 import pytest
+from stubs.agreement import assert_agree
 
 import microslip
-from microslip.contact.contact import project
-from microslip.contact.path import EULER, make_path
 from microslip.contact.reduced import mdr_contact
-from microslip.contact.registry import MODELS
 from microslip.contact.ring_contact import RadialContact
-from microslip.periodic.discretise import Resolution, contact_of, path_of
+from microslip.periodic.discretise import Resolution
 from microslip.periodic.simulate import simulate
 from microslip.scene.by_name import motion_named
 from microslip.scene.hertz import HERTZ
 from microslip.scene.problem import Problem
+from microslip.theory import hertz, paper
 
 ALONE = [
-    ("normal", 0.1, 0.5),
     ("normal", 0.003, 0.9),
     ("normal", 0.3, 1.5),
     ("normal", 0.63, 1.01),
     ("normal:indentation=1", 0.3, 0.8),
-    ("normal:indentation=1", 0.01, 1.3),
     ("normal:normal_cycles=3", 0.5, 0.7),
 ]
 ALONG = [
     ("normal:forward=1,phase=60", 0.1, 0.7),
     ("normal:forward=0.5,phase=180,indentation=1", 0.02, 1.3),
     ("normal:forward=0.8,forward_cycles=2,phase=30", 0.2, 0.6),
-]
-ASIDE = [
-    pytest.param(("normal:lateral=1", 0.1, 0.7), marks=pytest.mark.long),
-    ("normal:lateral=0.5,phase=90,indentation=1", 0.02, 1.2),
-    pytest.param(("normal:lateral=1,normal_cycles=2", 0.1, 0.8), marks=pytest.mark.long),
 ]
 
 
@@ -55,9 +47,9 @@ def marched_springs(motion, velocity, amplitude, count, periods=8):
     return np.trapezoid(force, phase) / np.trapezoid(overlap @ width, phase)
 
 
-def run(motion, velocity, amplitude, model="radial", cells=32, steps=128):
+def run(motion, velocity, amplitude, model, cells, steps, angles=1):
     problem = Problem(motion_named(motion), velocity, amplitude, 0.0)
-    return simulate(problem, model, Resolution(cells, 1, steps), 1e-7)
+    return simulate(problem, model, Resolution(cells, angles, steps), 1e-7)
 
 
 @pytest.mark.parametrize("place", ALONE, ids=str)
@@ -78,6 +70,14 @@ def test_springs_and_rings_agree_with_the_closed_form(place, model):
     exact, energy = motion_named(motion).closed_form(velocity, amplitude, HERTZ)
     assert abs(answer.mu_macro - exact) < 1e-3
     assert abs(answer.dissipated_energy - energy) <= answer.dissipated_energy_error
+
+
+@pytest.mark.parametrize("place", [("normal", 0.3, 1.5), ("normal:indentation=1", 0.3, 0.8)])
+def test_rings_join_a_growing_contact_in_the_middle_of_a_step_on_average(place):
+    """Joining at its end would leave errors of 6e-4 to 9e-4."""
+    exact, _ = motion_named(place[0]).closed_form(*place[1:], HERTZ)
+    for model in ("mdr", "radial"):
+        assert run(*place, model, 32, 128).mu == pytest.approx(exact, abs=4e-4)
 
 
 @pytest.mark.slow
@@ -106,38 +106,6 @@ def test_a_contact_that_grows_keeps_load_and_stiffness(build):
     assert stuck == pytest.approx(1.3 * HERTZ.stiffness, rel=0.03)
 
 
-def tractions_of(march, bounds):
-    """Tractions of rings at the start and at every stage, (2, 1 + steps stages, rings)."""
-    return project(np.moveaxis(march.fields[:, :, 0], 1, 0), bounds)
-
-
-@pytest.mark.parametrize("place", [*ALONG, *ASIDE], ids=str)
-def test_work_is_dissipated(place):
-    """The work of the motion is the sum of stored energy, dissipation and the numerical loss of
-    Euler steps."""
-    name, velocity, amplitude = place
-    motion = Problem(motion_named(name), velocity, amplitude, 0.0)
-    resolution = Resolution(16, 1, 256)
-    contact, result = contact_of(motion, "radial", resolution), run(*place, "radial", 16, 256)
-    phase = path_of(motion, contact, 256).phase
-    path = make_path(motion.displacement, phase, EULER, motion.depth)
-    before = result.state
-    march = contact.march(path, before, 1e-11)
-    moves = np.diff(path.positions[:, :2], axis=0)
-    work = np.sum(moves * march.forces[1:, :2])
-    tractions = np.moveaxis(tractions_of(march, contact.bounds_along(path)), 0, 1)
-    slip = moves[:, :, None] - np.diff(tractions, axis=0) @ contact.influence.T
-    lost = contact.weight * np.sum(tractions[1:] * slip, axis=1)
-    assert (lost >= -1e-9).all()
-    stored = 0.5 * sum(
-        sign * np.vdot(contact.weight * q, contact.displacement(q))
-        for sign, q in ((1.0, march.state), (-1.0, before))
-    )
-    changes = np.diff(tractions, axis=0)
-    numerical = 0.5 * np.sum(contact.weight * changes * (changes @ contact.influence.T))
-    assert work == pytest.approx(lost.sum() + stored + numerical, abs=1e-7)
-
-
 def test_in_step_with_the_load_an_oscillation_drives_the_contact():
     """If the load is larger during the forward motion than during the backward motion, friction
     decreases or propels."""
@@ -147,45 +115,64 @@ def test_in_step_with_the_load_an_oscillation_drives_the_contact():
 
 
 @pytest.mark.parametrize(
-    ("motion", "message"),
+    ("motion", "settings", "message"),
     [
-        ("normal:load=0", "allowed is load or indentation above 0"),
-        ("normal:load=0.5,indentation=1", "allowed is no load beside an indentation"),
-        ("normal:lateral=2", "lateral = 2: allowed is a share in 0..1"),
-        ("normal:load=-1", "load = -1: allowed is a share in 0..1"),
-        ("normal:normal_cycles=0.5", "normal_cycles = 0.5: allowed is a whole number"),
-        ("normal:depth=1", "unknown number depth"),
+        ("normal:load=0", {}, "allowed is load or indentation above 0"),
+        ("normal:load=0.5,indentation=1", {}, "allowed is no load beside an indentation"),
+        ("normal:lateral=2", {}, "lateral = 2: allowed is a share in 0..1"),
+        ("normal:angle=2", {}, "angle = 2: allowed is a share in 0..1"),
+        ("normal:normal_cycles=0.5", {}, "normal_cycles = 0.5: allowed is a whole number"),
+        *(
+            ("normal", {"model": model}, f"model = '{model}': .* constant normal load")
+            for model in ("rigid", "slider", "dahl", "cartesian")
+        ),
+        (
+            *("normal:angle=1,lateral=1", {"pressure": "ellipse"}),
+            "pressure = 'ellipse.*: only cartesian .* load",
+        ),
     ],
 )
-def test_what_is_no_motion_is_refused(motion, message):
+def test_what_no_model_knows_is_refused(motion, settings, message):
     with pytest.raises(ValueError, match=message):
-        microslip.solve(motion, 0.1, 0.5)
-
-
-@pytest.mark.parametrize("model", sorted(MODELS.keys() - {"mdr", "radial", "polar"}))
-def test_models_that_know_one_load_are_refused(model):
-    with pytest.raises(ValueError, match=f"model = '{model}': .* constant normal load"):
-        microslip.solve("normal", 0.1, 0.5, model=model)
-
-
-# Other indenters
+        microslip.solve(motion, 0.1, 0.5, **settings)
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize(
-    "pressure",
-    ["power:exponent=1", "power:exponent=8", pytest.param("punch", marks=pytest.mark.long)],
-)
-@pytest.mark.parametrize(
-    ("motion", "velocity", "amplitude"), [("normal", 0.1, 0.5), ("normal:indentation=1", 0.03, 1.4)]
-)
-def test_closed_form_springs_and_rings_agree_for_other_indenters(
-    pressure, motion, velocity, amplitude
-):
-    exact = microslip.solve(motion, velocity, amplitude, pressure=pressure)
+@pytest.mark.parametrize("place", [("normal", 0.1, 0.5), ("normal:indentation=1", 0.03, 1.4)])
+@pytest.mark.parametrize("pressure", ["power:exponent=1", "power:exponent=8", "punch"])
+def test_closed_form_springs_and_rings_agree_for_other_indenters(pressure, place):
+    exact = microslip.solve(*place, pressure=pressure)
     assert exact.model == "closed-form"
     for model in ("mdr", "radial"):
-        settings = {"pressure": pressure, "model": model, "tolerance": 5e-3}
-        result = microslip.solve(motion, velocity, amplitude, **settings)
-        assert result.converged
-        assert abs(result.mu_macro - exact.mu_macro) <= result.mu_macro_error
+        assert_agree(exact, microslip.solve(*place, pressure=pressure, model=model, tolerance=5e-3))
+
+
+# With a rotation
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("motion", ["normal", "normal:lateral=1", "normal:forward=1,phase=60"])
+def test_modes_find_what_rings_find(motion):
+    """At nu = 0, both models are equal at the same resolution, up to the tolerance of the steps."""
+    for amplitude in (0.6, 1.3):
+        rings, modes = (run(motion, 0.1, amplitude, m, 24, 96, 8) for m in ("radial", "polar"))
+        assert rings.converged and modes.converged
+        assert modes.mu == pytest.approx(rings.mu, abs=2e-6)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("velocity", [0.5, 5.0, 40.0])
+def test_where_all_slides_every_moment_is_a_steady_bore(velocity):
+    """The mean is Eq 21 at the current contact radius and rotation rate, weighted with the load."""
+    amplitude, share = 60.0, 0.5 / 60.0
+    result = microslip.solve(
+        f"normal:load={share!r},angle=1,phase=90", velocity, amplitude, tolerance=5e-3
+    )
+    phase = (np.arange(4000) + 0.5) * np.pi / 2000.0
+    load = 1.0 + 0.5 * np.sin(phase)
+    rate = np.abs(float(hertz.bore_angle(amplitude)) * np.sin(phase))
+    radius = HERTZ.radius(HERTZ.of_load(load))
+    steady = paper.bore_forward(velocity / (rate * radius))
+    assert result.converged
+    # the force follows with a delay of about u_lim, which is a small part of this path
+    assert result.mu_macro == pytest.approx(np.mean(load * steady), abs=0.015)

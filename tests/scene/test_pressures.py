@@ -1,6 +1,7 @@
 """Pressures: integrals, closed forms, marches and text forms."""
 
 import pickle
+import re
 from dataclasses import fields
 
 import numpy as np
@@ -124,7 +125,7 @@ def test_the_cone_is_loves():
 
 
 @pytest.mark.parametrize("name", [*INDENTERS, *EXTREME])
-def test_the_record_of_an_indenter_keeps_what_closed_forms_claim(name):
+def test_an_indenter_keeps_what_closed_forms_claim(name):
     """The loads of the contact and of smaller contacts are known; closed forms have an error of
     1e-8."""
     pressure, depth = pressure_named(name), np.array([0.2, 0.7, 1.0])
@@ -133,6 +134,11 @@ def test_the_record_of_an_indenter_keeps_what_closed_forms_claim(name):
     exact = pressure.stiffness * (radius * depth - below)
     assert pressure.total(depth) == pytest.approx(exact, abs=1e-8)
     assert pressure.total(1.0) == pytest.approx(1.0, abs=1e-8)
+    depth = np.array([1e-3, 0.3, 1.0, 2.5])
+    assert pressure.depth(pressure.radius(depth)) == pytest.approx(depth, rel=1e-9)
+    assert pressure.total(pressure.of_load(depth)) == pytest.approx(depth, rel=1e-9)
+    assert pressure.radius(0.0) == pressure.of_load(0.0) == pressure.stick_radius(1.0) == 0.0
+    assert pressure.stick_radius(0.3) == pytest.approx(float(pressure.radius(0.7)))
 
 
 def test_punches_lie_between_a_sphere_and_a_flat_end():
@@ -141,19 +147,6 @@ def test_punches_lie_between_a_sphere_and_a_flat_end():
     assert round_end.bound(r) == pytest.approx(HERTZ.bound(r), abs=1e-10)
     assert flat_end.G_star == pytest.approx(0.5, abs=5e-3)
     assert flat_end.bound(r) == pytest.approx(0.5 / np.pi / np.sqrt(1.0 - r**2), rel=0.03)
-
-
-@pytest.mark.parametrize("name", INDENTERS)
-def test_the_radius_is_the_inverse_of_the_depth(name):
-    pressure = pressure_named(name)
-    depth = np.array([1e-3, 0.3, 1.0, 2.5])
-    assert pressure.depth(pressure.radius(depth)) == pytest.approx(depth, rel=1e-9)
-    assert pressure.radius(0.0) == 0.0
-    assert pressure.total(pressure.of_load(depth)) == pytest.approx(depth, rel=1e-9)
-    assert pressure.total(1.0) == pytest.approx(1.0, rel=1e-10)
-    assert pressure.of_load(0.0) == 0.0
-    assert pressure.stick_radius(0.3) == pytest.approx(float(pressure.radius(0.7)))
-    assert pressure.stick_radius(1.0) == 0.0
 
 
 # Marches under each pressure
@@ -186,9 +179,8 @@ def test_a_ring_slides_as_a_whole_at_u_lim_and_not_before(name):
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("name", ["hertz", "power"])
-def test_integrals_over_the_record_are_the_closed_forms_of_a_sphere(name):
-    pressure = pressure_named(name)
+def test_integrals_over_the_record_are_the_closed_forms_of_a_sphere():
+    pressure = pressure_named("power")
     for amplitude in (1e-3, 0.25, 0.9):
         result = indenters.static_transverse(pressure, amplitude)
         assert result == pytest.approx(paper.static_limit_transverse(amplitude), abs=1e-9)
@@ -232,49 +224,22 @@ def test_closed_forms_agree_with_marches(name, motion, velocity, amplitude, mode
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize(
-    "name", ["power:exponent=1", pytest.param("punch", marks=pytest.mark.long), "ring"]
-)
-@pytest.mark.parametrize(
-    ("motion", "velocity", "amplitude"),
-    [("transverse", 0.1, 0.6), pytest.param("bore", 0.3, 1.0, marks=pytest.mark.long)],
-)
-def test_rings_and_squares_agree(name, motion, velocity, amplitude):
-    settings = {"pressure": name, "tolerance": 4e-3}
-    rings = microslip.solve(motion, velocity, amplitude, **settings)
-    squares = microslip.solve(motion, velocity, amplitude, model="cartesian", **settings)
-    assert_agree(rings, squares)
+@pytest.mark.parametrize("name", ["power:exponent=1", "punch", "ring"])
+def test_rings_and_squares_agree(name):
+    place, settings = ("transverse", 0.1, 0.6), {"pressure": name, "tolerance": 4e-3}
+    squares = microslip.solve(*place, **settings, model="cartesian")
+    assert_agree(microslip.solve(*place, **settings), squares)
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize(
-    ("motion", "velocity", "amplitude", "poisson"),
-    [("transverse", 0.1, 0.5, 0.0), ("transverse", 0.1, 0.5, 0.4), ("bore", 0.3, 1.0, 0.0)],
+    ("place", "poisson"), [(("transverse", 0.1, 0.5), 0.4), (("bore", 0.3, 1.0), 0.0)]
 )
-def test_an_ellipse_of_ratio_1_is_a_sphere(motion, velocity, amplitude, poisson):
+def test_an_ellipse_of_ratio_1_is_a_sphere(place, poisson):
     settings = {"poisson": poisson, "tolerance": 3e-3}
-    one = microslip.solve(motion, velocity, amplitude, **settings)
-    other = microslip.solve(motion, velocity, amplitude, pressure="ellipse:ratio=1", **settings)
+    other = microslip.solve(*place, pressure="ellipse:ratio=1", **settings)
     assert other.model == "cartesian"
-    assert_agree(one, other)
-
-
-@pytest.mark.long
-def test_translation_at_poissons_ratio_0_cannot_tell_how_an_ellipse_lies():
-    """The direction of traction matters for the influence of points only at nu > 0 or with a
-    rotation."""
-
-    def both(*place, poisson):
-        settings = {"poisson": poisson, "tolerance": 5e-3}
-        pressures = (f"ellipse:ratio=0.4,across={n}" for n in (0, 1))
-        return (microslip.solve(*place, pressure=name, **settings) for name in pressures)
-
-    along, across = both("transverse", 0.1, 0.5, poisson=0.0)
-    assert along.mu_macro == pytest.approx(across.mu_macro, abs=1e-4)
-    for place, poisson in ((("transverse", 0.1, 0.5), 0.5), (("bore", 0.3, 1.0), 0.0)):
-        along, across = both(*place, poisson=poisson)
-        errors = along.mu_macro_error + across.mu_macro_error
-        assert abs(along.mu_macro - across.mu_macro) > errors
+    assert_agree(microslip.solve(*place, **settings), other)
 
 
 # Names
@@ -284,21 +249,19 @@ def test_translation_at_poissons_ratio_0_cannot_tell_how_an_ellipse_lies():
     ("name", "problem"),
     [
         ("powr", "did you mean power?"),
-        ("hertz:x=1", "unknown number x; allowed: none"),
         ("power:n=1", "unknown number n; allowed: exponent"),
         ("power:exponent=0.5", "exponent = 0.5: allowed is a number in 1..100"),
-        ("punch:flat=1", "flat = 1: allowed is a share of the contact radius in 0..0.99"),
-        ("ring:inner=0", "inner = 0: allowed is a share of the outer radius in 0.05..0.95"),
-        ("ellipse:ratio=2", "ratio = 2: allowed is a number in 0.05..1"),
-        ("ellipse:across=0.5", "across = 0.5: allowed is 0 or 1"),
+        ("punch:flat=1", "flat = 1"),
+        ("ring:inner=0", "inner = 0"),
+        ("ellipse:ratio=2", "ratio = 2"),
+        ("ellipse:across=0.5", "across = 0.5"),
         ("file", "file:NAME"),
-        (3, "pressure = 3: allowed is one of hertz, ellipse, power"),
+        (3, "allowed is one of hertz, ellipse, power"),
     ],
 )
 def test_what_is_no_pressure_is_refused_by_name(name, problem):
-    with pytest.raises(ValueError, match="pressure = ") as refused:
+    with pytest.raises(ValueError, match=f"pressure = .*{re.escape(problem)}"):
         microslip.solve("transverse", 0.1, 0.5, pressure=name)
-    assert problem in str(refused.value)
 
 
 @pytest.mark.parametrize("name", PRESSURES)
@@ -315,12 +278,12 @@ def test_an_array_is_read_as_the_pressure_that_it_samples():
     values = np.sqrt(np.maximum(0.0, 1.0 - x[:, None] ** 2 - (y / 0.5) ** 2))
     read = Pressure.from_array(x, y, values)
     assert read.G_star == pytest.approx(Ellipse(ratio=0.5).G_star, rel=0.01)
+    assert read.half_widths == pytest.approx(Ellipse(ratio=0.5).half_widths, rel=0.02)
 
 
 @pytest.mark.parametrize(
     ("argument", "arrays"),
     [
-        ("pressure", ([0, 1], [0, 1], "ab")),
         ("pressure", ([0, 1], [0, 1], [[1, 2], [3]])),
         ("pressure", ([0, 1], [0, 1], [[1, 2, 3], [1, 2, 3]])),
         ("forward", ("ab", [0, 1], np.ones((2, 2)))),
@@ -331,4 +294,3 @@ def test_what_is_no_array_of_numbers_is_refused_by_the_name_of_the_argument(argu
     with pytest.raises(InputError) as raised:
         Pressure.from_array(*arrays)
     assert raised.value.argument == argument
-    assert "\n" not in str(raised.value)

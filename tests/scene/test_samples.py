@@ -16,61 +16,46 @@ def sampled(**columns):
     return microslip.Sampled.of_columns(columns)
 
 
-CASES = {
-    "transverse": ("transverse", {"lateral": SINE}, 0.1, 1.0, {}),
-    "long stroke": ("transverse", {"lateral": SINE}, 0.1, 30.0, {}),
-    "slow": ("transverse", {"lateral": SINE}, 0.003, 0.6, {}),
-    "static limit": ("transverse", {"lateral": SINE}, 0.0, 0.5, {}),
-    "longitudinal": ("longitudinal", {"forward": SINE}, 0.2, 1.5, {}),
-    "spring": ("longitudinal", {"forward": SINE}, 0.1, 1.0, {"stiffness": 1.0}),
-    "nu": ("transverse", {"lateral": SINE}, 0.1, 1.0, {"poisson": 0.4}),
-    "two tones": (
-        "elliptic:forward=0.5,forward_cycles=2",
-        {"forward": 0.5 * np.sin(2.0 * PHASE + np.pi / 2.0), "lateral": SINE},
-        0.1,
-        1.0,
-        {},
-    ),
-    "load": ("normal", {"load": 1.0 + SINE}, 0.2, 0.7, {}),
-    "indentation": ("normal:indentation=1", {"indentation": 1.0 + SINE}, 0.2, 0.7, {}),
-    "lost contact": ("normal", {"load": 1.0 + SINE}, 0.2, 1.0, {}),
-    "load and loop": (
-        "normal:lateral=1,phase=90",
-        {"load": 1.0 + SINE, "lateral": np.cos(PHASE)},
-        0.2,
-        0.7,
-        {},
-    ),
-}
+WAVE = {"lateral": SINE}
+PRESSED = {"load": 1.0 + SINE}
+TONES = {"forward": 0.5 * np.sin(2.0 * PHASE + np.pi / 2.0), "lateral": SINE}
+CASES = [
+    ("transverse", WAVE, 0.1, 30.0, {}),
+    ("transverse", WAVE, 0.003, 0.6, {}),
+    ("transverse", WAVE, 0.0, 0.5, {}),
+    ("transverse", WAVE, 0.1, 1.0, {"poisson": 0.4}),
+    ("longitudinal", {"forward": SINE}, 0.2, 1.5, {}),
+    ("longitudinal", {"forward": SINE}, 0.1, 1.0, {"stiffness": 1.0}),
+    ("elliptic:forward=0.5,forward_cycles=2", TONES, 0.1, 1.0, {}),
+    ("normal", PRESSED, 0.2, 0.7, {}),
+    ("normal:indentation=1", {"indentation": 1.0 + SINE}, 0.2, 0.7, {}),
+    ("normal:lateral=1,phase=90", PRESSED | {"lateral": np.cos(PHASE)}, 0.2, 0.7, {}),
+]
 
 
-@pytest.mark.parametrize("case", CASES)
-def test_a_sampled_sine_gets_the_answer_of_the_named_motion(case):
-    name, columns, velocity, amplitude, settings = CASES[case]
+@pytest.mark.parametrize(("name", "columns", "velocity", "amplitude", "settings"), CASES)
+def test_a_sampled_sine_gets_the_answer_of_the_named_motion(
+    name, columns, velocity, amplitude, settings
+):
     place = {"velocity": velocity, "amplitude": amplitude} | settings
     named = microslip.solve(name, **place)
-    other = microslip.solve(sampled(**columns), **place)
-    assert_agree(named, other)
+    assert_agree(named, microslip.solve(sampled(**columns), **place))
 
 
-@pytest.mark.parametrize("amplitude", [0.5, 2.0])
-def test_a_sampled_rotation_gets_the_answer_of_the_bore(amplitude):
+def test_a_sampled_rotation_gets_the_answer_of_the_bore():
     # the velocity of a bore is over omega and the angle, that of a sampled motion over omega u_lim
-    angle = float(hertz.bore_angle(amplitude))
-    named = microslip.solve("bore", velocity=0.3, amplitude=amplitude)
-    problem = microslip.Problem(microslip.Bore(), velocity=0.3, amplitude=amplitude)
-    motion = sampled(angle=angle * SINE)
+    problem = microslip.Problem(microslip.Bore(), velocity=0.3, amplitude=2.0)
+    motion = sampled(angle=float(hertz.bore_angle(2.0)) * SINE)
     other = microslip.solve(motion, velocity=problem.drift, amplitude=1.0)
-    assert_agree(named, other)
+    assert_agree(microslip.solve(problem), other)
 
 
 def test_few_samples_of_a_sharp_motion_have_a_larger_error():
     """The interpolation between samples is a source of the error of its own."""
     zigzag = 2.0 / np.pi * np.arcsin(np.sin(PHASE))
     exact = microslip.solve("zigzag", velocity=0.1, amplitude=1.0)
-    coarse = microslip.solve(
-        sampled(lateral=zigzag[::8]), velocity=0.1, amplitude=1.0, tolerance=0.05
-    )
+    motion = sampled(lateral=zigzag[::8])
+    coarse = microslip.solve(motion, velocity=0.1, amplitude=1.0, tolerance=0.05)
     assert coarse.answer.by_source["model"] > 0.0
     assert_agree(coarse, exact)
 
@@ -95,12 +80,12 @@ def test_equal_samples_are_one_motion():
         ({"lateral": [0.0, 1.0, 0.0]}, "lateral"),
         ({"lateral": SINE, "forward": SINE[1:]}, "forward"),
         ({"lateral": SINE, "load": SINE}, "load"),
+        ({"load": 1.0 + SINE, "indentation": 1.0 + SINE}, "indentation"),
         ({}, "forward"),
         ({"foo": SINE}, "columns"),
         ({"lateral": 0.0 * SINE}, "lateral"),
     ],
 )
 def test_bad_samples_are_refused_by_name(columns, argument):
-    with pytest.raises(InputError) as error:
+    with pytest.raises(InputError, match=f"^{argument} = "):
         sampled(**columns)
-    assert error.value.argument == argument

@@ -3,25 +3,17 @@
 import math
 
 import pytest
-from hypothesis import given, settings
-from hypothesis import strategies as st
 from scipy.integrate import quad
 from scipy.optimize import brentq
 
 import microslip
-from microslip.theory import hertz, paper
+from microslip.theory import hertz
 from microslip.theory.exact import largest_drop_bore, largest_drop_transverse
-
-ratios = st.floats(-6.0, 6.0).map(lambda x: 10**x)
-amplitudes = st.floats(-6.0, 3.0).map(lambda x: 10**x)
 
 
 def largest_root(surplus, high):
     """Largest d in 0..high at which ``surplus`` turns from positive to negative."""
     return brentq(surplus, 1e-14, high, xtol=1e-15, rtol=1e-13)
-
-
-# Bounds from the work balance of a period
 
 
 @pytest.mark.parametrize("ratio", [0.8, 1.0, 2.0, 30.0])
@@ -47,39 +39,19 @@ def test_bore_drop_is_what_the_work_balance_allows(velocity):
     assert largest_drop_bore(velocity, 0.7) == pytest.approx(expected, rel=1e-9)
 
 
-# Limits
-
-
-# Frictions within the bounds
-
-
-@pytest.mark.slow
-@settings(max_examples=300, deadline=None, derandomize=True)
-@given(ratios, amplitudes)
-def test_rigid_contacts_lie_within(ratio, amplitude):
-    rigid = float(paper.large_amplitude_transverse(ratio * amplitude, amplitude))
-    assert 1.0 - largest_drop_transverse(ratio * amplitude, amplitude) <= rigid + 1e-14
-    rigid = float(paper.large_amplitude_bore(ratio))
-    assert 1.0 - largest_drop_bore(ratio, amplitude) <= rigid + 1e-14
-
-
 NUMERICAL = [
-    *(("transverse", "radial", 0.0, r * a, a) for r in (0.75, 1.0, 3.0) for a in (0.3, 3.0, 40.0)),
-    *(("transverse", "slider", 0.0, r * a, a) for r in (0.75, 1.0, 3.0) for a in (0.3, 3.0, 40.0)),
-    *(("transverse", "polar", nu, 1.2 * a, a) for nu in (0.2, 0.5) for a in (0.5, 5.0)),
-    *(("bore", "polar", nu, v, 2.0) for nu in (0.0, 0.3, 0.5) for v in (1.5, 3.0)),
-    *(("bore", "polar", 0.3, 1.6, a) for a in (0.3, 20.0)),
+    *(("transverse", "radial", 0.0, r * a, a) for r in (0.75, 3.0) for a in (0.3, 40.0)),
+    ("transverse", "slider", 0.0, 3.0, 3.0),
+    ("transverse", "polar", 0.5, 6.0, 5.0),
+    *(("bore", "polar", 0.5, 1.5, a) for a in (0.3, 2.0, 20.0)),
 ]
 
 
 @pytest.mark.parametrize(("motion", "model", "nu", "velocity", "amplitude"), NUMERICAL)
-def test_elastic_contacts_lie_within(motion, model, nu, velocity, amplitude):
+def test_contacts_lie_within(motion, model, nu, velocity, amplitude):
     drop = {"transverse": largest_drop_transverse, "bore": largest_drop_bore}[motion]
     result = microslip.solve(motion, velocity, amplitude, poisson=nu, model=model, tolerance=2e-3)
     assert result.model == model and result.converged
     lowest = 1.0 - drop(velocity, amplitude)
     assert 0.0 < lowest <= result.mu_macro + result.mu_macro_error
     assert result.mu_macro - result.mu_macro_error <= 1.0
-
-
-# Width of the bounds

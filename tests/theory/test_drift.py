@@ -31,8 +31,5 @@ def test_ends(drift):
     assert np.isinf(drift(1.0, 1.0)) and np.isinf(drift(1.5, 1.0))
     with pytest.raises(ValueError, match="force = -0.1"):
         drift(-0.1, 1.0)
-
-
-def test_a_force_that_rounding_does_not_tell_from_full_friction_is_refused():
     with pytest.raises(InputError, match="force = 0.99999999999999: allowed are forces up to"):
-        bore_drift(1.0 - 1e-14, 1.0)
+        bore_drift(1.0 - 1e-14, 1.0)  # rounding does not tell it from full friction

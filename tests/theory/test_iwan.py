@@ -6,7 +6,6 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import microslip
-from microslip.foundation.errors import InputError
 from microslip.scene.by_name import pressure_named
 
 PRESSURES = ("hertz", "power:exponent=1", "power:exponent=4", "punch:flat=0.8")
@@ -76,20 +75,3 @@ def test_the_error_contains_the_effect_of_poissons_ratio():
     difference = np.abs(model.force(path) - full.force_forward)
     assert np.all(difference <= model.error + full.force_error[:, 0])
     assert difference.max() > 3.0 * model.force_error.max()  # so that the discretisation is smaller
-
-
-@pytest.mark.parametrize(
-    ("arguments", "name"),
-    [
-        ({"pressure": "ring"}, "pressure"),
-        ({"pressure": "ellipse", "poisson": 0.3}, "pressure"),
-        ({"elements": 0}, "elements"),
-        ({"elements": 3, "tolerance": 1e-3}, "elements"),
-        ({"tolerance": 0.0}, "tolerance"),
-        ({"poisson": 0.6}, "poisson"),
-    ],
-)
-def test_bad_arguments_are_refused_by_name(arguments, name):
-    with pytest.raises(InputError) as error:
-        microslip.iwan(**arguments)
-    assert error.value.argument == name

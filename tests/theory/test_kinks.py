@@ -8,43 +8,33 @@ from microslip.scene.hertz import HERTZ
 from microslip.theory import masing, oscillating_load
 from microslip.theory.exact import kink_velocity, kinks_of
 
-AMPLITUDES = (0.2, 0.6, 1.0, 1.7)
-PULLED_BACK = 0.97
-"""Velocity over that of a kink, at which friction is not full."""
-
-
-def load_oscillates(velocity, amplitude):
-    return oscillating_load.friction(velocity, amplitude, True, HERTZ)
-
-
-def indentation_oscillates(velocity, amplitude):
-    pressure = pressure_named("power:exponent=1")
-    return oscillating_load.friction(velocity, amplitude, False, pressure)
+POWER = pressure_named("power:exponent=1")
 
 
 def along(velocity, amplitude):
-    curve = pressure_named("power:exponent=1").loading
-    return float(masing.longitudinal(velocity, amplitude, curve))
+    return float(masing.longitudinal(velocity, amplitude, POWER.loading))
+
+
+def pressed(velocity, amplitude):
+    return oscillating_load.friction(velocity, amplitude, False, POWER)
 
 
 @pytest.mark.parametrize(
-    ("motion", "pressure", "friction"),
-    [
-        ("longitudinal", "power:exponent=1", along),
-        ("normal:indentation=1", "power:exponent=1", indentation_oscillates),
-    ],
+    ("motion", "friction"), [("longitudinal", along), ("normal:indentation=1", pressed)]
 )
-def test_friction_is_full_from_the_velocity_of_the_kink_on(motion, pressure, friction):
-    for amplitude in AMPLITUDES:
-        at = float(kink_velocity(kinks_of(motion, pressure), np.array(amplitude)))
+def test_friction_is_full_from_the_velocity_of_the_kink_on(motion, friction):
+    for amplitude in (0.2, 0.6, 1.0, 1.7):
+        at = float(kink_velocity(kinks_of(motion, POWER.name), np.array(amplitude)))
         assert at == pytest.approx(amplitude)
         assert friction(at, amplitude) == pytest.approx(1.0, abs=1e-9)
-        assert friction(PULLED_BACK * at, amplitude) < 1.0 - 1e-5
+        assert friction(0.97 * at, amplitude) < 1.0 - 1e-5
 
 
 def test_a_load_that_oscillates_takes_nothing_from_a_little_below_its_kink_on():
     """The border is at most 5 % above the kink."""
     for amplitude in (0.1, 0.3, 0.6, 0.9, 1.0):
         at = float(kink_velocity(kinks_of("normal"), np.array(amplitude)))
-        assert load_oscillates(1.001 * at, amplitude) == pytest.approx(1.0, abs=1e-9)
-        assert load_oscillates(0.95 * at, amplitude) < 1.0 - 1e-6
+        full, less = (
+            oscillating_load.friction(share * at, amplitude, True, HERTZ) for share in (1.001, 0.95)
+        )
+        assert full == pytest.approx(1.0, abs=1e-9) and less < 1.0 - 1e-6

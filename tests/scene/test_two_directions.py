@@ -1,12 +1,10 @@
-"""The elliptic motion: special cases, other models and limits."""
+"""Motions along two directions: special cases, other models and limits."""
 
 import numpy as np
 import pytest
 from stubs.agreement import assert_agree
 
 import microslip
-
-CIRCLE = "elliptic"
 
 
 def mean_of_rigid(velocity, forward, lateral, lead):
@@ -17,27 +15,31 @@ def mean_of_rigid(velocity, forward, lateral, lead):
     return np.mean(ahead / np.hypot(ahead, lateral * np.cos(t)))
 
 
-def test_without_a_forward_part_it_is_the_transverse_motion():
-    one = microslip.solve("elliptic:forward=0", 0.1, 0.7)
-    other = microslip.solve("transverse", 0.1, 0.7)
-    assert one.mu_macro == other.mu_macro
-    assert microslip.solve("elliptic:forward=0", 0.0, 0.7, model="radial").converged
+@pytest.mark.parametrize("motion", ["elliptic:forward=0", "transverse-bore:angle=0"])
+def test_what_oscillates_sideways_alone_is_the_transverse_motion(motion):
+    one, other = (microslip.solve(name, 0.1, 0.7) for name in (motion, "transverse"))
+    assert (one.mu_macro, one.model) == (other.mu_macro, "radial")
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize(
-    "motion",
+    ("motion", "velocity", "amplitude", "settings"),
     [
-        pytest.param(CIRCLE, marks=pytest.mark.long),
-        pytest.param("elliptic:phase=0", marks=pytest.mark.long),
-        pytest.param("elliptic:forward=0.5,phase=30", marks=pytest.mark.long),
-        "elliptic:forward_cycles=2",
+        ("elliptic:forward=0.5,phase=30", 0.1, 0.5, {}),
+        ("elliptic:forward_cycles=2", 0.1, 0.5, {}),
+        ("transverse-bore", 0.1, 0.8, {}),
+        ("transverse-bore:angle=0.4,phase=50", 0.3, 2.0, {"poisson": 0.5}),
+        ("transverse-bore:phase=90", 0.2, 0.5, {"pressure": "power:exponent=1"}),
     ],
 )
-def test_rings_and_squares_agree(motion):
-    rings = microslip.solve(motion, 0.1, 0.5)
-    imposed = {"model": "cartesian", "cells": 24, "steps": 96, "tolerance": None}
-    assert_agree(rings, microslip.solve(motion, 0.1, 0.5, **imposed))
+def test_rings_and_squares_agree(motion, velocity, amplitude, settings):
+    """Rings alone, or with angular points of the whole disc."""
+    place = {"velocity": velocity, "amplitude": amplitude, "tolerance": 5e-3, **settings}
+    rings, squares = (
+        microslip.solve(motion, **place, model=model) for model in ("auto", "cartesian")
+    )
+    assert rings.model in ("radial", "polar")
+    assert_agree(rings, squares)
 
 
 @pytest.mark.parametrize(("forward", "phase"), [(1.0, 90), (0.5, 45), (1.0, 0)])
@@ -69,3 +71,8 @@ def test_an_ellipse_without_a_lateral_part_is_the_longitudinal_motion():
     exact = microslip.solve("longitudinal", 0.1, 0.5)
     assert line.model == exact.model
     assert line.mu_macro == pytest.approx(exact.mu_macro, abs=1e-9)
+
+
+def test_a_rigid_contact_that_knows_half_of_itself_says_so():
+    with pytest.raises(ValueError, match="symmetry between the two halves of the contact"):
+        microslip.solve("transverse-bore", 0.1, 0.5, model="rigid")
