@@ -43,33 +43,18 @@ def test_a_file_that_cannot_be_read_is_one_line(tmp_path):
     assert refusal(path) == f"{path}: cannot be read: No such file or directory"
 
 
-BOMB = "a0: &a0 [x]\n" + "".join(
-    f"a{i}: &a{i} [{', '.join([f'*a{i - 1}'] * 10)}]\n" for i in range(1, 8)
-)
-MERGED = "a0: &a0 {x: 1}\n" + "".join(
-    f"a{i}: &a{i} {{<<: [{', '.join([f'*a{i - 1}'] * 10)}]}}\n" for i in range(1, 8)
-)
-
-
-@pytest.mark.parametrize("text", [BOMB, MERGED], ids=["lists", "merged"])
-def test_aliases_that_stand_for_millions_of_values_are_refused(text, tmp_path, monkeypatch):
+@pytest.mark.parametrize("item", ["[%s]", "{<<: [%s]}"], ids=["lists", "merged"])
+def test_aliases_that_stand_for_millions_of_values_are_refused(item, tmp_path, monkeypatch):
     """The values are refused before they are constructed."""
     monkeypatch.setattr(
         load.Loader, "construct_document", lambda *args: pytest.fail("it was constructed")
     )
     path = tmp_path / "sweep.yaml"
-    path.write_text(text)
+    lines = [f"a{i}: &a{i} {item % ', '.join([f'*a{i - 1}'] * 10)}\n" for i in range(1, 8)]
+    path.write_text("".join(["a0: &a0 {x: 1}\n", *lines]))
     message = refusal(path)
     assert message.startswith(f"{path}: ")
     assert "more than 100000 values" in message
-
-
-def test_aliases_within_reason_are_values_as_any_other(tmp_path):
-    path = tmp_path / "sweep.yaml"
-    first = "transverse: &t {motion: transverse, velocity: [1, 2], amplitude: [0, 1]}"
-    path.write_text(f"sweeps:\n  {first}\n  bore: {{<<: *t, motion: bore}}\n")
-    bore = load.load(path).sweeps["bore"]
-    assert (bore.motion, bore.velocity) == ("bore", (1.0, 2.0))
 
 
 def test_a_configuration_without_an_end_is_refused(tmp_path):

@@ -1,6 +1,5 @@
 """Configurations: defaults, axes, numbers of YAML 1.2, files, and the reference of all keys."""
 
-import itertools
 import json
 import shutil
 import subprocess
@@ -15,9 +14,7 @@ from stubs.sweep_stub import configured
 from microslip.config import load as config
 from microslip.config.load import ConfigError, load
 from microslip.config.settings import Sweep
-from microslip.contact.registry import MODELS
-from microslip.scene.by_name import motion_named, pressure_named
-from microslip.scene.problem import Problem
+from microslip.scene.by_name import pressure_named
 from microslip.sweeps import request
 
 ROOT = Path(__file__).parents[2]
@@ -28,17 +25,6 @@ def saved(folder, text):
     path = folder / "sweep.yaml"
     path.write_text(text)
     return path
-
-
-def test_defaults_are_filled_in(tmp_path):
-    result = load(saved(tmp_path, GOOD))
-    assert (result.results, result.studies) == ("results", {})
-    sweep = result.sweeps["transverse"]
-    assert (sweep.poisson, sweep.dims) == ((0.0,), ("amplitude", "velocity"))
-    assert (sweep.model, sweep.tolerance, sweep.cells, sweep.steps) == ("auto", 1e-3, None, None)
-    run = {"velocity": 0.1, "amplitude": 1.0, "periods": 4, "cells": None, "steps": None}
-    assert result.figures["forces"].run == run
-    assert list(result.datasets) == ["transverse", "bore", "continuous_bore"]
 
 
 def test_a_byte_order_mark_and_line_ends_of_windows_do_no_harm(tmp_path):
@@ -97,23 +83,13 @@ def test_shipped_configurations_are_good_and_jobs_read_the_same(path):
     assert len({load(other).results for other in SHIPPED}) == len(SHIPPED)
 
 
-def test_the_default_configuration_is_that_of_the_paper_on_a_page():
-    path = ROOT / "config" / "config.yaml"
-    assert len(path.read_text().splitlines()) <= 40
-    result = load(path)
+def test_the_default_configuration_has_the_maps_and_figures_of_the_paper():
+    result = load(ROOT / "config" / "config.yaml")
     for name, top in (("transverse", 3.0), ("bore", 5.0)):
-        sweep = result.sweeps[name]
-        assert len(sweep.velocity) == len(sweep.amplitude) == 25
-        assert (sweep.amplitude[0], sweep.amplitude[-1]) == (0.0, top)
-        assert (sweep.velocity[0], sweep.velocity[-1]) == (1e-3, 10.0)
-    assert {0.1, 1.0, 10.0} <= set(result.sweeps["continuous_bore"].velocity)
+        velocity, amplitude = result.sweeps[name].velocity, result.sweeps[name].amplitude
+        assert (velocity[0], velocity[-1], len(velocity)) == (1e-3, 10.0, 25)
+        assert (amplitude[0], amplitude[-1], len(amplitude)) == (0.0, top, 25)
     assert [name[:4] for name in result.figures] == [f"fig{i}" for i in range(1, 7)]
-
-
-@pytest.mark.parametrize("title", ["", "  ", "x" * 101, "two\nlines", "\x00", "\ud800", "\u2028"])
-def test_titles_that_cannot_be_drawn_or_written_are_refused(title):
-    with pytest.raises(ConfigError, match=r"^configuration: sweeps.bore.title: .*allowed: text on"):
-        configured({"bore": {"velocity": 1, "title": title}})
 
 
 def test_the_tables_of_all_keys_are_those_of_the_models(tmp_path):
@@ -124,36 +100,6 @@ def test_the_tables_of_all_keys_are_those_of_the_models(tmp_path):
         [sys.executable, ROOT / "docs" / "make_configuration_tables.py", copy], check=True
     )
     assert copy.read_text() == (ROOT / "config" / "README.md").read_text()
-
-
-def test_models_are_refused_here_exactly_where_the_solver_refuses_them():
-    for motion in ("transverse", "bore", "continuous-bore"):
-        for model, poisson in itertools.product(MODELS, (0.0, 0.3)):
-            amplitude = {} if motion == "continuous-bore" else {"amplitude": 1.0}
-            sweep = {"motion": motion, "velocity": 1, "model": model, "poisson": poisson}
-            result = configured({"a": sweep | amplitude})
-            try:
-                config.refuse_unsolvable(result)
-                refused = False
-            except ConfigError:
-                refused = True
-            problem = Problem(motion_named(motion), 1.0, amplitude.get("amplitude"), poisson)
-            assert refused == bool(MODELS[model].refuses(problem))
-
-
-@pytest.mark.parametrize(
-    ("sweep", "line"),
-    [
-        ({"stiffness": 0, "velocity": 1}, "a.stiffness: 0.0: allowed is a finite number of at"),
-        ({"force": [0.1, 2], "stiffness": 1}, "a.stiffness: 1.0: allowed is none beside a force"),
-        ({"mass": 1, "velocity": 1}, "a.mass: 1.0: allowed beside a stiffness alone"),
-        ({"model": "mdr", "force": 0.5}, "a.model: 'mdr'"),
-    ],
-)
-def test_drives_that_the_solver_refuses_are_refused_before_any_job(sweep, line):
-    result = configured({"a": {"motion": "bore", "amplitude": 1} | sweep})
-    with pytest.raises(ConfigError, match=f"^configuration: sweeps.{line}"):
-        config.refuse_unsolvable(result)
 
 
 # Files

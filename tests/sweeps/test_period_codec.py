@@ -1,6 +1,5 @@
 """Stored periods: unpacked tractions, slips and forces equal the computed ones."""
 
-import json
 from unittest.mock import Mock
 
 import numpy as np
@@ -39,13 +38,6 @@ def test_a_stored_period_is_the_computed_one_within_half_a_step(point, tmp_path)
     density = truth.dissipated_energy_density / truth.dissipated_energy_density.max()
     assert result["densities"] == pytest.approx(density, abs=1e-3)
     assert (result["mu_macro"], result["converged"]) == (truth.mu_macro, truth.converged)
-
-
-def test_a_stored_period_takes_few_bytes():
-    whole = microslip.period("bore", 0.1, 1.0, **COUNTS)
-    everything = json.dumps(evaluate.plain(whole.to_dict()))
-    result = evaluate.computed(asked(("bore", "0.1", "1", "0")))
-    assert len(json.dumps(result)) < 0.1 * len(everything)
 
 
 def test_where_there_is_no_state_a_result_says_so(monkeypatch):
