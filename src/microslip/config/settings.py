@@ -14,6 +14,8 @@ from pydantic import BaseModel, ConfigDict, Field, model_validator
 from pydantic_core import CoreSchema, core_schema
 
 from microslip.config.kinds import KINDS
+from microslip.config.quantities import DRIVES
+from microslip.contact.registry import MODELS
 from microslip.foundation.arguments import LARGEST
 from microslip.foundation.canonical import number
 from microslip.foundation.errors import InputError, shown
@@ -34,8 +36,6 @@ SHARE_OF_POINTS = 0.3
 """Default tolerance of the points in a certified map, divided by its error."""
 STATIC_AMPLITUDES = {"transverse": 1.0, "bore": 5.0}
 """Largest amplitude with static friction in the maps of the paper, for each motion."""
-DRIVES = ("mass", "damping", "stiffness", "force")
-"""Parameters of a drive, in the order of dataset dimensions."""
 AXES = ("mass", "damping", "stiffness", "poisson", "amplitude", "velocity", "force")
 """Axes of a sweep, in the order of dataset dimensions."""
 STUDIES = ("accuracy", "stability", "claims")
@@ -230,7 +230,7 @@ _METHOD = Allowed(
     lambda text: text if split_method(text) else None,
 )
 _METHODS = _list(_METHOD, "a list of methods, or null for all")
-_MODEL = _one_of("auto", "rigid", "slider", "dahl", "mdr", "radial", "polar", "cartesian")
+_MODEL = _one_of("auto", *MODELS)
 _POSITIVE = _number(0, LARGEST["velocity"], above=True)
 _SWEEP = _text("the name of a sweep", ".*")
 _FOLDER = _text(
