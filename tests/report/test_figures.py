@@ -8,15 +8,11 @@ import xarray as xr
 from matplotlib.lines import Line2D
 from matplotlib.patches import Rectangle
 from stubs import figures_stub as stub
-from stubs.figures_stub import artists, words
+from stubs.figures_stub import artists, draw, words
 
-from microslip.report.figures import drawing, runs
+from microslip.report.figures import runs
 
 pytestmark = [pytest.mark.slow, pytest.mark.usefixtures("without_layout")]
-
-
-def draw(kind, *datasets):
-    return drawing.draw(kind, dict(enumerate(datasets)))
 
 
 def ordinates(figure, *gids):
@@ -138,7 +134,7 @@ def test_a_limit_from_theory_is_drawn_on_its_finer_axis_where_it_holds(poisson, 
 def test_the_points_of_all_drives_are_drawn_over_velocity_and_over_mass():
     datasets = stub.pulled()
     datasets["drive_body"].attrs["drive"] = "mass, stiffness"
-    left, right = drawing.draw("curves", datasets).axes
+    left, right = draw("curves", *datasets.values()).axes
     velocity, force, soft, stiff = artists(left, "computed")
     assert np.array_equal(velocity.get_ydata(), datasets["transverse"]["mu_macro"][0])
     assert soft.get_ydata() == pytest.approx(stiff.get_ydata() - 0.1)

@@ -28,17 +28,13 @@ each = pytest.mark.parametrize(
 )
 
 
-def draw(name):
-    kind, datasets = FIGURES[name]
-    return drawing.draw(kind, dict(enumerate(datasets)))
-
-
 @cache
 def drawn(name):
     """A figure, which is drawn once and without a warning."""
     with warnings.catch_warnings():
         warnings.simplefilter("error")
-        figure = draw(name)
+        kind, datasets = FIGURES[name]
+        figure = stub.draw(kind, *datasets)
     figure.draw_without_rendering()  # places the titles
     return figure
 
@@ -47,7 +43,7 @@ def drawn(name):
 def test_its_files_are_complete_and_reproducible(name, tmp_path, monkeypatch):
     """Two drawings have the same pixels. The PDF is complete and has no date."""
     monkeypatch.setattr(PdfFile, "writeFonts", lambda f: f.writeObject(f.fontObject, {}))
-    figures = drawn(name), draw(name)
+    figures = drawn(name), drawn.__wrapped__(name)
     pictures = [drawing.save(f, tmp_path / f"{k}.png").read_bytes() for k, f in enumerate(figures)]
     assert pictures[0] == pictures[1]
     page = drawing.save(figures[1], tmp_path / "page.pdf").read_bytes()

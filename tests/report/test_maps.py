@@ -11,9 +11,9 @@ from matplotlib.legend import Legend
 from matplotlib.mathtext import MathTextParser
 from matplotlib.text import Text
 from stubs import figures_stub as stub
-from stubs.figures_stub import artists, words
+from stubs.figures_stub import artists, draw, words
 
-from microslip.report.figures import drawing, maps
+from microslip.report.figures import maps
 from microslip.report.figures import style as look
 from microslip.scene.by_name import MOTIONS, motion_named
 from microslip.theory import paper
@@ -21,13 +21,9 @@ from microslip.theory import paper
 pytestmark = [pytest.mark.slow, pytest.mark.usefixtures("without_layout")]
 
 
-def draw(*datasets, kind="map"):
-    return drawing.draw(kind, dict(enumerate(datasets)))
-
-
 def contours_of(dataset):
     """The panel of a map, and its contours."""
-    axes = artists(draw(dataset), "map")[0]
+    axes = artists(draw("map", dataset), "map")[0]
     (lines,) = artists(axes, "contours")
     return axes, lines
 
@@ -66,13 +62,13 @@ def test_a_number_is_on_its_contour_apart_from_the_others_inside_the_frame():
 
 def test_a_group_is_drawn_with_one_scale_and_shared_labels():
     data = [stub.spanning("second"), stub.spanning("first")]
-    figure = draw(*data)
+    figure = draw("map", *data)
     titles = [axes.get_title(loc="left") for axes in artists(figure, "map")]
     assert [title.split()[-1] for title in titles] == ["second", "first"]
     (bar,) = [axes for axes in figure.axes if axes.get_label() == "<colorbar>"]
     assert bar.get_ylim() == (0, 1)
     assert words(figure).count(r"$x_{0}/u_{\mathrm{lim}}$") == 1
-    figure = draw(*data, stub.spanning("c", formula="phi0 / phi_lk(a/2)"))
+    figure = draw("map", *data, stub.spanning("c", formula="phi0 / phi_lk(a/2)"))
     labels = [axes.get_ylabel() for axes in artists(figure, "map")]
     formulas = r"$x_{0}/u_{\mathrm{lim}}$", r"$\varphi_{0}/\varphi_{\mathrm{lk}}(a/2)$"
     assert all(one in label for one, label in zip(formulas, labels[::2], strict=True))
@@ -84,7 +80,7 @@ def test_friction_below_zero_widens_the_scale_of_all():
     assert scale.fills[[0, -1]] == pytest.approx((-0.3, 1.0)) and 0 in scale.lines
     rounded = maps.friction([stub.spanning(shift=-0.004)])  # within the error of the points
     assert tuple(rounded.fills[[0, -1]]) == (0.0, 1.0)
-    axes = draw(negative, stub.spanning("b")).axes[0]
+    axes = draw("map", negative, stub.spanning("b")).axes[0]
     (bands,) = [one for one in axes.collections if len(getattr(one, "levels", ())) > 20]
     middles = (bands.levels[1:] + bands.levels[:-1]) / 2
     expected = scale.colours(scale.norm(middles))[:, :3]
@@ -95,16 +91,16 @@ def test_friction_below_zero_widens_the_scale_of_all():
 
 
 def test_all_of_poissons_ratios_are_drawn():
-    figure = draw(stub.at_ratios(stub.spanning("a"), 0.0, 0.3), stub.spanning("b"))
+    figure = draw("map", stub.at_ratios(stub.spanning("a"), 0.0, 0.3), stub.spanning("b"))
     heads = [axes.get_title(loc="left") for axes in artists(figure, "map")]
     assert [r"$\nu = 0.3$ less $0$" in head for head in heads] == [False, True, False]
     bars = [axes.get_ylabel() for axes in figure.axes if axes.get_label() == "<colorbar>"]
     assert ["change of" in label for label in bars] == [False, True]
     static = stub.at_ratios(stub.static("a"), 0.0, 0.3).drop_vars("mu_macro_change")
-    (legend,) = draw(static, stub.static("b"), kind="curves").findobj(Legend)
+    (legend,) = draw("curves", static, stub.static("b")).findobj(Legend)
     labels = [text.get_text() for text in legend.get_texts()]
     assert labels == [r"a, $\nu = 0$", r"a, $\nu = 0.3$", "b"]
-    figure = draw(stub.at_ratios(stub.fake_bore(), *np.linspace(0, 0.5, 11)))
+    figure = draw("map", stub.at_ratios(stub.fake_bore(), *np.linspace(0, 0.5, 11)))
     assert len(artists(figure, "map")) == 11 and len(artists(figure, "computed")) == 22
 
 
@@ -130,7 +126,7 @@ FINER = COARSE.interp(velocity=np.geomspace(0.011, 9, 20), amplitude=np.linspace
 )
 def test_every_value_of_a_map_is_visible_as_colour_or_marker(dataset, values, note, ratios):
     """Half of the points of some maps have no value, so that no cell of them has a colour."""
-    figure = draw(stub.at_ratios(dataset, *ratios) if len(ratios) > 1 else dataset)
+    figure = draw("map", stub.at_ratios(dataset, *ratios) if len(ratios) > 1 else dataset)
     canvas = FigureCanvasAgg(figure)
     canvas.draw()
     image = np.asarray(canvas.buffer_rgba())[::-1, :, :3].min(axis=2)
@@ -145,14 +141,16 @@ def test_every_value_of_a_map_is_visible_as_colour_or_marker(dataset, values, no
 @pytest.mark.parametrize("velocity", [0.1, 1e-3])
 def test_figure_2_names_the_velocities_of_the_markers_and_of_the_limits(velocity):
     dataset = stub.fake_transverse(5).assign_coords(velocity=velocity * np.geomspace(1, 100, 5))
-    text = words(draw(dataset))
+    text = words(draw("map", dataset))
     assert f"markers: $\\tilde v_0 = {look.number(velocity)}$" in text.replace("{v}", " v")
     assert "\\to 0$" in text
 
 
 def test_all_computed_values_of_a_cut_are_inside_its_panel():
     """Values can exceed 1, and static friction can vanish well before the largest amplitude."""
-    markers = artists(draw(stub.at_ratios(stub.fake_transverse(9), 0.0, 0.2, 0.5)), "computed")
+    markers = artists(
+        draw("map", stub.at_ratios(stub.fake_transverse(9), 0.0, 0.2, 0.5)), "computed"
+    )
     assert len(markers) == 6
     for line in markers:
         box = line.axes.get_window_extent().padded(1)
@@ -166,7 +164,7 @@ TITLES += ["it ends in \\", r"\$ and $"]
 
 @pytest.mark.parametrize(("kind", "made"), [("map", stub.spanning), ("curves", stub.static)])
 def test_titles_are_drawn_verbatim(kind, made):
-    figure = draw(*map(made, TITLES), kind=kind)
+    figure = draw(kind, *map(made, TITLES))
     figure.draw_without_rendering()  # parses them
     texts = [text.get_text() for text in figure.findobj(Text)]
     plain = [re.sub(r"(?<!\\)\$(?:\\\$|[^$])*(?<!\\)\$", "", text) for text in texts]

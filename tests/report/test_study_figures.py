@@ -8,9 +8,9 @@ import xarray as xr
 from matplotlib.colors import to_hex
 from matplotlib.legend import Legend
 from stubs import figures_stub as stub
-from stubs.figures_stub import artists, words
+from stubs.figures_stub import artists, draw, words
 
-from microslip.report.figures import drawing, studies
+from microslip.report.figures import studies
 
 pytestmark = [pytest.mark.slow, pytest.mark.usefixtures("without_layout")]
 
@@ -23,7 +23,7 @@ def made():
 
 def panels_of(kind, dataset) -> list:
     """Panels of an accuracy figure with the trials of their points."""
-    panels = [axes for axes in drawing.draw(kind, {"accuracy": dataset}).axes if axes.axison]
+    panels = [axes for axes in draw(kind, dataset).axes if axes.axison]
     points = [dataset["trial_point"].values == str(point) for point in dataset["point"].values]
     return [(one, dataset.isel(trial=own)) for one, own in zip(panels, points, strict=True)]
 
@@ -65,7 +65,7 @@ def test_every_trial_and_the_front_are_drawn_and_no_failure_is_hidden(kind, cost
 
 
 def test_a_profile_shows_the_share_of_points_within_a_ratio_of_the_best(made):
-    figure = drawing.draw("accuracy_profile", {"accuracy": made["accuracy"]})
+    figure = draw("accuracy_profile", made["accuracy"])
     data = made["accuracy"]
     tightest = data.isel(map_tolerance=int(np.argmin(data["map_tolerance"].values)))
     names, looks = tightest["competitor"].values.tolist(), set()
@@ -88,7 +88,7 @@ def cheapest(names, velocity, amplitude):
         dims = ("map_tolerance", f"{motion}_amplitude", f"{motion}_velocity")
         data |= {f"{motion}_cheapest": (dims, names[None]), dims[1]: (dims[1], amplitude)}
         data[dims[2]] = dims[2], velocity
-    return drawing.draw("model_map", {"accuracy": xr.Dataset(data)})
+    return draw("model_map", xr.Dataset(data))
 
 
 def test_the_map_colours_and_names_every_region_of_the_cheapest_model():
@@ -122,7 +122,7 @@ def test_the_atlas_shows_every_outcome(made):
     data = made["stability"].copy(deep=True)
     data["outcome"][:] = np.arange(data["outcome"].size).reshape(data["outcome"].shape) % 5
     data["outcome"].loc[{"method": "midpoint"}] = 0  # the method applies to no case
-    figure = drawing.draw("stability_atlas", {"stability": data})
+    figure = draw("stability_atlas", data)
     methods = [label.get_text() for label in figure.axes[0].get_xticklabels()]
     assert methods[0] == "shipped" and "midpoint" not in methods
     # As a dict, because sel has another keyword `method`.

@@ -9,6 +9,7 @@ from stubs import certified_stub, claims_stub, studies_stub
 
 from microslip.config.kinds import KINDS
 from microslip.datasets.catalogue import DRIFT_FORMS, FORMS
+from microslip.report.figures import drawing
 from microslip.theory import paper
 
 VELOCITY = "v0 / (omega u_lim)"
@@ -278,6 +279,11 @@ def every_figure() -> dict[str, tuple[str, list]]:
         **{f"{n} maps": ("map", motions[:n]) for n in (1, 5, 12)},
         "lines": ("curves", [static("a"), static("b")]),
     }
+
+
+def draw(kind, *datasets):
+    """A figure of datasets."""
+    return drawing.draw(kind, dict(enumerate(datasets)))
 
 
 def words(figure) -> str:
