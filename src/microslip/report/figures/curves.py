@@ -183,10 +183,9 @@ def cut(axes: Axes, parts: Sequence[xr.Dataset], dim: str, at: xr.DataArray) -> 
         if dim in form.arguments and (dim == "velocity" or len(form.arguments) == 1)
     ]
     for form in forms:
-        (color, ls), values = look.LIMITS[form.name], limit(parts[0], form.name)
+        values = limit(parts[0], form.name)
         values = values.sel({other: value}) if other in values.dims else values
-        ink: look.Ink = {"color": color, "ls": ls, "label": form.label, "gid": form.name}
-        axes.plot(values[values.dims[0]], values, **ink)
+        look.closed_form(axes, values[values.dims[0]], values, form.name, form.label)
     motion, markers = parts[0].attrs.get("motion", ""), ""
     edge = look.conditions(motion, {other: value})
     if dim == "amplitude" and forms and value > 0:

@@ -342,14 +342,13 @@ def _friction(axes: Axes, dataset: xr.Dataset, motion: str) -> None:
     """Draw lines for the limit and the formulas, and markers for the points and the paper's run."""
     amplitude = dataset[f"{motion}_curve_amplitude"].values
     for variable, form in {"limit": STATIC, **FORMULAS[motion]}.items():
-        (color, ls), known = look.LIMITS[form], FORMS[motion][form]
-        ink: look.Ink = {"color": color, "ls": ls, "label": known.equation or known.label}
-        axes.plot(amplitude, dataset[f"{motion}_curve_{variable}"], gid=variable, **ink)
+        values, known = dataset[f"{motion}_curve_{variable}"], FORMS[motion][form]
+        look.closed_form(axes, amplitude, values, form, known.equation or known.label)
     at, run = columns(dataset, f"{motion}_amplitude", f"{motion}_paper")
     for what, name, marker in (("march", "slowest", "v"), ("slow", "paper_velocity", "o")):
         values, errors = columns(dataset, f"{motion}_{what}", f"{motion}_{what}_error")
         label = look.conditions(motion, {"velocity": float(dataset[f"claims_{name}"])})
-        ink = {"label": label, "marker": marker, "clip_on": False}
+        ink: look.Ink = {"label": label, "marker": marker, "clip_on": False}
         look.computed(axes, at, values, errors, np.isfinite(errors), **ink)
     axes.plot(at, run, label=f"the paper's run, {label}", **PAPERS_RUN)
     axes.set_xlim(0.0, max(amplitude[-1], at.max()))

@@ -411,6 +411,12 @@ def unit_range(axes: Axes) -> None:
     axes.yaxis.set_major_locator(ticker.MultipleLocator(0.2))
 
 
+def closed_form(axes: Axes, x: Any, y: Any, name: str, label: str) -> None:
+    """Draw a closed form in its colour and line style. name: its variable in datasets."""
+    color, ls = LIMITS[name]
+    axes.plot(x, y, color=color, ls=ls, label=label, gid=name)
+
+
 def computed(axes: Axes, x: np.ndarray, *points: np.ndarray, label: str = "", **ink: Any) -> None:
     """Draw computed points with error bars. Unconverged points are hollow.
 
