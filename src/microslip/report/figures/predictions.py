@@ -82,28 +82,25 @@ def fit(dataset: xr.Dataset) -> Figure:
     different colours and markers. The line is the model curve, with a band for the model error. A
     row without a model curve has a short dash at the model's friction.
     """
-    about = dict(CONDITIONS)
-    if dataset.attrs.get("motion") == "bore":
-        about["amplitude_si"] = ("amplitude", "rad")
-    counts = {name: len(np.unique(dataset[name])) for name in about}
+    counts = {name: len(np.unique(dataset[name])) for name in CONDITIONS}
     along, *others = sorted(counts, key=lambda name: -counts[name])
     what, si = MEASURED[dataset.attrs["quantity"]]
-    unit, prefixed = look.prefixed(dataset[along].values, about[along][1])
+    unit, prefixed = look.prefixed(dataset[along].values, CONDITIONS[along][1])
     factor, friction = look.prefixed(dataset["measured"].values, si)
     figure = look.new_figure(look.SINGLE, 4.0)
     upper, lower = figure.subplots(2, 1, sharex=True, height_ratios=(2.0, 1.0))
-    names = [*about, "measured", "measured_error", "fitted", "residual"]
+    names = [*CONDITIONS, "measured", "measured_error", "fitted", "residual"]
     groups = list(dataset[names].to_dataframe().groupby(others))
-    models = dataset[[f"curve_{name}" for name in (*about, "fitted", "fitted_error")]]
+    models = dataset[[f"curve_{name}" for name in (*CONDITIONS, "fitted", "fitted_error")]]
     models = models.to_dataframe().rename(columns=lambda name: name.removeprefix("curve_"))
     for k, (place, rows) in enumerate(groups):
         color, marker, ls = look.LINES[k % len(look.LINES)]
         at = zip(others, place, strict=True)
-        texts = [_value(*about[name], value) for name, value in at if counts[name] > 1]
+        texts = [_value(*CONDITIONS[name], value) for name, value in at if counts[name] > 1]
         label = ", ".join(texts) or "measured; line: model"
         ink: look.Ink = {"color": color, "marker": marker}
         ink["label"] = label if len(groups) <= len(look.LINES) else ""
-        x, measured, error, fitted, residual = rows[[along, *names[len(about) :]]].to_numpy().T
+        x, measured, error, fitted, residual = rows[[along, *names[len(CONDITIONS) :]]].to_numpy().T
         good = np.ones(x.size)
         look.computed(upper, x / unit, measured / factor, error / factor, good, **ink)
         lower.plot(x / unit, residual, marker, color=color, ms=3.2, gid="residual")
@@ -121,7 +118,7 @@ def fit(dataset: xr.Dataset) -> Figure:
     look.logarithmic_if_wide(upper, dataset[along].values)
     upper.set_ylabel(f"{what} ({friction or 'dimensionless'})")
     lower.set_ylabel("residual, standard\nerrors (dimensionless)")
-    lower.set_xlabel(f"{about[along][0]} ({prefixed})")
+    lower.set_xlabel(f"{CONDITIONS[along][0]} ({prefixed})")
     handles = upper.get_legend_handles_labels()[0]
     if len(handles) > 1:
         handles.append(Line2D([], [], color=look.GREY, lw=1.0, label="lines: model"))
