@@ -95,7 +95,7 @@ def test_the_page_needs_no_network_and_text_cannot_end_the_script(made, monkeypa
     )
     assert "default-src 'none'" in text and text == page.page(made[2])
     content = json.loads(json.dumps(made[2]))
-    content["made"]["bore"].append(["title", "</script><script>alert(1)"])
+    content["made"].append("</script><script>alert(1)")
     assert page.page(content).count("</script>") == text.count("</script>")
 
 
@@ -213,9 +213,10 @@ def test_unconverged_points_missing_periods_and_hidden_limits(made):
 
 @needs_node
 def test_every_sweep_and_ratio_can_be_chosen(made):
-    names, ready, *values = page_says(
+    names, sources, ready, *values = page_says(
         made[2],
         "element('sweeps').text",
+        "element('made').text",
         "document.body.dataset.ready",
         chosen("along"),
         "[element('map-view').hidden, element('map').data[0].z, element('run').text]",
@@ -229,6 +230,7 @@ def test_every_sweep_and_ratio_can_be_chosen(made):
         "[element('lines-view').hidden, STATE.map.poisson, element('certificate').text]",
     )
     assert names == "Transverse Bore Continuous bore to and fro Still Drift Body" and ready == "yes"
+    assert "periods of the polar model: cells 10, angles 12, steps 32" in sources
     hidden, shown, run = values[1]
     assert (hidden, run) == (False, "The page has no periods of this map.")
     dataset = made[0]["along"].transpose("amplitude", "velocity", ...)

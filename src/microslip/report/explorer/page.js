@@ -227,18 +227,8 @@ function limitAt(given, row, column) {
 }
 
 function tellWhatMade() {
-  for (const made of Object.values(NUMBERS.made)) {
-    const list = document.createElement("dl");
-    for (const [name, text] of made) {
-      const head = document.createElement("dt"), body = document.createElement("dd");
-      const inside = name === "configuration" ? document.createElement("pre") : body;
-      head.textContent = name;
-      inside.textContent = text;
-      if (inside !== body) body.append(inside);
-      list.append(head, body);
-    }
-    element("made").append(list);
-  }
+  const texts = NUMBERS.made.map((text) => Object.assign(document.createElement("pre"), { textContent: text }));
+  element("made").append(...texts);
 }
 
 // Controls

@@ -24,9 +24,9 @@ from microslip.datasets.variables import TABLE
 from microslip.foundation.canonical import number, plain
 from microslip.report.explorer import contact_form
 from microslip.report.explorer.explorer import ASSETS
-from microslip.report.figures import drawing
 from microslip.report.figures import style as look
 from microslip.report.motions import MOTIONS
+from microslip.report.pages import provenance
 from microslip.report.selection import PLANE, at_each_poisson, closed_forms, is_wide, limit, lines
 from microslip.sweeps.period_codec import SHARES
 
@@ -90,7 +90,7 @@ def build(datasets: dict, periods: dict, certified: Sequence = ()) -> dict:
             sweeps.append(about | {"poisson": float(part["poisson"])} | one)
     return {
         "sweeps": sweeps,
-        "made": {name: _provenance(datasets[name], periods.get(name, ())) for name in datasets},
+        "made": [_provenance(datasets[name], periods.get(name, ())) for name in datasets],
         "certified": [contact_form.table(dataset) for dataset in certified],
         "si": contact_form.packed(),
         "errors": ERRORS,
@@ -194,13 +194,11 @@ def _periods(dataset: xr.Dataset, records: Sequence[dict]) -> list:
     return table.tolist()
 
 
-def _provenance(dataset: xr.Dataset, records: Sequence[dict]) -> list[list[str]]:
-    """Return the provenance of a map and its periods as pairs of a name and a text."""
-    provenance = drawing.provenance(dataset)
-    if "configuration" in provenance:
-        provenance["configuration"] = json.dumps(json.loads(provenance["configuration"]), indent=1)
+def _provenance(dataset: xr.Dataset, records: Sequence[dict]) -> str:
+    """Return the provenance of a map and its periods as text."""
+    lines = []
     if records:
         request = records[0]["request"]
         counts = ", ".join(f"{name} {request[name]}" for name in ("cells", "angles", "steps"))
-        provenance["periods"] = f"{len(records)} of the polar model: {counts}"
-    return [[key.replace("_", " "), str(value)] for key, value in provenance.items()]
+        lines.append(f"{len(records)} periods of the polar model: {counts}")
+    return "\n".join(provenance(dataset, lines, ()))
