@@ -78,7 +78,9 @@ def draw(kind: str, datasets: Mapping[str, xr.Dataset]) -> Figure:
         figure.set_layout_engine("none")
         for finish in getattr(figure, "finishing", ()):
             finish()
-    figure.made_from = json.dumps([*map(provenance, datasets.values())], sort_keys=True)
+    attributes = [one.attrs for one in datasets.values()]
+    made = [{key: one[key] for key in PROVENANCE if key in one} for one in attributes]
+    figure.made_from = json.dumps(made, sort_keys=True)
     return figure
 
 
@@ -97,11 +99,6 @@ def import_matplotlib() -> None:
         os.environ["MPLBACKEND"] = backend
         with suppress(ValueError):
             matplotlib.rcParams["backend"] = backend
-
-
-def provenance(dataset: xr.Dataset) -> dict:
-    """Return the attributes of a dataset that are in `PROVENANCE`."""
-    return {key: dataset.attrs[key] for key in PROVENANCE if key in dataset.attrs}
 
 
 def save(figure: Figure, path: str | os.PathLike[str]) -> Path:
