@@ -177,17 +177,18 @@ def test_predictions_have_the_values_of_the_dataset():
     dataset = stub.predictions()
     upper, lower = draw("curve", dataset).axes
     assert lower.get_xlabel() == "speed (mm/s)" and lower.get_xscale() == "log"
-    assert "friction force (N)" in lower.get_ylabel() and "dimensionless" in upper.get_ylabel()
+    assert "friction force (mN)" in lower.get_ylabel() and "dimensionless" in upper.get_ylabel()
     titles = [text.get_text() for text in upper.get_legend().get_texts()]
-    assert titles == ["load 5 N", "not converged", "load 10 N"]
-    for axes, name in ((upper, "mu_apparent"), (lower, "friction_force_N")):
+    assert titles == ["load 50 mN", "not converged", "load 100 mN"]
+    for axes, name, factor in ((upper, "mu_apparent", 1.0), (lower, "friction_force_N", 1e3)):
+        values = factor * dataset[name].values
         _, second = artists(axes, "computed")
         assert second.get_xdata() == pytest.approx([1.0, 10.0, 100.0])
-        assert second.get_ydata() == pytest.approx(dataset[name].values[1])
+        assert second.get_ydata() == pytest.approx(values[1])
         (hollow,) = ordinates(axes, "unconverged")
-        assert hollow == pytest.approx(dataset[name].values[0, 1:2])
+        assert hollow == pytest.approx(values[0, 1:2])
         bars = artists(axes, "error")[1].get_segments()
-        error = 0.01 * dataset[name].values[1, :, None]
+        error = 0.01 * values[1, :, None]
         assert [np.ptp(bar, axis=0) for bar in bars] == pytest.approx(error * [0.0, 2.0])
 
 

@@ -178,7 +178,7 @@ def pulled():
 
 def predictions():
     """Invented predictions over a speed and a load, one of them not converged."""
-    speed, load = np.array([0.001, 0.01, 0.1]), np.array([5.0, 10.0])
+    speed, load = np.array([0.001, 0.01, 0.1]), np.array([0.05, 0.1])
     mu = np.add.outer(0.01 * np.arange(2), 0.1 * np.arange(1, 4))
     force = mu * load[:, None]
     variables = {"mu_apparent": mu, "friction_force_N": force, "converged": mu != 0.2}
