@@ -248,8 +248,8 @@ class Prediction:
         import xarray as xr
 
         columns, attributes = self.columns()
-        variables = {n: ((), columns[n], about) for n, about in attributes.items()}
-        variables = {name: one for name, one in variables.items() if one[1] is not None}
+        numbers = [name for name in attributes if columns[name] is not None]
+        variables = {name: ((), columns[name], attributes[name]) for name in numbers}
         texts = {name: columns[name] or "" for name in (*TEXTS, *REASONS)}
         texts |= {name: "; ".join(columns[name]) for name in ("warnings", "not_checked")}
         texts["inputs"] = "; ".join(f"{name}: {text}" for name, text in self.inputs.items())

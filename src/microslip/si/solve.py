@@ -92,16 +92,15 @@ def solve_at(contact: Contact, velocity: float | None, tolerance: float, **chang
     Raises InputError.  The message names the input of `predict`.
     """
     inputs, settings = contact.inputs, settings_of(contact)
-    amplitude = None if contact.steady else float(contact.amplitude)
     if velocity is not None:
         velocity = min(velocity, arguments.LARGEST["velocity"])
     if inputs.map is not None:
         assert velocity is not None  # a map is not allowed with a force
         friction = FrictionMap(inputs.map, str(contact.motion), settings["pressure"])
-        return friction.solve(velocity, amplitude, settings["poisson"], tolerance)
+        return friction.solve(velocity, settings["amplitude"], settings["poisson"], tolerance)
     try:
         settings |= {"tolerance": tolerance, **changes}
-        return solve(contact.motion, velocity, amplitude, **settings)
+        return solve(contact.motion, velocity, **settings)
     except InputError as error:
         name = INPUT_OF.get(error.argument, "")
         if not changes or name not in inputs.quantities:
@@ -111,8 +110,9 @@ def solve_at(contact: Contact, velocity: float | None, tolerance: float, **chang
 
 
 def settings_of(contact: Contact) -> dict[str, Any]:
-    """Poisson's ratio and pressure for microslip.solve."""
-    return {"poisson": float(contact.poisson), "pressure": contact.pressure}
+    """Amplitude, Poisson's ratio and pressure for microslip.solve."""
+    size = None if contact.steady else float(contact.amplitude)
+    return {"amplitude": size, "poisson": float(contact.poisson), "pressure": contact.pressure}
 
 
 def static_limit(contact: Contact) -> Result:
@@ -127,8 +127,7 @@ def static_limit(contact: Contact) -> Result:
 
 def problem_of(contact: Contact) -> Problem:
     """The dimensionless Problem in the limit of vanishing speed."""
-    amplitude = None if contact.steady else float(contact.amplitude)
-    return limits.problem_of(contact.motion, 0.0, amplitude, **settings_of(contact))
+    return limits.problem_of(contact.motion, 0.0, **settings_of(contact))
 
 
 def largest_force(contact: Contact) -> float:
@@ -243,9 +242,8 @@ def _rest(contact: Contact) -> tuple[dict[str, Value], str]:
         return {}, "computed for a round contact only"
     from microslip.answer.force import shakedown  # late: compiled code
 
-    amplitude, force = float(contact.amplitude), float(drive["force"])
     try:
-        rest = shakedown(contact.motion, amplitude, force, **settings_of(contact))
+        rest = shakedown(contact.motion, force=float(drive["force"]), **settings_of(contact))
     except InputError as error:  # a motion that exerts a forward force by itself
         return {}, error.allowed
     if not rest.converged:
