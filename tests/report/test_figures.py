@@ -145,10 +145,16 @@ def test_the_points_of_all_drives_are_drawn_over_velocity_and_over_mass():
     assert len(artists(right, "computed")) == 2 and right.get_xscale() == "log"
 
 
+def test_each_of_many_lines_has_its_own_colour_and_marker():
+    (axes,) = draw("curves", stub.many_lines()).axes
+    marks = [(one.get_color(), one.get_marker()) for one in artists(axes, "computed")]
+    assert len(set(marks)) == len(marks) == 14
+
+
 def test_a_contact_at_rest_under_every_force_is_counted():
     dataset = stub.pulled()["drive_force"]
     figure = draw("curves", dataset.assign(velocity=0.0 * dataset["velocity"]))
-    assert "(9 at rest: not drawn)" in words(figure)
+    assert "(9 at rest: not drawn)" in " ".join(words(figure).split())
 
 
 def test_maps_of_drift_show_threshold_rest_and_the_rigid_contact():

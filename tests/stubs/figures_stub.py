@@ -133,6 +133,11 @@ def static(title="", velocity=(0.0, 1e-3)) -> xr.Dataset:
     return labelled(dataset, "y0 / u_lim")
 
 
+def many_lines():
+    """Friction against amplitude at seven velocities and two Poisson's ratios."""
+    return at_ratios(static("", np.geomspace(1e-3, 1e-2, 7)), 0.0, 0.3)
+
+
 def labelled(dataset, formula):
     """A dataset with the formulas of its axes."""
     dataset["velocity"].attrs["formula"] = VELOCITY
@@ -277,6 +282,7 @@ def every_figure() -> dict[str, tuple[str, list]]:
         "certified and not": ("map", [certified_stub.bore(), paper["bore"]]),
         "certified static": ("curves", [static_map]),
         **{f"{n} maps": ("map", motions[:n]) for n in (1, 5, 12)},
+        "many lines": ("curves", [many_lines()]),
         "lines": ("curves", [static("a"), static("b")]),
     }
 

@@ -23,6 +23,12 @@ from microslip.report.selection import PLANE, closed_forms, columns, limit, movi
 FORCE_AND_TORQUE = f"force  {FORCE_FORWARD.math}\ntorque  {TORQUE.math}"
 JOINING = 0.5
 """Width in points of the lines that join markers."""
+MOST_ABOVE = 4
+"""Largest number of lines of one dataset whose legend is above a narrow panel."""
+MANY = 12
+"""Largest number of lines with a narrow legend."""
+ROW = 0.165
+"""Height of a row of the legend, in inches."""
 FINE = 201
 """Number of amplitudes at which a certified map of static friction is drawn."""
 
@@ -52,8 +58,8 @@ class Line(NamedTuple):
 def draw(*datasets: xr.Dataset) -> Figure:
     """Draw one or several sweeps along one axis."""
     shown = [_static_map(one) if "cell_error" in one else one.squeeze() for one in datasets]
-    alone = len(shown) == 1
-    every = [line for one in shown for line in _lines(one, not alone)]
+    every = [line for one in shown for line in _lines(one, len(shown) > 1)]
+    alone = len(shown) == 1 and len(every) <= MOST_ABOVE
     abscissae = list(dict.fromkeys(line.x for line in every))
     figure = look.new_figure(*((look.SINGLE, 2.7) if alone else (look.DOUBLE, 3.3)))
     grid = look.grid(figure, len(abscissae), len(abscissae))
@@ -63,8 +69,8 @@ def draw(*datasets: xr.Dataset) -> Figure:
         _references(axes, lines[0].points, shown)
         look.logarithmic_if_wide(axes, np.concatenate([one.points[one.x] for one in lines]))
         still = [one for one in lines if one.limit is not None and one.x == "amplitude"]
-        if velocities := sorted({float(one.points["velocity"]) for one in still}):
-            at = ", ".join(f"${look.number(one)}$" for one in velocities)
+        if velocities := {float(one.points["velocity"]) for one in still}:
+            at = f"${look.number(velocities.pop())}$" if len(velocities) == 1 else "of the legend"
             axes.set_title(f"lines: limit for velocity to 0;\nmarkers: velocity {at}", loc="left")
         if len(grid) > 1:
             look.legend_above(axes, ncols=1)
@@ -72,6 +78,8 @@ def draw(*datasets: xr.Dataset) -> Figure:
         where, ncols = ("upper center", 2) if alone else ("right upper", 1)
         handles = grid[0].get_legend_handles_labels()[0]
         look.legend_of_figure(figure, handles, where, ncols=ncols, handlelength=3.0)
+        rows = sum(str(handle.get_label()).count("\n") + 1 for handle in handles) / ncols
+        figure.set_figheight(max(figure.get_figheight(), ROW * rows + (0.0 if ncols == 1 else 2.0)))
     return figure
 
 
@@ -131,20 +139,33 @@ def _panel(axes: Axes, lines: Sequence[Line], alone: bool, joined: bool = True) 
 
     alone: True for lines of one dataset. joined: True to join points without a limit.
     """
+    shared = [_with_limit_of(line, lines) for line in lines]
     for k, line in enumerate(lines):
-        color, marker, ls = look.LINES[k % len(look.LINES)]
-        label = look.wrapped(line.title, np.inf if alone else 1.6, 8.0)
+        color, marker, ls = look.line(k)
+        room = 1.25 if alone else 1.6 if len(lines) <= MANY else 2.4
+        label = look.wrapped(line.title, room, 8.0)
         label = f" {label}" if label.startswith("_") else label  # which would hide it
         # Later markers are smaller and in front, so that all markers at one place can be seen.
-        size = 3.6 if joined else 3.2 + min(1.3, 3.9 / len(lines)) * (len(lines) - 1 - k)
+        spread = 3.9 if not joined else 2.6 if len(lines) > MOST_ABOVE else 0.0
+        size = (3.6 if spread == 0.0 else 3.2) + min(1.3, spread / len(lines)) * (
+            len(lines) - 1 - k
+        )
         ink: look.Ink = {"color": color, "marker": marker, "ms": size}
         joining: look.Ink = {"lw": JOINING, "ls": "-" if joined else "none", "label": label}
         if line.limit is not None:
             x, y, form = line.limit
-            # With several datasets, one legend entry is for the points and their limit.
-            own: look.Ink = {"color": color, "label": form} if alone else ink | {"label": label}
-            axes.plot(x, y, ls=ls, gid="limit", markevery=[], **own)
-            joining = {"ls": "none", "label": label if alone else ""}
+            several, first = len(shared[k]) > 1, shared[k][0]
+            if several:  # one black line, whose style depends on the number of such lines before it
+                color = look.BLACK
+                ls = look.STYLES[
+                    len({id(one[0]) for one in shared[:k] if one and one[0] is not first})
+                ]
+            # With several datasets, one legend entry is for the points and their own limit.
+            joint = not (alone or several)
+            own: look.Ink = ink | {"label": label} if joint else {"color": color, "label": form}
+            if first is line:
+                axes.plot(x, y, ls=ls, gid="limit", markevery=[], **own)
+            joining = {"ls": "none", "label": "" if joint else label}
         names = line.x, line.y, f"{line.y}_error", "converged"
         look.computed(axes, *columns(line.points, *names), clip_on=False, **ink | joining)
     quantities = [look.quantity(one.points, one.x) for one in lines]
@@ -155,6 +176,15 @@ def _panel(axes: Axes, lines: Sequence[Line], alone: bool, joined: bool = True) 
     axes.set_ylabel(FORCE_AND_TORQUE if torque else look.FRICTION)
     look.unit_range(axes)
     axes.margins(x=0.0 if alone else 0.02)
+
+
+def _with_limit_of(line: Line, lines: Sequence[Line]) -> list[Line]:
+    """Return the lines that have the same limit as a line."""
+    if line.limit is None:
+        return []
+    x, y, form = line.limit
+    others = [one for one in lines if one.limit is not None and one.limit[2] == form]
+    return [one for one in others if np.array_equal([x, y], one.limit[:2])]  # type: ignore[index]
 
 
 def _references(axes: Axes, points: xr.Dataset, shown: Sequence[xr.Dataset]) -> None:

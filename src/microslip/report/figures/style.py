@@ -51,6 +51,13 @@ STYLES = 2 * (SOLID, DASHED, DASHDOT, DOTTED)
 LINES = tuple(zip(COLOURS, "os^DvPX*", STYLES, strict=True))
 """Colour, marker and line style of each line in a panel, in the order of the lines."""
 
+
+def line(index: int) -> tuple[str, str, Any]:
+    """Return the colour, marker and style of a line; 64 lines differ in colour or marker."""
+    color, marker, ls = LINES[index % len(LINES)]
+    return color, LINES[(index + index // len(LINES)) % len(LINES)][1], ls
+
+
 LIMITS: dict[str, tuple[str, Any]] = {
     "mu_large_amplitude": (VERMILLION, DASHED),
     "mu_static_slider": (ORANGE, DASHDOT),
