@@ -24,7 +24,7 @@ sufficient for a picture of 300 pixels."""
 PERIODS_PER_JOB = 150
 """Number of periods in one job. The job takes a few seconds."""
 MOST_PERIODS = 1200
-"""Maximum number of periods on a page of at most 15 MB. A period takes about 7.2 kB."""
+"""Maximum number of periods on a page of at most 15 MB. A period takes about 7.6 kB."""
 
 
 def maps_of(configuration: Configuration, figure: Figure) -> list[str]:
