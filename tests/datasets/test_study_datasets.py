@@ -9,6 +9,7 @@ from stubs.studies_stub import GOOD, accuracy_result, configured, mu_of, stabili
 
 from microslip.datasets import netcdf
 from microslip.studies import registry
+from microslip.studies.accuracy import map_requests
 from microslip.studies.stability import OUTCOMES, outcome
 
 
@@ -123,8 +124,20 @@ def test_maps_hold_the_cheapest_model_that_is_good_enough(accuracy):
     assert set(tight.transverse_cheapest.values.flat) <= {"mdr", "radial", "rigid", "cartesian"}
     assert (tight.transverse_cheapest_cells == 16).all()
     assert tight.transverse_cheapest_seconds.values == pytest.approx(16e-3)
-    assert (tight.bore_cheapest_cells.values <= 16).all()
     assert accuracy.bore_cheapest.sizes["bore_amplitude"] == 2
+    study = configured().accuracy
+    every = [run for *_, runs in map_requests(study, "bore") for run in runs]
+    assert {run["cells"] for run in every if run["model"] == "cartesian"} == {8, 16}
+
+
+def test_a_model_that_did_not_converge_is_not_the_cheapest():
+    def results(request):
+        bad = {"converged": False} if request.get("model") == "slider" else {}
+        return accuracy_result(request) | bad
+
+    data = studies_stub.dataset(configured(), "accuracy", results)
+    loose = data.sel(map_tolerance=0.01)
+    assert (loose.transverse_cheapest == "rigid").all() and (loose.bore_cheapest_cells == 4).all()
 
 
 # Outcomes of probes
