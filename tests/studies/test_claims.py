@@ -163,8 +163,10 @@ def one_that_sticks(request, changed):
     return {n: [0.9 * changed[n][0], *changed[n][1:]] for n in names}
 
 
-def both_sides_stick(request, changed):
-    return {"stick_left": [0.2] * 9, "stick_right": [0.2] * 9}
+def sticking(left, right):
+    """Results with sticking areas of the two sides in four steps each way."""
+    areas = {"stick_left": [left[-1], *left, *left], "stick_right": [right[-1], *right, *right]}
+    return of_kind("patches", lambda request, changed: areas)
 
 
 STIFF, eq37 = "normal:indentation=1", oscillating_load.sum_of_powers
@@ -178,7 +180,9 @@ FLIPPED = {
     "far from Eq 29": (5, of_points("bore", lambda v, a: 0.5, static=False), NOT),
     "Eq 33 exact": (6, of_points("bore", eq33, static=True), NOT_DECIDED),
     "Eq 33 as the paper has it": (6, of_points("bore", below_eq33_below_two, static=True), HOLDS),
-    "stick on both sides": (7, of_kind("patches", both_sides_stick), PARTLY),
+    "stick on both sides": (7, sticking([0.2] * 4, [0.2] * 4), PARTLY),
+    "stick on the same side": (7, sticking([0.5, 0.4, 0.3, 0.1], [0.5, 0.4, 0.2, 0]), PARTLY),
+    "a moment without stick": (7, sticking([0.5, 0.4, 0.3, 0], [0.5, 0.4, 0.2, 0]), NOT),
     "no friction left": (8, of_points("bore", lambda v, a: 0.0, static=True), NOT),
     "bore falls with velocity": (9, of_points("bore", lambda v, a: 1 / (1 + v)), PARTLY),
     "Eq 37 exact": (10, of_points(STIFF, lambda v, a: eq37(a, v)), HOLDS),
@@ -242,6 +246,12 @@ def test_checks_contain_their_runs_and_numbers(claims):
     )
     assert value == pytest.approx([friction(place) for place in places])
     assert margin == pytest.approx(value - against) and set(error) == {1e-4}
+    errors = {
+        part: claims["check_error"].values[claims["check_part"].values == part]
+        for part in ("rises_continuous_bore", "zone_above", "zone_nearer")
+    }
+    assert errors["rises_continuous_bore"] == pytest.approx(2e-4)  # of two points
+    assert errors["zone_nearer"] == pytest.approx(2 * errors["zone_above"])  # of two distances
 
 
 def single_spring(amplitude, velocity):
@@ -275,6 +285,17 @@ def test_largest_error_of_eq_37():
     assert max(errors) == pytest.approx(0.0144, abs=5e-5)
     assert ratios[np.argmax(errors)] == pytest.approx(0.105)
     assert min(errors) >= 0.0
+
+
+def test_the_error_of_a_limit_includes_its_distance_from_the_limit_on_rings():
+    def results(request):
+        rings = request["kind"] == "point" and request["model"] in ("radial", "polar")
+        changed = result(request)
+        return changed | ({"mu_macro": changed["mu_macro"] + 0.003} if rings else {})
+
+    data = judged(results)
+    assert data["transverse_limit_error"].values == pytest.approx(0.003 + 1e-4)
+    assert data["bore_limit_error"].values == pytest.approx(0.003 + 1e-4)
 
 
 def test_what_the_papers_run_is_off_by_is_split(claims):
