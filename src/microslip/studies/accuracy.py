@@ -159,10 +159,10 @@ def _trials(study: Accuracy, points: list[Row], answers: Answers) -> pd.DataFram
     runs = pd.DataFrame(columns("accuracy", "trial", rows))
     for place in points:
         # Errors below the reference's error count as equal.
-        own = runs[(runs["trial_point"] == place["point"]) & runs["converged"]]
-        error = np.maximum(own["error"], number(place, "mu_macro_error"))
+        good = runs[(runs["trial_point"] == place["point"]) & runs["converged"]]
+        error = np.maximum(good["error"], number(place, "mu_macro_error"))
         for cost in ("seconds", "effort"):
-            runs.loc[own.index, f"front_{cost}"] = on_front(own[cost], error)
+            runs.loc[good.index, f"front_{cost}"] = on_front(good[cost], error)
     return runs
 
 
