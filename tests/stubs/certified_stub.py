@@ -6,7 +6,7 @@ from stubs import sweep_stub
 import microslip
 from microslip.app import commands
 from microslip.datasets import certified_map, netcdf
-from microslip.si.map import FrictionMap
+from microslip.si.solve import FrictionMap
 from microslip.sweeps import evaluate, map_refinement
 from microslip.sweeps.request import key_of
 

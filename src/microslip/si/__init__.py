@@ -10,8 +10,8 @@
 
 `inputs` is the table of the inputs, with their checks, and `output` the table of the outputs, with
 all forms of a Prediction.  `contact` computes the dimensionless groups, and `solve` the
-dimensionless answer.  `search` determines a missing amplitude, speed or load.  `predict` multiplies
-the answer by its units, `uncertain` propagates the uncertainty of the inputs, and `warnings`
+dimensionless answer, also for a missing amplitude, speed or load.  `predict` multiplies the answer
+by its units, `uncertain` propagates the uncertainty of the inputs, and `warnings`
 contains the limits of the theory.  `table` predicts many contacts.  `response` and `strokes` read
 measured paths and motions.  `fit` and `fold` evaluate measurements.
 """

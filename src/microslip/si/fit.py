@@ -34,8 +34,8 @@ from microslip.foundation.errors import InputError
 from microslip.foundation.number_text import prefixed, prefixed_text
 from microslip.si.contact import Contact, contact_of
 from microslip.si.inputs import INPUTS, Input, read_input, read_inputs, read_quantity
-from microslip.si.map import FrictionMap
 from microslip.si.output import column, line
+from microslip.si.solve import FrictionMap
 from microslip.si.warnings import broken_rules, warnings_of
 
 if TYPE_CHECKING:

@@ -13,8 +13,7 @@ import numpy as np
 from microslip.si.contact import Contact, contact_of
 from microslip.si.inputs import INPUTS, read_inputs
 from microslip.si.output import OUTPUTS, Prediction, Value
-from microslip.si.search import LOAD, find_reduction
-from microslip.si.solve import answer_of, simplifications
+from microslip.si.solve import LOAD, answer_of, find_reduction, simplifications
 from microslip.si.uncertain import Draws, probabilities, with_interval
 from microslip.si.warnings import unchecked, warnings_of
 

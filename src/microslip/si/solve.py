@@ -1,4 +1,5 @@
-"""The dimensionless answer for a contact: friction or velocity, static limit and threshold."""
+"""The dimensionless answer for a contact, from the solver or from a map, and the search for the
+amplitude, speed or load that gives a requested reduction of friction."""
 
 from __future__ import annotations
 
@@ -6,16 +7,20 @@ import math
 from dataclasses import replace
 from typing import Any
 
+import numpy as np
+
 from microslip.answer import limits
 from microslip.answer.answer import Estimate, Result
 from microslip.answer.point import solve
 from microslip.contact.registry import MODELS
 from microslip.foundation import arguments
 from microslip.foundation.errors import InputError, shown
+from microslip.foundation.number_text import number_text
+from microslip.scene.by_name import motion_named
 from microslip.scene.hertz import HERTZ
 from microslip.scene.problem import Problem
-from microslip.si.contact import INPUT_OF, Contact
-from microslip.si.map import MAP, FrictionMap
+from microslip.si.contact import INPUT_OF, Contact, contact_of
+from microslip.si.inputs import Inputs
 from microslip.si.output import Prediction, Value
 
 TOLERANCE, TOLERANCE_OF_SPEED = 1e-3, 1e-2
@@ -39,6 +44,27 @@ SIMPLER: dict[str, dict[str, Any]] = {
 """Changes of a Problem, keyed by the sentence for changes that do not matter."""
 RUNS_AWAY = "runs away"
 """First words of the solver's reason for a contact that accelerates without limit."""
+MAP = "map"
+"""Model name in a Result that comes from a map."""
+AMPLITUDES = 1e-6, 1e4
+"""Smallest and largest dimensionless amplitude of the search."""
+SPEEDS = 1e-9, 1e6
+"""Smallest and largest dimensionless velocity of the search.  For a translation with an amplitude
+above 1, the velocity is divided by the amplitude."""
+LOAD = 1e-12
+"""Load, N, at which groups are computed in a search for the load.  It is so small that Hertz's
+theory applies to all bodies."""
+STEP = 0.05
+"""Step of the finite difference for the slope of friction.  The difference is taken in the
+logarithm of the unknown."""
+
+
+class NoSolutionError(InputError):
+    """The requested reduction is outside the range of the search."""
+
+
+class _SolverFailureError(Exception):
+    """The solver has no result at a point of the search."""
 
 
 def answer_of(contact: Contact) -> Prediction:
@@ -271,3 +297,174 @@ def simplifications(contact: Contact, answer: Prediction) -> list[str]:
             if result.converged and abs(result.friction.value - friction.value) <= friction.error:
                 sentences.append(sentence)
     return sentences
+
+
+# Maps
+
+
+class FrictionMap:
+    """Friction from the dataset of a sweep, through its accessor (see datasets.accessor).
+
+    Parameters
+    ----------
+    dataset : xarray.Dataset
+        Dataset of a sweep.
+    motion, pressure : str
+        Motion and pressure of the contact.
+
+    Raises
+    ------
+    InputError
+        If the dataset has another motion or pressure, or a drive.
+    """
+
+    def __init__(self, dataset: Any, motion: str, pressure: str = "hertz"):
+        attributes = getattr(dataset, "attrs", {})
+        own = attributes.get("motion"), attributes.get("pressure", "hertz")
+        what = f"{own[0]}, pressure {own[1]}"
+        if own[0] is None:
+            what = type(dataset).__name__ if hasattr(dataset, "attrs") else dataset
+        allowed = f"allowed is the dataset of a sweep of {motion}, pressure {pressure}"
+        if own != (motion, pressure) or "drive" in attributes:
+            raise InputError("map", what, f"{allowed}, with a prescribed velocity")
+        self.dataset, self.motion, self.pressure = dataset, motion, pressure
+
+    def at(
+        self, velocity: Any, amplitude: Any, poisson: float | None
+    ) -> tuple[np.ndarray, np.ndarray]:
+        """Friction and its error bound at points.  Raises InputError about `nu`, and ValueError for
+        points outside the map."""
+        try:
+            answer = self.dataset.microslip.at(velocity, amplitude, poisson=poisson)
+        except InputError as error:
+            raise (error.renamed("nu") if error.argument == "poisson" else error) from None
+        return answer.mu_macro.values, answer.mu_macro_error.values
+
+    def solve(self, velocity: float, amplitude: float | None, poisson: float, tol: float) -> Result:
+        """The answer of the map as a Result of microslip.solve.  It is not converged if the error
+        bound is above the tolerance, or if the point is outside the map."""
+        value, error = math.nan, math.inf
+        try:
+            value, error = (float(one) for one in self.at(velocity, amplitude, poisson))
+            reason = f"the error bound of the map is {error:.1e}; allowed is at most {tol:g}"
+        except InputError as problem:
+            reason = f"{problem.argument} = {problem.value}: {problem.allowed.partition(';')[0]}"
+        except ValueError as problem:
+            reason = str(problem)
+        reason = "" if error <= tol else reason
+        point = Problem(motion_named(self.motion), velocity, amplitude, poisson)
+        friction = {"friction": Estimate(value, {"model": error})}
+        place = {"pressure": self.pressure, "model": MAP, "tolerance": tol}
+        return Result.of(point, friction, reason, **place)
+
+
+# Search
+
+
+def find_reduction(inputs: Inputs) -> tuple[Contact, Value]:
+    """The contact with the smallest amplitude, the largest speed or the largest load that gives the
+    reduction, and this quantity in its SI unit.
+
+    If the solver fails, the contact is that at which it failed, and the error is NaN.  Raises
+    NoSolutionError if the reduction is outside the range of the search, and InputError if an input
+    is invalid.
+    """
+    from scipy.optimize import brentq
+
+    name, share, tolerance = str(inputs.search), inputs.reduction, inputs.tolerance or TOLERANCE
+    _check_share(inputs, share, tolerance)
+    (scale, power, low, high, last_place), unit = _line(inputs, name, share), inputs.unit(name)
+    least, towards = ("smallest", "up") if name == "amplitude" else ("largest", "down")
+    last: Any = None
+    error, reductions = 0.0, []
+
+    def size(place: float) -> float:
+        """The unknown in its SI unit."""
+        return scale * math.exp(power * place)
+
+    def excess(place: float) -> float:
+        """mu_macro minus the requested mu_macro."""
+        nonlocal last, error
+        last = Contact(inputs.at(**{name: size(place)}))
+        answer = solve_at(last, last.velocity, tolerance)
+        friction, error = answer.mu_macro, answer.mu_macro_error
+        if not math.isfinite(friction):
+            raise _SolverFailureError
+        if last.inputs.speed == 0.0 and friction <= error:
+            friction = 0.0  # the whole contact slides; the remaining friction is an error
+        reductions.append((100.0 * (1.0 - friction), 100.0 * error))
+        return friction - (1.0 - share)
+
+    def refusal(end: str, reduction: str) -> NoSolutionError:
+        allowed = f"{end} {unit}, reduces friction by more{reduction} %"
+        return NoSolutionError("reduction", inputs.given["reduction"], allowed)
+
+    try:
+        if excess(low) < 0.0:
+            end = f"the {least} {name} of the search, {size(low):.2g}"
+            raise refusal(end, f": {number_text(*reductions[0])}")
+        if name == "speed" and excess(math.inf) > 0.0:
+            high = last_place
+        while excess(high) > 0.0:
+            if high >= last_place:
+                end = f"no {name} of the search, {towards} to {size(high):.2g}"
+                raise refusal(end, f" than {number_text(*max(reductions))}")
+            high = min(high + math.log(2.0), last_place)
+        place = brentq(excess, low, high, xtol=0.1 * tolerance)
+        here, error_here = excess(place), error
+        slopes = [excess(place - STEP) - here, here - excess(place + STEP)]
+    except _SolverFailureError:
+        return last, Value(getattr(last.inputs, name), math.nan)
+    steep = [slope / STEP for slope in slopes if slope > 0.0]
+    place_error = (abs(here) + error_here) / min(steep) if steep else math.inf
+    root = size(place)
+    try:
+        contact = contact_of(replace(inputs, search=None).at(**{name: root}))
+    except InputError as problem:
+        allowed = f"it takes a {name} of {root:.3g} {unit}; {problem}"
+        raise inputs.error("reduction", allowed) from None
+    return contact, Value(root, abs(power) * root * place_error)
+
+
+def _check_share(inputs: Inputs, share: float, tolerance: float) -> None:
+    """Raise InputError for a reduction that no search can determine."""
+    most = f"{100.0 * (1.0 - tolerance):g} %, 100 % minus the tolerance: at a speed some friction"
+    spins, moves = inputs.kind.unit == "rad", inputs.search != "speed" and inputs.speed
+    for name, is_refused, allowed in (
+        ("reduction", share < tolerance, f"at least the tolerance, {tolerance:g}"),
+        ("reduction", spins and share == 1.0, "less than 100 %: the centre always sticks"),
+        ("reduction", moves and share > 1.0 - tolerance, f"at most {most} remains"),
+        ("amplitude", inputs.search == "load" and inputs.amplitude == 0.0, "above 0"),
+    ):
+        if is_refused:
+            raise inputs.error(name, f"allowed with a reduction is {allowed}")
+
+
+def _line(inputs: Inputs, name: str, share: float) -> tuple[float, float, float, float, float]:
+    """The unknown as scale * exp(power * place), along which friction decreases with the place.
+
+    Returns
+    -------
+    tuple of float
+        Scale, power, first place, initial guess of the bracket's upper end, and last place.
+    """
+    low, high = (math.log(one) for one in AMPLITUDES)
+    spins = inputs.kind.unit == "rad"
+    if name == "amplitude":  # a place is the logarithm of the dimensionless amplitude
+        contact = Contact(inputs.at(amplitude=0.0))
+        unit = contact.u_lim / (contact.contact_radius if spins else 1.0)
+        return unit, 1.0, low, 0.0, high
+    if name == "speed":  # a place is minus the logarithm of the speed
+        contact = Contact(inputs.at(speed=0.0))
+        unit = contact.speed_unit
+        if not (contact.steady or spins):
+            unit *= max(1.0, float(contact.amplitude))  # the speed of the vibration
+        slow, fast = (-math.log(one) for one in SPEEDS)
+        return unit, -1.0, fast, 0.0, slow
+    # A place is the logarithm of the dimensionless amplitude, which is a power of the load with a
+    # negative exponent.  Under a large load nothing slips, and under a small load the dimensionless
+    # velocity of a bore is large.  The reduction is largest in between.  Small steps from large
+    # loads downwards find the first load with the requested reduction.
+    first, second = (float(Contact(inputs.at(load=f * LOAD)).amplitude) for f in (1.0, 8.0))
+    power = math.log(8.0) / math.log(second / first)
+    return LOAD * first**-power, power, low, math.log(0.01 * share), high

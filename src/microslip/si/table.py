@@ -19,8 +19,7 @@ from microslip.si.contact import Contact
 from microslip.si.inputs import INPUTS, is_range, kind_of, read_quantity
 from microslip.si.output import Prediction, Value, input_column
 from microslip.si.predict import checked_contact, predict_contact, unsolved
-from microslip.si.search import NoSolutionError
-from microslip.si.solve import RUNS_AWAY
+from microslip.si.solve import RUNS_AWAY, NoSolutionError
 
 if TYPE_CHECKING:
     import xarray as xr

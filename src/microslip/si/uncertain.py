@@ -25,8 +25,7 @@ from microslip.foundation.number_text import ROUNDING
 from microslip.si.contact import Contact, contact_of
 from microslip.si.inputs import INPUTS, Inputs
 from microslip.si.output import INTERVAL, Prediction, Value
-from microslip.si.search import NoSolutionError, find_reduction
-from microslip.si.solve import answer_of, static_limit
+from microslip.si.solve import NoSolutionError, answer_of, find_reduction, static_limit
 
 DRAWS = 2**15
 """Number of draws.  The error of a probability is about 1e-3."""
