@@ -139,11 +139,28 @@ def test_in_chunks_the_answer_is_the_same_and_waits(dataset):
         lazy.compute()
 
 
+def test_the_order_of_points_nodes_and_dimensions_has_no_effect(dataset):
+    expected = dataset.microslip.at(0.1, 1.0)
+    back = slice(None, None, -1)
+    for other in (
+        dataset.transpose("node", "cell", "point"),
+        dataset.isel(point=back, node=back),
+        dataset.sortby("mu_macro"),
+    ):
+        xr.testing.assert_identical(other.microslip.at(0.1, 1.0), expected)
+
+
+def test_a_missing_point_is_unknown(dataset):
+    value = dataset.isel(point=slice(0, 20)).microslip.at(0.1, 1.0)
+    assert np.isnan(value.mu_macro) and value.mu_macro_error == np.inf
+
+
 def test_a_map_that_lacks_a_part_is_refused_by_its_name(dataset):
     for name in ("mu_macro", "cell_error", "cell_low"):
         with pytest.raises(InputError, match=f"{name} = None: microslip.at needs it"):
             dataset.drop_vars(name).microslip.at(0.1, 1.0)
-    with pytest.raises(InputError, match="all points"):
-        dataset.isel(point=slice(0, 20)).microslip.at(0.1, 1.0)
+    for part in (dataset.isel(node=slice(0, 3)), dataset.where(dataset.mu_macro > 0.5)):
+        with pytest.raises(InputError, match="cell_node"):
+            part.microslip.at(0.1, 1.0)
     with pytest.raises(InputError, match="make it again"):
         dataset.assign_attrs({COORDINATES: '{"velocity": [0.01, 10]}'}).microslip.at(0.1, 1.0)

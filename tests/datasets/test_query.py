@@ -191,6 +191,15 @@ def test_bad_points_and_datasets_are_refused_by_name(data, place, argument):
 
 
 @pytest.mark.slow
+def test_values_that_xarray_interpolated_are_refused():
+    """Their errors are not known; they are recognised by their numbers of solves."""
+    dataset = made_up()
+    dataset["work"] = dataset.mu_macro.copy(data=np.arange(169.0).reshape(13, 13) ** 2)
+    assert dataset.microslip.at(0.3, 1.1).mu_macro_error < 1.0
+    with pytest.raises(InputError, match="interpolated"):
+        dataset.interp(velocity=np.geomspace(1e-3, 10, 50)).microslip.at(0.3, 1.1)
+
+
 def test_the_bound_covers_the_solver_between_the_points_of_a_small_sweep():
     velocity, amplitude = np.geomspace(0.1, 1.0, 5), np.linspace(0.5, 1.5, 5)
     results = [

@@ -65,6 +65,7 @@ def build(
     axes: dict = {"velocity": ((), 0.0), "poisson": ((), sweep.poisson[0])}
     for direction, axis in zip(coordinates.directions, zip(*places, strict=True), strict=True):
         axes[direction] = "point", np.array(axis)
+    variables["point"], variables["node"] = np.arange(len(points)), np.arange(len(nodes[0]))
     dims = {name: TABLE[name]["dims"].split() or "point" for name in variables}
     every = {name: described(TABLE[name], variables[name], dims[name]) for name in variables}
     dataset = xr.Dataset(every, axes)

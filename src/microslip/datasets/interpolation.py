@@ -284,14 +284,18 @@ def cells_of(dataset: xr.Dataset) -> Cells:
         allowed = "is of another version; allowed: a certified map of this version: make it again"
         raise InputError(COORDINATES, text, allowed) from None
     names = [BORDERS[direction] for direction in coordinates.directions]
-    for name in ("cell_node", "cell_error", *sum(names, ())):
+    for name in ("cell_node", "cell_error", "point", "node", *sum(names, ())):
         if name not in dataset.variables:
             raise InputError(name, None, LOST)
-    values, cell_nodes = dataset["mu_macro"].values, dataset["cell_node"].values.astype(int)
-    if cell_nodes.max() >= len(values):
-        raise InputError("point", len(values), "allowed are all points of the dataset")
+    degrees, cell_node = np.array(coordinates.degrees), dataset["cell_node"]
+    if set(cell_node.dims) != {"cell", "node"} or cell_node.sizes["node"] != np.prod(degrees + 1):
+        raise InputError("cell_node", dict(cell_node.sizes), LOST)
+    # the order of the points and of the nodes may have changed, and points may be missing
+    cell_nodes = cell_node.sortby("node").transpose("cell", "node").values.astype(int)
+    values = np.full(max(cell_nodes.max(), int(dataset["point"].max())) + 1, np.nan)
+    values[dataset["point"].values] = dataset["mu_macro"].values
     borders = np.stack([[dataset[name].values for name in pair] for pair in names])
-    nodes = values[cell_nodes].reshape(-1, *(n + 1 for n in coordinates.degrees))
+    nodes = values[cell_nodes].reshape(-1, *(degrees + 1))
     return Cells(coordinates, borders.transpose(2, 0, 1), nodes, dataset["cell_error"].values)
 
 
@@ -300,7 +304,10 @@ def grid_of(dataset: xr.Dataset, name: str) -> Grid:
 
     Raises InputError with the name of a variable or a coordinate that is missing or not allowed.
     """
-    nodes = dataset[[name, f"{name}_error"]]
+    nodes, work = dataset[[name, f"{name}_error"]], dataset.get("work", xr.DataArray(0.0))
+    if ((work % 1.0) > 0.0).any():  # numbers of solves are not integers between points
+        allowed = "allowed are computed points, with microslip.at in place of other interpolations"
+        raise InputError(name, "interpolated", f"in the dataset; {allowed}")
     if "converged" in dataset:
         nodes = nodes.where(dataset["converged"] == 1)  # a join fills gaps with NaN
     nodes = nodes.compute()
