@@ -40,7 +40,7 @@ PAPER_SQUARES, PAPER_STEPS = 32, 100
 """Number of squares along a side (as in the paper), and number of steps per period in our run."""
 PAPER_TOLERANCE = 1e-3
 """Tolerance of the stresses in the paper."""
-STEADY = (0.1, 0.3, 0.5, 0.8, 1.2, 3.0)
+STEADY_VELOCITIES = (0.1, 0.3, 0.5, 0.8, 1.2, 3.0)
 TRANSIENT = {"motion": "continuous-bore", "velocity": 0.8, "travel": 10.0}
 """Transient of the continuous bore.  The forward travel is in units of u_lim, twice as far as in
 the paper's Figure 5."""
@@ -106,7 +106,8 @@ def sources(study: Claims) -> Iterator[tuple[str, Callable[..., dict], list[list
     def point(*place: Any, model: str = "auto", cells: int | None = None) -> dict:
         return forms.solve(Point(*place), study.tolerance, model, cells)
 
-    yield "steady", point_of, [[point("continuous-bore", v, model="polar")] for v in STEADY]
+    steady = [[point("continuous-bore", v, model="polar")] for v in STEADY_VELOCITIES]
+    yield "steady", point_of, steady
     stiff = [
         point("normal:indentation=1", a * r, a) for a, r in product(STIFF_AMPLITUDES, STIFF_RATIOS)
     ]
