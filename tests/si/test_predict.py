@@ -130,6 +130,9 @@ def test_a_prediction_repeats_the_inputs_as_the_user_wrote_them():
         "rotation": "600 rpm = 62.8319 rad/s",
     }
     assert list(result.inputs) == ["motion", "body", *expected]
+    plain = result.to_dict()
+    assert plain["force_threshold_error_N"] == 0.0
+    assert (plain["mu_static"], plain["mu_static_error"]) == (None, None)
     assert result.inputs.items() >= expected.items()
     assert result.inputs["body"].endswith("hardness 7 GPa")
 

@@ -55,6 +55,9 @@ def test_the_speed_of_a_rigid_slider_is_that_of_equation_6():
     speed = ratio * 2.0 * math.pi * 2000.0 * 1e-3
     assert result.speed_m_s == pytest.approx(speed, abs=root(result).error)
     assert root(result).error < 0.01 * result.speed_m_s
+    slope = (friction(1.01 * ratio) - friction(ratio / 1.01)) / (2.0 * math.log(1.01))
+    # the error of mu_macro is that of the solver plus that of the root
+    assert root(result).error > 0.4 * result.mu_macro_error / slope * result.speed_m_s
 
 
 def test_values_that_follow_from_a_root_have_its_error():
