@@ -6,6 +6,8 @@ from stubs.agreement import assert_agree
 
 import microslip
 
+COARSE = {"tolerance": 5e-3}
+
 
 def mean_of_rigid(velocity, forward, lateral, lead):
     """Mean friction of a rigid block: the forward component of the unit velocity, averaged over a
@@ -27,19 +29,17 @@ def test_what_oscillates_sideways_alone_is_the_transverse_motion(motion):
     [
         ("elliptic:forward=0.5,phase=30", 0.1, 0.5, {}),
         ("elliptic:forward_cycles=2", 0.1, 0.5, {}),
-        ("transverse-bore", 0.1, 0.8, {}),
-        ("transverse-bore:angle=0.4,phase=50", 0.3, 2.0, {"poisson": 0.5}),
-        ("transverse-bore:phase=90", 0.2, 0.5, {"pressure": "power:exponent=1"}),
+        ("transverse-bore", 0.1, 0.8, COARSE),
+        ("transverse-bore:angle=0.4,phase=50", 0.3, 2.0, COARSE | {"poisson": 0.5}),
+        ("transverse-bore:phase=90", 0.2, 0.5, COARSE | {"pressure": "power:exponent=1"}),
     ],
 )
 def test_rings_and_squares_agree(motion, velocity, amplitude, settings):
     """Rings alone, or with angular points of the whole disc."""
-    place = {"velocity": velocity, "amplitude": amplitude, "tolerance": 5e-3, **settings}
-    rings, squares = (
-        microslip.solve(motion, **place, model=model) for model in ("auto", "cartesian")
-    )
+    place = motion, velocity, amplitude
+    rings = microslip.solve(*place, **settings)
     assert rings.model in ("radial", "polar")
-    assert_agree(rings, squares)
+    assert_agree(rings, microslip.solve(*place, **settings | COARSE, model="cartesian"))
 
 
 @pytest.mark.parametrize(("forward", "phase"), [(1.0, 90), (0.5, 45), (1.0, 0)])
