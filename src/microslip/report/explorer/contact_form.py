@@ -27,6 +27,8 @@ LARGEST = 65535
 """Largest integer of two bytes."""
 OF_NUMBERS = "by E and ν"
 """Choice in the list of materials for entering Young's modulus and Poisson's ratio."""
+ADHESION = ("adhesion", "range", "short", "rubbery")
+"""Constants of si.warnings that the rules on adhesion use, in lower case."""
 PRESSURES = ("GPa", "MPa", "kPa", "Pa", "psi")
 FIELDS = {
     "radius": ("radius of the sphere", "radius", ("mm", "um", "m", "inch"), "5"),
@@ -67,10 +69,7 @@ def packed() -> dict:
         "properties": warnings.PROPERTIES,
         "missing": warnings.MISSING,
         "whose": warnings.SIDES,
-        "adhesion": {
-            name.lower(): getattr(warnings, name)
-            for name in ("ADHESION", "RANGE", "SHORT", "RUBBERY")
-        },
+        "adhesion": {name: getattr(warnings, name.upper()) for name in ADHESION},
         "prefixes": list(PREFIXES.items()),
         "largest_share": LARGEST_RATIO,
         "half_stuck": D_half(),

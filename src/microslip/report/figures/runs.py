@@ -7,7 +7,6 @@ import numpy as np
 import xarray as xr
 from matplotlib.colors import LinearSegmentedColormap
 from matplotlib.figure import Figure
-from matplotlib.ticker import MultipleLocator
 from scipy.interpolate import griddata
 
 from microslip.config.quantities import FORCE_FORWARD, FORCE_LATERAL, FORWARD
@@ -60,7 +59,7 @@ def history(dataset: xr.Dataset) -> Figure:
     upper.set_ylabel(f"forward force\n{FORCE_FORWARD.math}")
     lower.set_ylabel(f"lateral force\n{FORCE_LATERAL.math}")
     lower.set_xlabel(r"phase in periods  $\omega t/(2\pi)$")
-    lower.xaxis.set_major_locator(MultipleLocator(max(1, round(np.ptp(periods) / 8))))
+    lower.locator_params(axis="x", integer=True)
     look.legend_above(upper, _conditions(dataset, "history", "velocity", "amplitude"))
     look.heading(lower)
     return figure
@@ -82,8 +81,8 @@ def transients(dataset: xr.Dataset) -> Figure:
             axes.axhline(float(at[f"transient_{what}_theory"]), **ink)
         name = STARTS.get(start, look.literal(start))
         look.heading(axes, f"{name}, {_conditions(dataset, 'transient', 'velocity')}", 2.0)
-    grid[0].set(ylabel=FORCE_AND_TORQUE)
-    grid[0].set_xlim(0.0, float(dataset["transient_displacement"].max()))
+    longest = float(dataset["transient_displacement"].max())
+    grid[0].set(ylabel=FORCE_AND_TORQUE, xlim=(0.0, longest))
     grid[len(starts) // 2].set_xlabel(r"forward travel  $v_0 t/u_\mathrm{lim}$")
     look.unit_range(grid[0])
     look.legend_of_figure(figure, grid[0].get_legend_handles_labels()[0], "upper center", 4)
@@ -112,8 +111,7 @@ def field(dataset: xr.Dataset) -> Figure:
     mark |= {"gid": "centre", "label": "instantaneous centre"}
     axes.plot([centre], [0.0], "o", ms=6.5, **mark)
     axes.set(xlim=(min(-1.1, centre - 0.15), 1.1), ylim=(-1.1, 1.1), ylabel=look.axis(FORWARD))
-    for axis in (axes.xaxis, axes.yaxis):
-        axis.set_major_locator(MultipleLocator(0.5))
+    axes.set(xticks=np.linspace(-1.0, 1.0, 5), yticks=np.linspace(-1.0, 1.0, 5))
     text = _conditions(dataset, "field", "velocity")
     axes.text(0.035, 0.97, text, transform=axes.transAxes, va="top")
     axes.legend(loc="lower left", bbox_to_anchor=(0.0, 1.0), handlelength=1.0, borderaxespad=0.1)

@@ -19,7 +19,6 @@ from matplotlib.colors import to_rgb
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch, Rectangle
-from matplotlib.ticker import LogLocator, NullLocator
 from scipy import ndimage
 
 from microslip.config.quantities import AMPLITUDE, FORWARD, MU_MACRO, VELOCITY
@@ -125,9 +124,6 @@ def _versus(dataset: xr.Dataset, cost: str) -> Figure:
     trials = trials.assign(x=x, y=y, bad=bad, beyond=beyond)
     xlim, ylim = (_beyond(*each, 2 * EDGE) for each in ends.values())
     grid[0].set(xscale="log", yscale="log", xlim=xlim, ylim=ylim)
-    for axis in (grid[0].xaxis, grid[0].yaxis):
-        axis.set_major_locator(LogLocator(numticks=5))
-        axis.set_minor_locator(NullLocator())
     for index, axes in enumerate(grid):
         point = dataset.isel(point=index)
         _trials(axes, trials[trials["point"] == str(point["point"].item())])
