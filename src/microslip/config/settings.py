@@ -292,9 +292,11 @@ class Sweep(Settings):
     """
 
     motion: Text
-    """Motion, with parameters as in "elliptic:forward=0.5,phase=30", or file:FILE."""
+    """Motion, with parameters as in "elliptic:forward=0.5,phase=30", file:FILE, or the path of a
+    Python file."""
     pressure: Text = "hertz"
-    """Normal pressure, with parameters as in "power:exponent=1", or file:FILE."""
+    """Normal pressure, with parameters as in "power:exponent=1", file:FILE, or the path of a Python
+    file."""
     title: Title = None
     """Title of the dataset, also used in figures. It is plain text: $ and \\ have no special
     meaning."""
