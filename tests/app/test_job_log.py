@@ -52,3 +52,13 @@ def test_an_error_that_the_user_can_mend_is_one_line_and_any_other_a_traceback(
     message = (tmp_path / "log").read_text()
     assert line in message and capsys.readouterr().err == message
     assert (message.startswith("Error: ") and message.count("\n") == 1) == (line != "Traceback")
+
+
+def test_an_interrupted_job_fails_without_a_traceback(tmp_path, capsys):
+    compiled = SystemError("returned a result with an exception set")
+    compiled.__cause__ = KeyboardInterrupt()
+    for error in (KeyboardInterrupt(), compiled):
+        with pytest.raises(SystemExit), job_log(tmp_path / "log"):
+            raise error
+        assert (tmp_path / "log").read_text() == "Interrupted\n"
+    assert capsys.readouterr().err == ""

@@ -74,6 +74,25 @@ def test_targets_and_the_name_of_a_configuration_are_handed_to_snakemake(place, 
         assert target in started.pop()
 
 
+def test_an_interrupt_ends_with_its_exit_code(here, monkeypatch):
+    """Snakemake ends its jobs and exits with the code 1."""
+
+    def interrupted(words):
+        with contextlib.suppress(KeyboardInterrupt):
+            signal.raise_signal(signal.SIGINT)
+        raise SystemExit(1)
+
+    monkeypatch.setattr("snakemake.cli.main", interrupted)
+    (here / "given.yaml").write_text(GOOD)
+    handler = signal.signal(signal.SIGINT, signal.default_int_handler)
+    try:
+        process = in_process.run("sweep", "--configfile", "given.yaml")
+    finally:
+        signal.signal(signal.SIGINT, handler)
+    assert process.returncode == 130
+    assert process.stderr.endswith("microslip sweep: interrupted\n")
+
+
 def test_a_bad_key_is_one_line_in_a_file_and_in_the_default(here):
     """The line is that of the reader of configurations, see tests/config/test_bad_input.py."""
     (here / "config").mkdir()

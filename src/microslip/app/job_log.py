@@ -17,7 +17,7 @@ def job_log(path: str | Path, shown: int = logging.WARNING) -> Iterator[logging.
 
     Messages of at least the level `shown` also go to standard error.  An error ends the process
     with exit code 1.  The log then contains the traceback, or only one line for a CacheError, a
-    SolverError or a full disk.
+    SolverError, a full disk or an interrupt.
     """
     try:
         file = logging.FileHandler(path, "w", "utf-8")
@@ -36,8 +36,12 @@ def job_log(path: str | Path, shown: int = logging.WARNING) -> Iterator[logging.
         code = 0
     except (CacheError, SolverError) as error:
         log.error("Error: %s", error)
+    except KeyboardInterrupt:
+        log.info("Interrupted")
     except Exception as error:
-        if getattr(error, "errno", None) in NO_WRITING:
+        if isinstance(error.__cause__, KeyboardInterrupt):  # at the end of a compiled function
+            log.info("Interrupted")
+        elif getattr(error, "errno", None) in NO_WRITING:
             name = getattr(error, "filename", None) or "a file"
             log.error("Error: %s", advice("write", name, error))
         else:

@@ -13,6 +13,7 @@ import io
 import os
 import re
 import shutil
+import signal
 import sys
 import tempfile
 from contextlib import redirect_stderr, redirect_stdout, suppress
@@ -86,12 +87,24 @@ def _run(arguments: list[str]) -> int:
     _spare_cache()
     from snakemake.cli import main as snakemake
 
+    interrupts: list[int] = []
+
+    def interrupt(number: int, frame: object) -> None:
+        interrupts.append(number)
+        raise KeyboardInterrupt
+
+    if signal.getsignal(signal.SIGINT) == signal.default_int_handler:
+        signal.signal(signal.SIGINT, interrupt)
     try:
         snakemake(words)
     except KeyboardInterrupt:  # Snakemake does not catch it during planning
+        pass
+    except SystemExit:  # at an interrupt of its jobs, with the exit code 1
+        if not interrupts:
+            raise
+    if interrupts:
         complain("microslip sweep: interrupted")
-        return 130
-    return 0
+    return 130 if interrupts else 0
 
 
 def configurations() -> dict[str, Path]:
