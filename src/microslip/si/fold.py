@@ -139,7 +139,7 @@ def fold(
     from scipy.interpolate import CubicSpline  # only here: it takes a while to load
 
     rows = count("rows", rows, 2 * FEWEST_SAMPLES, most=MOST_ROWS, even=True)
-    step, names, values = _checked(time, columns)
+    step, rounding, names, values = _checked(time, columns)
     longest, typed = (len(values) - 1) * step, frequency is not None
     hz = real("frequency", frequency, 0.0) if typed else _strongest(values) / (len(values) * step)
     spline = CubicSpline(step * np.arange(len(values)), values - values.mean(axis=0))
@@ -158,7 +158,7 @@ def fold(
         parts = np.fft.rfft(spline(times) - drift(times), axis=1)[:, : rows // 2 + 1] / points
         parts[:, -1] = 0.0
         if refinement < REFINEMENTS:
-            change, error, variance, order = _phases(parts)
+            change, error, variance, order, column = _phases(parts)
             hz += change * hz
     periods = np.fft.irfft(parts, rows, axis=1) * rows
     mean, scatter = periods.mean(axis=0), periods.std(axis=0, ddof=1) / math.sqrt(len(periods))
@@ -181,6 +181,7 @@ def fold(
     problem += "approximate frequency of the motion"
     # before the drift, since the phases of noise look like one
     _refuse(ratios[best] <= SIGNIFICANT, names[best], peaks[best], problem, 3)
+    _check_repeats(hz, parts, order, column)
     loss = 0.5 * (2.0 * np.pi * np.arange(parts.shape[1])) ** 2 * variance
     change = math.sqrt(variance) / (PHASE_OF_A_DRIFT * longest)
     most = change * math.sqrt(LARGEST_LOSS / max(loss[order], 1e-300))
@@ -195,7 +196,7 @@ def fold(
     rates = (last - first) / (longest - 1.0 / hz)
     return Fold(
         frequency=float(hz),
-        frequency_error=float(error * hz),
+        frequency_error=float(hz * math.hypot(error, rounding / longest)),
         periods=len(periods),
         columns=dict(zip(names, mean.T, strict=True)),
         errors=dict(zip(names, (scatter + np.abs(lost)).T, strict=True)),
@@ -222,10 +223,23 @@ def _check_periods(frequency: float, longest: float, step: float, typed: bool) -
     _refuse(wrong, "time", longest, f"{where}, {problem}; {hint}")
 
 
-def _phases(parts: np.ndarray) -> tuple[float, float, float, int]:
-    """The relative correction of the frequency, its standard error, the variance of the slow phase
-    drift in periods squared, and the order of the strongest harmonic, from whose phases they
-    follow."""
+def _check_repeats(frequency: float, parts: np.ndarray, order: int, column: int) -> None:
+    """Raise InputError if the frequency is a multiple or a fraction of that of the motion."""
+    beats = np.abs(np.fft.fft(parts[:, order, column]))
+    problem = "the periods differ from each other more than they agree; allowed is the frequency "
+    _refuse(beats[1:].max() > beats[0], "frequency", frequency, f"{problem}of the motion")
+    mean, error = parts.mean(axis=0), parts.std(axis=0, ddof=1) / math.sqrt(len(parts))
+    between = np.arange(len(mean)) % order > 0
+    alike = (np.abs(mean[between]) <= SIGNIFICANT * error[between]).all()
+    problem = f"the motion repeats {order} times in a period; allowed is the frequency of the "
+    problem += f"motion, {order * frequency:.6g} Hz"
+    _refuse(order > 1 and alike, "frequency", frequency, problem)
+
+
+def _phases(parts: np.ndarray) -> tuple[float, float, float, int, int]:
+    """Return the relative correction of the frequency, its standard error, the variance of the slow
+    phase drift in periods squared, and the order and the column of the strongest harmonic, from
+    whose phases they follow."""
     power = np.mean(np.abs(parts) ** 2, axis=0)
     share = power / np.maximum(power.sum(axis=0), 1e-300)
     column = int(np.argmax(share[1:].max(axis=0)))
@@ -236,11 +250,12 @@ def _phases(parts: np.ndarray) -> tuple[float, float, float, int]:
     slope, spread = float(place @ turns / (place @ place)), float(place @ place)
     rest = turns - turns.mean() - slope * place
     error = math.sqrt(float(rest @ rest) / max(len(turns) - 2, 1) / spread)
-    return slope, error, max(float(np.mean(rest[1:] * rest[:-1])), 0.0), order
+    return slope, error, max(float(np.mean(rest[1:] * rest[:-1])), 0.0), order, column
 
 
-def _checked(time: Any, columns: Mapping[str, Any]) -> tuple[float, list[str], np.ndarray]:
-    """The time step, the names of the columns, and their values, (samples, columns)."""
+def _checked(time: Any, columns: Mapping[str, Any]) -> tuple[float, float, list[str], np.ndarray]:
+    """Return the time step, the rounding of the times, the names of the columns, and their values,
+    an array of shape (samples, columns)."""
     known, fewest = ", ".join(COLUMNS), FEWEST_PER_PERIOD * FEWEST_PERIODS
     _refuse(not hasattr(columns, "keys"), "columns", columns, f"allowed is a mapping with {known}")
     unknown = next((name for name in columns if name not in COLUMNS), None)
@@ -266,7 +281,7 @@ def _checked(time: Any, columns: Mapping[str, Any]) -> tuple[float, list[str], n
     time = arrays.pop("time")
     for name, array in arrays.items():
         _check_marks(name, array)
-    return _step(time), list(arrays), np.stack(list(arrays.values()), axis=1)
+    return *_step(time), list(arrays), np.stack(list(arrays.values()), axis=1)
 
 
 def _check_marks(name: str, values: np.ndarray) -> None:
@@ -280,8 +295,12 @@ def _check_marks(name: str, values: np.ndarray) -> None:
         _refuse(far and counts[end] > 1, name, levels[end], f"{problem}a missing sample", 17)
 
 
-def _step(time: np.ndarray) -> float:
-    """The time step.  Raises InputError if the steps differ by more than rounding."""
+def _step(time: np.ndarray) -> tuple[float, float]:
+    """Return the time step, and the standard error of the record's length from the rounding of the
+    times.  The rounding errors of times that are rounded to the same number are not independent.
+
+    Raises InputError if the steps differ by more than rounding.
+    """
     problem = f"the last time, and the first is {time[0]:.9g} s; allowed are increasing times"
     _refuse(not time[-1] > time[0], "time", time[-1], problem, 17)
     index = np.arange(len(time))
@@ -300,7 +319,8 @@ def _step(time: np.ndarray) -> float:
         f"not equally spaced, in row {row} (the first is 0); allowed are equal steps, and times "
     )
     _refuse(rest[row] > most, "time", time[row], f"{problem}rounded to their last digit", 17)
-    return float(step)
+    alike = max(2.0 * half / step, 1.0)  # times that are rounded to the same number
+    return float(step), float(np.sqrt(12.0 * alike * np.mean(rest**2) / len(time)))
 
 
 def _strongest(values: np.ndarray) -> float:
