@@ -160,6 +160,7 @@ LOADS = np.array([[1.0, 2.0], [3.0, 4.0]]) / 10.0
         ("left;right\n1,0; 2,0\n3,0; 4,0\n;;\n", ",pitch=0.5 mm,decimal=comma"),
         ("1,0 2,0\n3,0 4,0\n", ",pitch=0.5 mm,decimal=comma"),
         ("1;2,000\n3;4\n", ",pitch=0.5 mm,decimal=comma"),
+        ('"1,0","2,0"\n"3,0","4,0"\n', ",pitch=0.5 mm,decimal=comma"),
         (TEKSCAN.replace("2.0", "2.0,B").replace("4.0", "4.0,B"), ",pitch=0.5 mm"),
     ],
 )

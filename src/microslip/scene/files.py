@@ -22,6 +22,7 @@ pressure films write it: forward increases from line to line, lateral from cell 
 
 from __future__ import annotations
 
+import csv
 import math
 import re
 from collections.abc import Mapping, Sequence
@@ -232,7 +233,7 @@ def _matrix(file: NamedFile, content: bytes) -> Values:
             raise ValueError(f"line {k + 1}: {problem}; {MATRIX}")
     flat = ["0" if cell == "B" else cell for row in rows[start:] for cell in row[:width]]
     _refuse_many(len(flat))
-    mark = "," if marks[start] == "," else ";"
+    mark = "," if marks[start] == "," and file.decimal == "point" else ";"
     text = "\n".join([f"pressure{mark}no", *(f"{cell}{mark}0" for cell in flat)])
     names, decimal = {"pressure": "", "no": ""}, DECIMALS[file.decimal]
     try:
@@ -255,10 +256,12 @@ def _matrix(file: NamedFile, content: bytes) -> Values:
 
 
 def _split(line: str, decimal: str) -> tuple[str | None, list[str]]:
-    """Separator and cells of a line of a matrix."""
-    marks = ";\t," if decimal == "point" else ";\t"
-    separator = next(filter(line.__contains__, marks), None)
-    return separator, [cell.strip().strip("\"'").strip() for cell in line.split(separator)]
+    """Return the separator and the cells of a line of a matrix."""
+    marks = ";\t," if decimal == "point" or '"' in line else ";\t"
+    unquoted = re.sub('"[^"]*"', "", line)
+    separator = next(filter(unquoted.__contains__, marks), None)
+    cells = line.split() if separator is None else next(csv.reader([line], delimiter=separator))
+    return separator, [cell.strip().strip("\"'").strip() for cell in cells]
 
 
 def _pitch(text: str) -> tuple[float, float, Mapping[str, str | None]]:
