@@ -97,7 +97,7 @@ INPUTS = {
     "counter_density": _bodies("kg/m^3", "density of the counterbody", exact=True),
     "wear_coefficient": _bodies("m^2/N", "Archard's coefficient ('1e-5 mm^3/N/m')", zero=True),
     "tolerance": _output("", TOLERANCE, SMALLEST_TOLERANCE, 0.1, zero=True, exact=True),
-    "map": _output(None, "certified map in place of the solver: its name or file (in Python: dataset)"),
+    "map": _output(None, "map in place of the solver: its name or file (Python: dataset)"),
 }
 """Every input of `predict`, in the order of the help text and of the printed answer."""
 OF_BODIES = (
