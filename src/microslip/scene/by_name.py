@@ -1,4 +1,4 @@
-"""Motions and pressures by name."""
+"""Functions that return a motion or a pressure by name."""
 
 from __future__ import annotations
 
@@ -11,15 +11,15 @@ from microslip.scene.named import NAMED
 from microslip.scene.pressure import Pressure
 
 motion_named = Family("motion", Motion, NAMED, create_samples)
-"""Function that returns the motion for a text such as "elliptic:forward=0.5,phase=90",
+"""Function that returns the motion for a string such as "elliptic:forward=0.5,phase=90",
 "file:stroke.csv" or "mine/soft_square.py"."""
 MOTIONS = motion_named.classes
-"""Name -> subclass of Motion, for the motions of the package."""
+"""The motions of the package: a mapping from name to subclass of Motion."""
 
 
 CLASSES = Hertz, Ellipse, Power, Punch, Ring
 pressure_named = Family("pressure", Pressure, CLASSES, create_pressure)
-"""Function that returns the pressure for a text such as "power:exponent=1", "file:measured.csv" or
-"mine/blunt.py"."""
+"""Function that returns the pressure for a string such as "power:exponent=1", "file:measured.csv"
+or "mine/blunt.py"."""
 PRESSURES = pressure_named.classes
-"""Name -> subclass of Pressure, for the pressures of the package."""
+"""The pressures of the package: a mapping from name to subclass of Pressure."""

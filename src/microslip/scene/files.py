@@ -1,22 +1,22 @@
 """Motions and pressures from data files such as "file:stroke.csv".
 
-A motion is one period in equally spaced samples.  Its CSV file has a heading with some of the
-columns forward, lateral, angle, and load or indentation, and one line for each sample.  The end
-point of the period is left out, because it equals the first point.  Without units, displacements
-are in u_lim, angles in u_lim / a, and loads and indentations are divided by their reference values.
-A file with units is for predictions in SI units, see si/strokes.py.  ",decimal=comma" and
-",encoding=cp1252" after the path describe the format.
+A motion is given by equally spaced samples of one period.  The CSV file has one line for each
+sample.  Its heading names at least one of the columns forward, lateral, angle, and load or
+indentation.  The end point of the period is omitted, because it equals the first point.  Without
+units, displacements are in u_lim, angles in u_lim / a, and loads and indentations are divided by
+their reference values.  Files with units are used for predictions in SI units; see si/strokes.py.
+The format can be described by ",decimal=comma" and ",encoding=cp1252" after the path.
 
-A column `time` is used to check that the samples are equally spaced.
+If there is a column `time`, it is used to check that the samples are equally spaced.
 
-A pressure is a set of values on a regular grid (see grid.py), in CSV or netCDF.  A CSV file has the
-columns forward, lateral and pressure, and a line for each point.  A netCDF file has a variable
-`pressure` with the coordinates `forward` and `lateral`.  By default, a value is the mean over the
-cell around its point, as sensors measure it.  With ",grid=samples" after the path, values apply at
-the points and are interpolated bilinearly.
+A pressure is given by values on a regular grid (see grid.py), in a CSV or netCDF file.  A CSV file
+has the columns forward, lateral and pressure, and one line for each point.  A netCDF file has a
+variable `pressure` with the coordinates `forward` and `lateral`.  By default, each value is the
+mean over the cell around its point, like the reading of a sensor of finite size.  With
+",grid=samples" after the path, the values apply at the points and are interpolated bilinearly.
 
-",pitch=0.5 mm" after the path reads a matrix of pressures, as programs for pressure sensors and
-pressure films write it: forward increases from line to line, lateral from cell to cell.
+With ",pitch=0.5 mm" after the path, the file is a matrix of pressures, as exported by programs for
+pressure sensors and pressure films: forward increases from line to line, lateral from cell to cell.
 ",decimal=comma" and ",encoding=cp1252" describe the format of a CSV file.
 """
 
@@ -41,17 +41,20 @@ from microslip.scene.samples import NORMAL, PLANE, Sampled, uneven_row
 
 COLUMNS = (*PLANE, *NORMAL)
 UNITS = {"forward": "m", "lateral": "m", "angle": "rad", "load": "N", "indentation": "m"}
-"""SI units of the columns of a path or a period."""
+"""SI unit of each column of a path or a period."""
 FORM = UNITS | {"time": "s"}
-"""SI units of the columns of a file."""
+"""SI unit of each column of a file."""
 EVEN_TIMES = 1e-2
-"""Largest allowed deviation of a time from equal spacing, divided by the spacing.  It changes a
-sine with N samples by at most 2 pi EVEN_TIMES / N of its amplitude."""
+"""Largest allowed deviation of a time from equal spacing, divided by the spacing.  Such a deviation
+changes the values of a sine with N samples by at most 2 pi EVEN_TIMES / N times its amplitude."""
 
 
 def columns_of(table: Table) -> dict[str, np.ndarray]:
-    """Columns of a table of samples as numbers, in the units of the file.  Raises ValueError for
-    another table, and for one without a displacement or a load."""
+    """Return the columns of a table of samples as arrays, in the units of the file.
+
+    Raises ValueError if a value is not a number, if there are no samples, or if no column is a
+    displacement or a load.
+    """
     columns = {name: np.array(one) for name, one in table.numbers().items()}
     if not columns.keys() & set(COLUMNS):
         raise ValueError(f"no displacement and no load; allowed: some of {', '.join(COLUMNS)}")
@@ -63,9 +66,11 @@ def columns_of(table: Table) -> dict[str, np.ndarray]:
 def read_period(
     file: NamedFile, content: bytes, need_units: bool = False
 ) -> tuple[Table, dict[str, np.ndarray]]:
-    """Read a file with equally spaced samples: the table, and its columns as numbers in the units
-    of the file.  Raises ValueError if the content has another format, or if the times are not
-    equally spaced."""
+    """Read a file with equally spaced samples.
+
+    Returns the table, and its columns as arrays in the units of the file.  Raises ValueError if the
+    format of the file is wrong, or if the times are not equally spaced.
+    """
     if file.grid != GRID or file.pitch:
         raise ValueError("allowed after the path: decimal=comma or encoding=cp1252")
     form: dict = {"decimal": DECIMALS[file.decimal], "encoding": file.encoding}
@@ -79,7 +84,7 @@ def read_period(
 
 
 def create_samples(file: NamedFile, content: bytes) -> Sampled:
-    """Create the motion in a data file.  Raises ValueError if the content has another format."""
+    """Create a motion from a data file.  Raises ValueError if the format of the file is wrong."""
     table, columns = read_period(file, content)
     for name in columns.keys() & set(COLUMNS):
         if table.units[name]:
@@ -92,10 +97,10 @@ def create_samples(file: NamedFile, content: bytes) -> Sampled:
 
 
 SI = {"forward": "m", "lateral": "m", "pressure": "Pa"}
-"""SI unit of each column."""
+"""SI unit of each column of a file with a pressure."""
 MOST_POINTS = 1_000_000
 SAME = 1e-9
-"""Coordinates count as equal if they differ by less than this fraction of their range."""
+"""Coordinates are treated as equal if they differ by less than this fraction of their range."""
 FULL = "allowed: every point of a regular grid once"
 HEADING = (
     "forward,lateral,pressure in any order, with units such as forward [mm] if at all; or a matrix "
@@ -106,32 +111,33 @@ MATRIX = (
     "the end of the file, with decimal=comma after the path for decimal commas"
 )
 NUMBER = re.compile(r"[+-]?(\d+[.,]?\d*|[.,]\d+)([eE][+-]?\d+)?|nan|inf|B", re.I | re.A)
-"""Pattern of a cell of a matrix.  B is a cell outside the sensor in Tekscan files."""
+"""Pattern of a cell of a matrix.  In Tekscan files, B marks a cell outside the sensor."""
 END = "@@"
 """Last line of Tekscan files."""
 LEAST_COORDINATES = 4
-"""Smallest number of evenly spaced values that count as coordinates.  Three pressures can be evenly
-spaced by chance."""
+"""Smallest number of evenly spaced values that are taken for coordinates.  Three pressures can be
+evenly spaced by chance."""
 EVEN = 0.05
 """Largest difference between the steps of evenly spaced coordinates, divided by the first step.
-This value allows for coordinates rounded to 1/40 of their step."""
+This value allows for coordinates rounded to 1/40 of the step."""
 PITCH = re.compile(r"\d+\.?\d*(?:[eE][+-]?\d+)?|\.\d+", re.A)
 ALLOWED_PITCH = "allowed: a length such as 0.5 mm, or forward x lateral as in 0.5 mm x 0.6 mm"
 NETCDF = (".nc", ".nc4", ".cdf")
 """File name extensions of netCDF."""
 BEGINNINGS = (b"\x89HDF", b"CDF\x01", b"CDF\x02", b"CDF\x05")
-"""First bytes of netCDF files."""
+"""Possible first bytes of a netCDF file."""
 LARGEST_CHUNK = 100_000_000
 """Largest chunk in bytes.  HDF5 reads whole chunks; the default chunks of netCDF have up to 16
 MB."""
 VARIABLES = "allowed: a variable pressure with the dimensions and coordinates forward and lateral"
 
 Values = tuple[Sequence[np.ndarray], Mapping[str, str | None]]
-"""Coordinates (n,) and (m,), pressures (n, m), and the unit of each."""
+"""Coordinates as arrays of shapes (n,) and (m,), pressures as an array of shape (n, m), and the
+unit of each of the three quantities."""
 
 
 def create_pressure(file: NamedFile, content: bytes) -> Measured:
-    """Create the pressure in a data file.  Raises ValueError if the content has another format."""
+    """Create a pressure from a data file.  Raises ValueError if the format of the file is wrong."""
     if file.grid not in READINGS:
         raise ValueError(f"allowed for grid is one of {', '.join(READINGS)}")
     if content.startswith(BEGINNINGS):
@@ -148,7 +154,7 @@ def create_pressure(file: NamedFile, content: bytes) -> Measured:
 
 
 def _factors(units: Mapping[str, str | None]) -> tuple[float, Units]:
-    """Ratio of the lateral to the forward unit of length, and the Units."""
+    """Return the ratio of the lateral to the forward unit of length, and the Units."""
     factors: dict[str, float | None] = {}
     for name, si in SI.items():
         unit = units[name] or ""
@@ -197,14 +203,16 @@ def _points(file: NamedFile, content: bytes) -> Values:
 
 
 def _distinct(column: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Distinct coordinates in increasing order, (n,), and the index of each point among them."""
+    """Return the distinct coordinates in increasing order, shape (n,), and for each point the index
+    of its coordinate."""
     values, which = np.unique(column, return_inverse=True)
     group = np.concatenate([[0], np.cumsum(np.diff(values) > SAME * np.ptp(values))])
     return values[np.unique(group, return_index=True)[1]], group[which.reshape(-1)]
 
 
 def _matrix(file: NamedFile, content: bytes) -> Values:
-    """Read a matrix of pressures.  Its cells become a table with one column."""
+    """Read a matrix of pressures.  The numbers are parsed as a table with one cell of the matrix in
+    each line."""
     forward, lateral, unit = _pitch(file.pitch)
     lines = lines_of(content, file.encoding)
     while lines and lines[-1].strip(";,\t ") in ("", END):
@@ -265,10 +273,10 @@ def _split(line: str, decimal: str) -> tuple[str | None, list[str]]:
 
 
 def _pitch(text: str) -> tuple[float, float, Mapping[str, str | None]]:
-    """Forward and lateral distance between the cells of a matrix, in their own units, and the
-    units.
+    """Return the forward and the lateral distance between the cells of a matrix, and the unit of
+    each.
 
-    text: a length such as "0.5 mm" for both distances, or "0.5 mm x 0.6 mm".
+    text: a length such as "0.5 mm" for both distances, or two lengths such as "0.5 mm x 0.6 mm".
     """
     parts = [(PITCH.match(part.strip()), part.strip()) for part in text.split(" x ")]
     lengths = [(float(one[0]), part[one.end() :].strip()) for one, part in parts if one]
@@ -282,8 +290,8 @@ def _pitch(text: str) -> tuple[float, float, Mapping[str, str | None]]:
 
 
 def _netcdf(content: bytes) -> Values:
-    """Read a netCDF file.  Sizes are checked before values are read into memory."""
-    import netCDF4  # only here, because it takes a while to load
+    """Read a netCDF file.  Sizes are checked before any values are read into memory."""
+    import netCDF4  # imported here, because loading takes a while
 
     try:
         with netCDF4.Dataset("pressure", memory=content) as data:

@@ -1,5 +1,7 @@
-"""Loads on the cells of a regular grid. The pressure depends on the radius alone, or its values are
-given on another grid, from a sensor or another program.
+"""Loads on the cells of a regular grid.
+
+The pressure is a function of the radius, or is given by values on another grid, such as those of a
+sensor or another program.
 """
 
 from __future__ import annotations
@@ -14,14 +16,14 @@ from microslip.foundation.errors import InputError
 
 AXES = ("forward", "lateral")
 READINGS = ("cells", "samples")
-"""Possible meanings of the values on a grid.  With "cells", a value is the mean over the cell
-around a point; a cell is one step wide.  With "samples", values apply at the points and are
+"""Possible meanings of the values on a grid.  With "cells", each value is the mean over the cell
+around its point; a cell is one grid step wide.  With "samples", values apply at the points and are
 interpolated bilinearly.  The pressure is 0 outside the grid."""
 FINE = 256
-"""Number of squares along a side in the computation of u_lim and the torque."""
+"""Number of squares along each side of the contact for the computation of u_lim and the torque."""
 FINEST = 1024
-"""Largest number of squares along a side.  Grids with more than FINE points along a side use more
-than FINE squares."""
+"""Largest number of squares along each side.  If a grid has more than FINE points along a side,
+more than FINE squares are used."""
 REGULAR = 1e-3
 """Largest allowed distance of a coordinate from the regular grid, divided by the step of the
 grid."""
@@ -30,16 +32,18 @@ grid."""
 def checked(
     forward: np.ndarray, lateral: np.ndarray, values: np.ndarray
 ) -> tuple[list[np.ndarray], np.ndarray, float]:
-    """Check coordinates (n,) and (m,), and pressures (n, m).
+    """Check the coordinates and the pressures of a grid, and scale the coordinates.
+
+    Coordinates are arrays of shapes (n,) and (m,); values is an array of shape (n, m).
 
     Returns
     -------
     points : list of two arrays
-        Coordinates that start at 0, in units of the longer step.  In these units, areas neither
-        overflow nor underflow.
+        Coordinates that start at 0, in units of the longer grid step.  In these units, areas
+        neither overflow nor underflow.
     values : array, shape (n, m)
     step : float
-        The longer step.
+        The longer grid step, in the original unit.
 
     Raises
     ------
@@ -66,10 +70,10 @@ def checked(
 
 
 def _step(label: str, axis: np.ndarray) -> float:
-    """Step of an axis (n,) that is evenly spaced within the tolerance REGULAR.
+    """Return the spacing of an axis, an array of shape (n,), which must be uniform within REGULAR.
 
-    Raises InputError for other coordinates; the message shows the pair whose distance deviates
-    most.
+    Raises InputError for other coordinates.  The message shows the pair of neighbours whose
+    distance deviates most.
     """
     worst = int(np.isfinite(axis).argmin()) if len(axis) else 0
     if len(axis) > 1 and np.isfinite(axis).all():
@@ -85,10 +89,10 @@ def _step(label: str, axis: np.ndarray) -> float:
 
 @dataclass(frozen=True, eq=False)
 class Axis:
-    """One side of the smallest rectangle that contains all pressure, and the grid points on it.
+    """One side of the smallest rectangle that contains all nonzero pressures, with its grid points.
 
-    points: evenly spaced coordinates, (n,); low, high: ends of the side; step: distance between
-    points; reading: one of READINGS.
+    points: evenly spaced coordinates, as an array of shape (n,).  low, high: coordinates of the two
+    ends of the side.  step: distance between neighbouring points.  reading: one of READINGS.
     """
 
     points: np.ndarray
@@ -103,11 +107,15 @@ class Axis:
 
     @property
     def half(self) -> float:
-        """Half of the width of the side."""
+        """Half the length of the side."""
         return 0.5 * (self.high - self.low)
 
     def integrals(self, edges: np.ndarray) -> np.ndarray:
-        """Integral of the shape function of each point over each interval, (intervals, n)."""
+        """Compute the integral of the shape function of each point over each interval between
+        edges.
+
+        The result is an array of shape (intervals, n).
+        """
         t = (edges[:, None] - self.points) / self.step
         if self.reading == "cells":
             return self.step * np.diff(np.clip(t, -0.5, 0.5), axis=0)
@@ -140,14 +148,18 @@ class Axis:
 
 
 class Grid(NamedTuple):
-    """Values (n, m) on a grid over the smallest rectangle that contains all pressure."""
+    """Values on a grid over the smallest rectangle that contains all nonzero pressures.
+
+    The values are an array of shape (n, m).
+    """
 
     forward: Axis
     lateral: Axis
     values: np.ndarray
 
     def loads(self, along: np.ndarray, across: np.ndarray) -> np.ndarray:
-        """Load of each rectangle between forward edges (n + 1,) and lateral edges (m + 1,)."""
+        """Compute the load on each rectangle between n + 1 forward edges and m + 1 lateral
+        edges."""
         return self.forward.integrals(along) @ self.values @ self.lateral.integrals(across).T
 
     def coarsened(self) -> Grid:
@@ -158,15 +170,17 @@ class Grid(NamedTuple):
 
 
 def cropped(points: Sequence[np.ndarray], values: np.ndarray, reading: str) -> Grid:
-    """Create a Grid without the zeros around the pressure. Its arguments are the return values of
-    `checked`."""
+    """Create a Grid without the zeros around the pressure.
+
+    points, values: return values of `checked`.  reading: one of READINGS.
+    """
     axes = []
     for number, places in enumerate(points):
         first, last = np.flatnonzero(values.any(axis=1 - number))[[0, -1]]
         step = places[1] - places[0]
         if reading == "cells":
             low, high = places[first] - 0.5 * step, places[last] + 0.5 * step
-        else:  # the pressure falls to 0 towards the next point, if there is one
+        else:  # the pressure decreases to 0 towards the next point, if there is one
             first, last = max(first - 1, 0), min(last + 1, len(places) - 1)
             low, high = places[first], places[last]
         axes.append(Axis(places[first : last + 1], low, high, step, reading))
@@ -175,11 +189,11 @@ def cropped(points: Sequence[np.ndarray], values: np.ndarray, reading: str) -> G
 
 
 def distances(x: np.ndarray, y: np.ndarray) -> np.ndarray:
-    """Integrate the distance from the origin over each rectangle of the grid with the edges x and
+    """Integrate the distance from the origin over each rectangle of the grid whose edges are x and
     y."""
     x, y = x[:, None], y[None, :]
     r = np.hypot(x, y)
-    tiny = 1e-99  # where it replaces 0, the logarithm is multiplied by 0
+    tiny = 1e-99  # replaces 0 in logarithms, which are then multiplied by 0
     corner = 2.0 * x * y * r
     corner = corner + x**3 * np.arcsinh(y / np.maximum(np.abs(x), tiny))
     corner = corner + y**3 * np.arcsinh(x / np.maximum(np.abs(y), tiny))
@@ -187,10 +201,10 @@ def distances(x: np.ndarray, y: np.ndarray) -> np.ndarray:
 
 
 def largest_displacement(loads: np.ndarray, forward: float, lateral: float) -> float:
-    """Largest displacement at the centre of a cell under full slip, for G* = 1.
+    """Compute the largest displacement of the cell centres under full slip, for G* = 1.
 
-    loads: load of each cell, (n, n), spread evenly over the cell.  forward, lateral: half of the
-    widths of the rectangle.
+    loads: load on each cell, as an array of shape (n, n); each load is distributed uniformly over
+    its cell.  forward, lateral: half-widths of the rectangle.
     """
     n = len(loads)
     edges = (np.arange(1 - n, n + 1) - 0.5) * 2.0 / n
@@ -205,39 +219,39 @@ def largest_displacement(loads: np.ndarray, forward: float, lateral: float) -> f
 
 
 RINGS = 4096
-"""Number of thin rings that approximate a round pressure."""
+"""Number of thin rings that approximate a pressure that depends on the radius alone."""
 SMALLEST_LOAD = 1e-13
-"""A cell load below this fraction of the total load is a rounding error and is set to 0."""
+"""Cell loads below this fraction of the total load are rounding errors and are set to 0."""
 
 
 def of_corner_loads(load: np.ndarray) -> np.ndarray:
-    """Compute the loads of the cells, shape (cells, cells). Their sum is 1.
+    """Compute the loads on the cells, an array of shape (cells, cells) with the sum 1.
 
-    load: load on the rectangle between the centre and each corner of a cell, (cells + 1, cells +
-    1). It is odd in both coordinates.
+    load: load on the rectangle between the centre of the grid and each cell corner, as an array of
+    shape (cells + 1, cells + 1); it is odd in both coordinates.
     """
     return of_loads(np.diff(np.diff(load, axis=0), axis=1))
 
 
 def of_loads(loads: np.ndarray) -> np.ndarray:
-    """Scale the loads of the cells so that their sum is 1, and replace rounding errors near 0 by
+    """Scale the loads on the cells so that their sum is 1, and replace rounding errors near 0 by
     0."""
     loads = np.where(loads < SMALLEST_LOAD * loads.sum(), 0.0, loads)
     return loads / loads.sum()
 
 
 def round_loads(cells: int, ring_loads: Callable, inner: float = 0.0) -> np.ndarray:
-    """Compute the cell loads of a pressure that depends on the radius alone, shape (cells, cells).
-    Their sum is 1.
+    """Compute the cell loads of a pressure that depends on the radius alone.
 
-    The load of each of RINGS thin rings is spread evenly along its middle circle.
+    The result is an array of shape (cells, cells) with the sum 1.  The load on each of RINGS thin
+    rings is distributed uniformly along the middle circle of the ring.
 
     Parameters
     ----------
     cells : int
         Number of cells along a side.
     ring_loads : callable
-        ring_loads(psi) -> load on each ring between neighbouring radii sin(psi).
+        ring_loads(psi) returns the load on each ring between neighbouring radii sin(psi).
     inner : float
         Radius of the hole in the contact.
     """

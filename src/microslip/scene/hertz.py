@@ -1,7 +1,7 @@
-"""Hertz pressure on an ellipse, a circle and a ring.  The circle belongs to a sphere on a flat,
-which is the contact of the paper.
+"""Hertz pressure on an ellipse, a circle and a ring.
 
-Ring is a contact of the shape of a ring, for example of a torus or of a cup's rim.
+The circle is the contact of a sphere with a flat, as in the paper.  The ring is, for example, the
+contact of a torus or of the rim of a cup.
 """
 
 from __future__ import annotations
@@ -26,15 +26,16 @@ SMALLEST_RATIO = 0.05
 class Ellipse(Pressure):
     """The pressure of an elliptic Hertz contact with the semi-axes a and `ratio` * a.
 
-    u_lim is the displacement at the centre under full slip.  Hence G* = 3 K / (2 pi), where K is
-    the complete elliptic integral of the eccentricity; this is 3/4 for a circle.
+    The length u_lim is the displacement at the centre under full slip.  Hence G* = 3 K / (2 pi),
+    where K is the complete elliptic integral of the first kind at the eccentricity of the ellipse.
+    For a circle, G* is 3/4.
 
     Parameters
     ----------
     ratio : float
-        Ratio of the semi-axes, 0.05 to 1.
+        Ratio of the semi-axes, from 0.05 to 1.
     across : int
-        0 if the long axis is forward, 1 if it is lateral.
+        0 if the long axis points forward, 1 if it is lateral.
 
     Raises
     ------
@@ -66,9 +67,9 @@ class Ellipse(Pressure):
     def torque(self) -> float:
         """Mean distance from the centre, weighted by the pressure.
 
-        It is 3 pi/16 on the unit circle.  To obtain the ellipse, one axis of this circle is scaled
-        by the ratio.  This multiplies the distance along a ray at the angle t by hypot(cos t, ratio
-        sin t).
+        The mean is 3 pi/16 on the unit circle.  Scaling one axis of this circle by the ratio gives
+        the ellipse, and multiplies distances along a ray at the angle t by hypot(cos t, ratio sin
+        t).
         """
         angle = (np.arange(512) + 0.5) * (np.pi / 1024)
         stretch = np.hypot(np.cos(angle), self.ratio * np.sin(angle))
@@ -87,21 +88,25 @@ class Ellipse(Pressure):
         return (self.ratio, 1.0) if self.across else (1.0, self.ratio)
 
     def cell_loads(self, cells: int) -> np.ndarray:
-        """Compute the load on each cell, (cells, cells)."""
+        """Compute the load on each cell, as an array of shape (cells, cells)."""
         return hertz_loads(cells)
 
     def loading(self, displacement: np.ndarray | float) -> np.ndarray | float:
-        """Tangential force after a displacement from rest.  It is the same as for a sphere."""
+        """Return the tangential force after a displacement from rest, which is the same as for a
+        sphere."""
         return hertz.mindlin_force(displacement)
 
 
 def hertz_loads(cells: int) -> np.ndarray:
-    """Compute the load of Hertz pressure on each cell of the rectangle around the ellipse, (cells,
-    cells).  It does not depend on the ratio of the semi-axes."""
+    """Compute the load of Hertz pressure on each cell of the rectangle around the ellipse.
+
+    The result is an array of shape (cells, cells).  It does not depend on the ratio of the
+    semi-axes.
+    """
     edges = np.arange(cells + 1) * 2.0 / cells - 1.0
     x, y = edges[:, None], edges[None, :]
-    # load of the rectangle from the centre to (x, y), odd in both coordinates; the root is zero
-    # outside the disc, as the pressure is
+    # load on the rectangle between the centre and (x, y), odd in both coordinates; like the
+    # pressure, the root is zero outside the disc
     root = np.sqrt(np.maximum(1.0 - x * x - y * y, 0.0))
     load = x * y * root - np.arctan2(x * y, root)
     load = load + 0.5 * x * (3.0 - x * x) * np.arctan2(y, root)
@@ -120,11 +125,12 @@ class Hertz(Pressure):
     largest = 1.5 / np.pi
 
     def cell_loads(self, cells: int) -> np.ndarray:
-        """Compute the load on each square, (cells, cells)."""
+        """Compute the load on each cell, as an array of shape (cells, cells)."""
         return hertz_loads(cells)
 
     def ring_means(self, psi: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Mean friction bound and lever arm of the rings with the edges r = sin(psi)."""
+        """Compute the mean friction bound and the lever arm of the rings with the edges r =
+        sin(psi)."""
         radii = np.sin(psi)
         # the first moment of the bound is the integral of sin^2 cos^2 over each ring
         moment = np.diff(psi / 8 - np.sin(4 * psi) / 32)
@@ -132,27 +138,27 @@ class Hertz(Pressure):
         return hertz.ring_bounds(np.minimum(radii, 1.0)), moment / load
 
     def bound(self, r: np.ndarray | float, c: float = 1.0) -> np.ndarray:
-        """Friction bound at the radius r of a contact of radius c."""
+        """Return the friction bound at the radius r if the contact radius is c."""
         return 1.5 / np.pi * np.sqrt(np.maximum((c - r) * (c + r), 0.0))
 
     def depth(self, c: np.ndarray) -> np.ndarray:
-        """Indentation depth for the contact radius c."""
+        """Return the indentation depth for the contact radius c."""
         return c * c
 
     def radius(self, depth: np.ndarray) -> np.ndarray:
-        """Contact radius at a depth."""
+        """Return the contact radius at an indentation depth."""
         return np.sqrt(np.maximum(depth, 0.0))
 
     def of_load(self, share: np.ndarray) -> np.ndarray:
-        """Depth at which the load is `share` times the mean load."""
+        """Return the indentation depth at which the load is `share` times the mean load."""
         return np.cbrt(share) ** 2
 
     def load(self, r: np.ndarray | float, c: np.ndarray | float = 1.0) -> np.ndarray:
-        """Load within the radius r of a contact of radius c."""
+        """Return the load within the radius r if the contact radius is c."""
         return c**3 - np.maximum((c - r) * (c + r), 0.0) ** 1.5
 
     def loading(self, displacement: np.ndarray | float) -> np.ndarray | float:
-        """Tangential force after a displacement from rest (Mindlin)."""
+        """Return the tangential force after a displacement from rest (Mindlin)."""
         return hertz.mindlin_force(displacement)
 
 
@@ -168,18 +174,18 @@ _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(12)
 class Ring(RoundPressure):
     """A pressure proportional to sqrt((r - b)(1 - r)) on the ring from r = b = `inner` to r = 1.
 
-    This is the Hertz pressure of a line contact that is bent into a circle.  It is close to the
-    pressure of a slender torus; for a wide ring, it is an assumption.
+    This is the Hertz pressure of a line contact that is bent into a circle.  It approximates the
+    pressure under a slender torus; for a wide ring, it is an assumption.
 
     Parameters
     ----------
     inner : float
-        Radius of the hole divided by the outer radius, 0.05 to 0.95.
+        Radius of the hole divided by the outer radius, from 0.05 to 0.95.
 
     Raises
     ------
     InputError
-        If the radius is outside its range.
+        If the radius of the hole is outside its range.
     """
 
     inner: float = 0.5
@@ -207,17 +213,19 @@ class Ring(RoundPressure):
 
     @property
     def _top(self) -> float:
-        """Factor of the root, chosen such that the load is 1: 1 / Integral sqrt((r - b)(1 - r)) 2
-        pi r dr, with r = middle - half cos t."""
+        """Factor in front of the root in the pressure, which makes the load 1.
+
+        It equals 1 / Integral sqrt((r - b)(1 - r)) 2 pi r dr, where r = middle - half cos t.
+        """
         return 1.0 / (np.pi**2 * self._half**2 * self._middle)
 
     def bound(self, r: np.ndarray) -> np.ndarray:
-        """Friction bound at a radius."""
+        """Return the friction bound at a radius."""
         r = np.asarray(r, float)
         return self._top * np.sqrt(np.maximum((r - self.inner) * (1.0 - r), 0.0))[()]
 
     def _ring_integrals(self, psi: np.ndarray, power: int) -> np.ndarray:
-        """Integrals of the bound times 2 pi r^power between the radii sin(psi)."""
+        """Integrate the bound times 2 pi r^power between neighbouring radii sin(psi)."""
         at = np.arccos(np.clip((self._middle - np.sin(psi)) / self._half, -1.0, 1.0))
         turn = at[:-1, None] + np.diff(at)[:, None] * 0.5 * (_NODES + 1.0)
         r = self._middle - self._half * np.cos(turn)
@@ -241,12 +249,12 @@ class Ring(RoundPressure):
 
     @cached_property
     def G_star(self) -> float:
-        """G* in working units.  It equals the largest displacement under full slip for G* = 1.
+        """G* in working units, which equals the largest displacement under full slip for G* = 1.
 
-        Under a unit traction on a narrow ring of radius s, the displacement at the radius r is 4
-        s/(r + s) K(m)/pi per unit of the ring's width.  Here 1 - m = ((r - s)/(r + s))^2.
+        A unit traction on a narrow ring of radius s causes, per unit of the ring's width, the
+        displacement 4 s/(r + s) K(m)/pi at the radius r, where 1 - m = ((r - s)/(r + s))^2.
         """
-        # imported here, because they take a third of a second to load
+        # imported here, because loading takes a third of a second
         from scipy.integrate import quad
         from scipy.optimize import minimize_scalar
 

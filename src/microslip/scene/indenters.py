@@ -1,9 +1,9 @@
-"""Axisymmetric indenters: profiles whose contact is a full circle that grows with the load.
+"""Axisymmetric indenters, whose contact is a full circle that grows with the load.
 
 By the method of dimensionality reduction, an indenter with the profile f(r) is equivalent to the
 plane profile D(c) = c Integral_0^c f'(r) / sqrt(c^2 - r^2) dr.  At the indentation depth D(c), the
-contact radius is c.  With h = D / D(1), and the friction bound written as a superposition of flat
-punches,
+contact radius is c.  Let h = D / D(1).  Writing the friction bound as a superposition of flat
+punches gives
 
     G* = 1 / (2 Integral_0^1 x h'(x) dx)
     bound(r, c) = (G*/pi) Integral_r^c h'(x) / sqrt(x^2 - r^2) dx
@@ -11,8 +11,9 @@ punches,
 
 The substitution x = r cosh(eta) makes these integrals smooth.
 
-Power is an indenter f(r) ~ r^n: a cone for n = 1, a sphere for n = 2, and flatter ends for larger
-n.  Punch is a flat punch with a rounded edge: f(r) = 0 within the flat end, and a parabola outside.
+Power is an indenter with the profile f(r) ~ r^n: a cone for n = 1, a sphere for n = 2, and an
+indenter with a flatter end for larger n.  Punch is a flat punch with a rounded edge: f(r) is 0
+within the flat end, and a parabola outside.
 """
 
 from __future__ import annotations
@@ -29,16 +30,16 @@ from microslip.theory.hertz import unit_rule
 _NODES = 128
 """Number of nodes of a Gauss rule."""
 SMALLEST_RADIUS = 1e-7
-"""Smallest radius divided by the contact radius.  Smaller radii are replaced by this value, because
+"""Smallest ratio of radius to contact radius.  Smaller ratios are replaced by this value, because
 the friction bound of some indenters is infinite at the centre."""
 SMALLEST_CONTACT = 1e-100
 """Smallest contact radius, which keeps divisions by the contact radius finite."""
 _GRID = np.linspace(0.0, 1.0, 257)
 _CORRECTIONS = 6
-"""Number of Newton steps after the initial guess from a table."""
+"""Number of Newton steps, starting from an initial guess from a table."""
 _REFINEMENTS = 3
-"""Number of grids in the search for the largest bound.  Each grid is 128 times finer than the
-previous one."""
+"""Number of grids in the search for the largest friction bound.  Each grid is 128 times finer than
+the previous one."""
 
 
 @dataclass(frozen=True)
@@ -48,21 +49,21 @@ class Indenter(RoundPressure):
     Attributes
     ----------
     flat : float
-        Radius of a flat end, divided by the contact radius.
+        Radius of the flat end, divided by the contact radius; 0 if the indenter has no flat end.
     """
 
     flat = 0.0
 
     def depth(self, c: np.ndarray) -> np.ndarray:
-        """Indentation depth for the contact radius c; depth(1) = 1."""
+        """Return the indentation depth for the contact radius c; depth(1) = 1."""
         raise NotImplementedError
 
     def slope(self, c: np.ndarray) -> np.ndarray:
-        """Derivative of `depth`; 0 for c below the radius of a flat end."""
+        """Return the derivative of `depth`, which is 0 for c below the radius of the flat end."""
         raise NotImplementedError
 
     def radius(self, depth: np.ndarray) -> np.ndarray:
-        """Inverse of `depth`."""
+        """Return the contact radius at a depth; this function is the inverse of `depth`."""
         raise NotImplementedError
 
     @cached_property
@@ -76,28 +77,31 @@ class Indenter(RoundPressure):
     def _rule(
         self, r: np.ndarray | float, c: np.ndarray | float
     ) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
-        """Quadrature from r to c on a new last axis: nodes x, weights dx / sqrt(x^2 - r^2), radii
-        r, and roots sqrt(x^2 - r^2)."""
+        """Return a quadrature rule for integrals from r to c.
+
+        The four arrays are the nodes x, the weights dx / sqrt(x^2 - r^2), the radii r, and the
+        roots sqrt(x^2 - r^2).  The nodes are along a new last axis.
+        """
         radii, contact = np.broadcast_arrays(np.asarray(r, float), np.asarray(c, float))
         contact = np.maximum(contact, SMALLEST_CONTACT)[..., None]
         radii = np.clip(radii[..., None], SMALLEST_RADIUS * contact, contact)
         first = np.arccosh(np.maximum(np.minimum(self.flat, contact) / radii, 1.0))
         length = np.arccosh(np.maximum(contact / radii, 1.0)) - first
-        # nodes are clustered at both ends: the slope starts like a square root at a flat end, and
-        # rises only near the edge if the indenter is nearly flat
+        # nodes are clustered at both limits: the slope starts like a square root at the edge of a
+        # flat end, and is concentrated near the contact edge if the indenter is nearly flat
         nodes, weights = unit_rule(_NODES)
         eta = first + length * np.sin(0.5 * np.pi * nodes) ** 2
         step = length * 0.5 * np.pi * np.sin(np.pi * nodes) * weights
         return radii * np.cosh(eta), step, radii, radii * np.sinh(eta)
 
     def bound(self, r: np.ndarray, c: float = 1.0) -> np.ndarray:
-        """Friction bound at the radius r of a contact of radius c."""
+        """Return the friction bound at the radius r if the contact radius is c."""
         x, weight, _, _ = self._rule(r, c)
         bound = self.G_star / np.pi * np.sum(weight * self.slope(x), axis=-1)
         return np.where(np.asarray(r, float) >= c, 0.0, bound)[()]
 
     def load(self, r: np.ndarray | float, c: np.ndarray | float = 1.0) -> np.ndarray:
-        """Load within the radius r of a contact of radius c."""
+        """Return the load within the radius r if the contact radius is c."""
         return (self._outside(0.0, c) - self._outside(r, c))[()]
 
     def _outside(self, r: np.ndarray | float, c: np.ndarray | float) -> np.ndarray:
@@ -110,15 +114,19 @@ class Indenter(RoundPressure):
         return self.G_star * np.sum(weight * root * lever * self.slope(x), axis=-1)
 
     def loading(self, displacement: np.ndarray) -> np.ndarray:
-        """Tangential force after a displacement u from rest: 1 minus the load of the contact at the
-        depth 1 - u (Ciavarella 1998, Jaeger 1998)."""
+        """Return the tangential force after a displacement u from rest.
+
+        The force is 1 minus the load at the indentation depth 1 - u (Ciavarella 1998, Jaeger 1998).
+        """
         depth = np.maximum(1.0 - np.asarray(displacement, float), 0.0)
         c = self.radius(depth)
         return 1.0 - np.where(depth > 0.0, self.load(c, c), 0.0)
 
     def of_load(self, share: np.ndarray) -> np.ndarray:
-        """Depth at which the load is `share` times the mean load, from a table and Newton's
-        method."""
+        """Return the indentation depth at which the load is `share` times the mean load.
+
+        The initial guess from a table is improved by Newton's method.
+        """
         share = np.asarray(share, float)
         largest = 1.0
         while self.load(largest, largest) < share.max(initial=0.0):
@@ -134,7 +142,7 @@ class Indenter(RoundPressure):
 
     @cached_property
     def largest(self) -> float:
-        """Largest friction bound, found on grids that are refined around the largest value."""
+        """Largest friction bound, determined on grids that are refined around the maximum."""
         low, high = 0.0, 1.0
         for _ in range(_REFINEMENTS):
             r = np.linspace(low, high, len(_GRID))
@@ -165,7 +173,7 @@ class Power(Indenter):
     Parameters
     ----------
     exponent : float
-        Exponent of the profile, 1 to 100.
+        Exponent of the profile, from 1 to 100.
 
     Raises
     ------
@@ -184,27 +192,27 @@ class Power(Indenter):
         return f"an indenter with the profile r^{self.exponent:g}"
 
     def depth(self, c: np.ndarray) -> np.ndarray:
-        """Indentation depth for the contact radius c."""
+        """Return the indentation depth for the contact radius c."""
         return np.asarray(c, float) ** self.exponent
 
     def slope(self, c: np.ndarray) -> np.ndarray:
-        """Derivative of the depth with respect to the contact radius."""
+        """Return the derivative of the depth with respect to the contact radius."""
         return self.exponent * c ** (self.exponent - 1.0)
 
     def radius(self, depth: np.ndarray) -> np.ndarray:
-        """Contact radius at a depth."""
+        """Return the contact radius at an indentation depth."""
         return np.maximum(depth, 0.0) ** (1.0 / self.exponent)
 
     def of_load(self, share: np.ndarray) -> np.ndarray:
-        """Depth at which the load is `share` times the mean load."""
+        """Return the indentation depth at which the load is `share` times the mean load."""
         return np.maximum(share, 0.0) ** (self.exponent / (self.exponent + 1.0))
 
     @cached_property
     def largest(self) -> float:
         """Largest friction bound.
 
-        For exponents n up to 2 the largest bound is at the centre: (G*/pi) Integral_0^1 n x^(n - 2)
-        dx = (n + 1) / (2 pi (n - 1)).
+        For exponents n up to 2, the largest bound is the bound at the centre, (G*/pi) Integral_0^1
+        n x^(n - 2) dx = (n + 1) / (2 pi (n - 1)).
         """
         if self.exponent > 2.0:
             return super().largest
@@ -213,23 +221,23 @@ class Power(Indenter):
 
 
 LARGEST_FLAT = 0.99
-"""Largest radius of the flat end, divided by the contact radius."""
+"""Largest allowed radius of the flat end, divided by the contact radius."""
 _HALVINGS = 100
-"""Number of bisections, enough for full precision."""
+"""Number of bisections, which is enough for full precision."""
 
 
 @dataclass(frozen=True)
 class Punch(Indenter):
-    """The pressure of a punch with a flat end. The radius of the flat end is `flat` times the
-    contact radius.
+    """The pressure of a flat punch with a rounded edge.
 
-    Its equivalent plane profile is D(c) ~ c (sqrt(c^2 - b^2) - b arccos(b/c)) for c above the
-    radius b of the flat end (Ciavarella 1999).
+    The radius of the flat end is `flat` times the contact radius.  The equivalent plane profile is
+    D(c) ~ c (sqrt(c^2 - b^2) - b arccos(b/c)) for c above the radius b of the flat end (Ciavarella
+    1999).
 
     Parameters
     ----------
     flat : float
-        Radius of the flat end divided by the contact radius, 0 to 0.99.
+        Radius of the flat end divided by the contact radius, from 0 to 0.99.
 
     Raises
     ------
@@ -257,16 +265,16 @@ class Punch(Indenter):
         return 1.0 / float(self._profile(1.0))
 
     def depth(self, c: np.ndarray) -> np.ndarray:
-        """Indentation depth for the contact radius c."""
+        """Return the indentation depth for the contact radius c."""
         return self._scale * self._profile(c)
 
     def slope(self, c: np.ndarray) -> np.ndarray:
-        """Derivative of the depth with respect to the contact radius."""
+        """Return the derivative of the depth with respect to the contact radius."""
         c = np.maximum(c, self.flat)
         return self._scale * (2.0 * _root(c, self.flat) - self.flat * _angle(c, self.flat))
 
     def radius(self, depth: np.ndarray) -> np.ndarray:
-        """Contact radius at a depth, by bisection."""
+        """Compute the contact radius at an indentation depth by bisection."""
         depth = np.asarray(depth, float)
         low, high = np.full(depth.shape, self.flat), np.ones(depth.shape)
         while np.any(self.depth(high) < depth):

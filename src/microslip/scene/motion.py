@@ -1,14 +1,15 @@
-"""Motions: forward sliding, and one wave for each direction that oscillates.
+"""Motions: forward sliding combined with an oscillation (a wave) along one or more directions.
 
 *Forward* is the direction of sliding, and *lateral* is perpendicular to it.  A positive angle moves
 points with a positive lateral coordinate forward.  Displacements are in u_lim, angles in u_lim / a,
-and time is the phase omega t.  With the amplitude A, a wave adds to its direction
+and time is the phase omega t.  For a motion of amplitude A, each wave adds the following term to
+the displacement along its direction:
 
     A share sin(cycles phase + lead).
 
-The unit of an angle is the largest angle of a bore with the amplitude 1, phi_lk(a/2).  The normal
-load, or the indentation depth, divided by its reference value is 1 plus its wave.  There is no
-contact while this sum is below 0.  The reference values are those without oscillation.
+A wave in angle has the unit phi_lk(a/2), the largest angle of a bore with the amplitude 1.  For the
+normal load and the indentation depth, the quantity divided by its reference value (the value
+without oscillation) is 1 plus the wave.  There is no contact while this sum is below 0.
 """
 
 from __future__ import annotations
@@ -27,10 +28,11 @@ from microslip.scene.pressure import Pressure
 from microslip.theory import hertz, masing, oscillating_load, paper
 
 FOCUS_RANGE = (0.05, 0.9995)
-"""Range of radii towards which rings are graded.  A smaller stick zone carries almost no load."""
+"""Range of radii towards which rings are graded.  A stick zone below this range carries almost no
+load."""
 
 LOOP = np.linspace(0.0, 2.0 * np.pi, 721)
-"""Phases of a period at which the extremes of an oscillation are evaluated."""
+"""Phases at which the extremes of an oscillation over one period are evaluated."""
 HALF_PERIOD = (-np.pi / 2, np.pi / 2)
 """Phases of two consecutive turning points of a sine."""
 MOST_CYCLES = 20
@@ -40,7 +42,7 @@ NORMAL = ("load", "indentation")
 
 
 REPEAT = 1e-6
-"""Largest accepted difference between values of a user's motion that must be equal."""
+"""Tolerance for values of a user-defined motion that must be equal."""
 
 
 class Wave(NamedTuple):
@@ -49,15 +51,15 @@ class Wave(NamedTuple):
     Parameters
     ----------
     share : float
-        Amplitude of the wave divided by the amplitude of the motion, 0 to 1.
+        Amplitude of the wave divided by the amplitude of the motion, from 0 to 1.
     cycles : int
-        Number of cycles in a period, 1 to 20.
+        Number of cycles in a period, from 1 to 20.
     degrees : float
         Phase lead, in degrees.
     form : callable
-        Wave form, a function of an array of phases.  It has the symmetries and the turning points
-        of the sine: form(-x) = -form(x), form(pi - x) = form(x), and it rises from -1 at -pi/2 to 1
-        at pi/2.
+        Waveform as a function of an array of phases.  It must have the symmetries and the turning
+        points of the sine: form(-x) = -form(x), form(pi - x) = form(x), and it rises from -1 at
+        -pi/2 to 1 at pi/2.
     """
 
     share: float = 1.0
@@ -78,33 +80,34 @@ class Wave(NamedTuple):
 class Motion(spec.Named):
     """A prescribed motion.
 
-    A subclass declares its waves.  All symmetries follow from them.  The fields of the class are
-    the numbers that may follow the motion's name in a text such as
-    "elliptic:forward=0.5,phase=30"; `str` returns this text.  The motion's name is derived from the
-    class name: ContinuousBore has the name "continuous-bore".  A motion that is not a sum of waves
-    overrides `displacement`, and the symmetries that it has.
+    A subclass declares its waves, from which all symmetries are derived.  The fields of the class
+    are the parameters that can be given after the motion's name in a string such as
+    "elliptic:forward=0.5,phase=30"; `str` returns this string.  The motion's name is derived from
+    the class name: ContinuousBore has the name "continuous-bore".  A motion that is not a sum of
+    waves overrides `displacement` and the properties of the symmetries that it has.
 
     Attributes
     ----------
     waves : mapping of str to Wave
-        Wave of each direction: some of "forward", "lateral", "angle", and "load" or "indentation".
+        The wave along each oscillating direction.  Possible keys are "forward", "lateral", "angle",
+        and either "load" or "indentation".
     summary, numbers : str
-        Description of the motion in one line, and description of its numbers.
+        One-line description of the motion, and description of its parameters.
     velocity_label, amplitude_label : str
-        Formulas of the dimensionless velocity and amplitude.
+        Formulas for the dimensionless velocity and amplitude.
     periodic : bool
         Whether the motion has an amplitude and the period 2 pi; otherwise it is steady.
     edge_velocity : bool
-        Whether the velocity is divided by the largest speed of the edge in rotation, instead of
-        omega u_lim.
+        Whether the dimensionless velocity is the velocity divided by the largest speed of the
+        contact edge in rotation, instead of omega u_lim.
     readings : tuple of Motion
-        Alternative motions through the same samples.  The difference in friction between these
-        motions serves as an error estimate.
+        Alternative motions through the same samples.  The differences in friction between these
+        motions serve as an error estimate.
 
     Raises
     ------
     InputError
-        If a number is not finite, if a share is outside 0 to 1, if a number of cycles is not an
+        If a parameter is not finite, if a share is outside 0 to 1, if a number of cycles is not an
         integer from 1 to 20, or if no direction oscillates.
     """
 
@@ -152,8 +155,10 @@ class Motion(spec.Named):
 
     @cached_property
     def components(self) -> dict[str, Wave]:
-        """Waves with a share above 0.  The phase lead of a single wave has no effect, so it is
-        0."""
+        """Waves with a share above 0.
+
+        If there is a single wave, its phase lead is set to 0, because it has no effect.
+        """
         waves = {name: wave for name, wave in self.waves.items() if wave.share}
         if len(waves) == 1:
             return {name: wave._replace(degrees=0.0) for name, wave in waves.items()}
@@ -161,19 +166,18 @@ class Motion(spec.Named):
 
     @cached_property
     def loads(self) -> bool:
-        """Whether the normal load oscillates, as described by `depth`, `deepest` and
-        `mean_load`."""
+        """Whether the normal load oscillates; see `depth`, `deepest` and `mean_load`."""
         return not self.components.keys().isdisjoint(NORMAL)
 
     @cached_property
     def rotates(self) -> bool:
-        """Whether the contact rotates.  In a rotation, the tractions depend on the polar angle."""
+        """Whether the contact rotates.  If it does, the tractions depend on the polar angle."""
         return "angle" in self.components
 
     @cached_property
     def half_disc(self) -> bool:
-        """Whether the tractions on one half of a round contact follow by symmetry from those on the
-        other half.
+        """Whether, by symmetry, the tractions on one half of a round contact determine the
+        tractions on the other half.
 
         The symmetry is a mirror across the lateral axis for rotations, and a point reflection for
         other motions.  A rotation combined with a lateral motion has neither symmetry.
@@ -183,7 +187,10 @@ class Motion(spec.Named):
     @cached_property
     def half_period_mirror(self) -> bool:
         """Whether the second half of a period equals the first half with the lateral displacement
-        and the angle reversed.  If False, a march covers a whole period."""
+        and the angle reversed.
+
+        If False, the time integration covers a whole period.
+        """
         odd = {name: wave.cycles % 2 == 1 for name, wave in self.components.items()}
         return bool(odd) and all(one == (name in ("lateral", "angle")) for name, one in odd.items())
 
@@ -201,16 +208,18 @@ class Motion(spec.Named):
         """Whether the oscillation alone can propel the contact, so that the mean friction can be
         negative.
 
-        It cannot if the oscillation at a later phase equals the original one with its forward
-        component reversed.  Let d be the greatest common divisor of the numbers of cycles.  After a
-        fraction 1/(2 d) of the period, every component has the same value as before, or minus this
-        value if its number of cycles is an odd multiple of d.  The forward component must change
-        its sign, and the load must not.  The signs of lateral and angle do not matter: under a
-        symmetric pressure, two images of a solution are also solutions.  The mirror image reverses
-        forward and angle.  The point reflection q(-forward, -lateral) reverses the angle; it is a
-        solution because the influence of one point on another is an even function of the vector
-        between them.  Together with -q, which reverses all components, these images give every
-        combination of signs.  In all images, the forward force has the sign of the forward motion.
+        It cannot if the oscillation at some later phase equals the original oscillation with the
+        forward component reversed.  Let d be the greatest common divisor of the numbers of cycles
+        of all components.  After a fraction 1/(2 d) of the period, every component has the same
+        value as before, or minus this value if its number of cycles is an odd multiple of d.  If
+        then the forward component has changed its sign, and the load has not, the oscillation
+        cannot propel the contact.  The signs of the lateral component and of the angle do not
+        matter, because under a symmetric pressure two images of a solution are solutions as well.
+        The mirror image reverses the forward component and the angle.  The point reflection
+        q(-forward, -lateral) reverses the angle; it is a solution because the influence of one
+        point on another is an even function of the vector between them.  Together with -q, which
+        reverses all components, these images give every combination of signs.  In all images, the
+        forward force has the sign of the forward motion.
         """
         if "forward" not in self.components:
             return False
@@ -221,7 +230,7 @@ class Motion(spec.Named):
 
     @cached_property
     def cycles(self) -> int:
-        """Largest number of cycles that a component has in a period."""
+        """Largest number of cycles of any component in a period."""
         return max((int(wave.cycles) for wave in self.components.values()), default=1)
 
     @cached_property
@@ -235,8 +244,10 @@ class Motion(spec.Named):
     def displacement(
         self, phase: np.ndarray, velocity: float, amplitude: float, poisson: float
     ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Forward, lateral and angular displacement, each with the shape of `phase` (Eqs 1, 2, 4,
-        23, 27 and 28)."""
+        """Compute the forward, lateral and angular displacement (Eqs 1, 2, 4, 23, 27 and 28).
+
+        Each of the three arrays has the shape of `phase`.
+        """
         forward, lateral, turn = (
             amplitude * self.components[name](phase)
             if name in self.components
@@ -251,7 +262,7 @@ class Motion(spec.Named):
         return velocity * phase + forward, lateral, turn
 
     def drift(self, velocity: float, amplitude: float, poisson: float) -> float:
-        """Mean forward displacement per radian of phase, in u_lim.
+        """Compute the mean forward displacement per radian of phase, in u_lim.
 
         The drift is proportional to the velocity.  It is computed at velocity 1 and scaled, because
         at small velocities the rounding error of the oscillation would exceed the drift.
@@ -263,7 +274,7 @@ class Motion(spec.Named):
         return float(advance) / (2.0 * np.pi) * velocity
 
     def stroke(self, amplitude: float, poisson: float) -> float:
-        """Half the peak-to-peak displacement of the edge of the contact, in u_lim; 0 for steady
+        """Compute half the peak-to-peak displacement of the contact edge, in u_lim; 0 for steady
         motions."""
         if not self.periodic:
             return 0.0
@@ -272,19 +283,20 @@ class Motion(spec.Named):
 
     @cached_property
     def reach(self) -> float:
-        """Largest distance from the mean position, divided by the amplitude."""
+        """Largest distance from the mean position, divided by the amplitude of the motion."""
         forward, lateral = (
             self.components[name](LOOP) if name in self.components else 0.0 for name in PLANE[:2]
         )
         return float(np.max(np.hypot(forward, lateral)))
 
     def focus(self, velocity: float, amplitude: float, pressure: Pressure) -> float | None:
-        """Radius of a kink in the traction, towards which rings are graded; None without a kink.
+        """Return the radius of a kink in the traction, towards which rings are graded; None without
+        a kink.
 
-        Under an oscillating load, it is the smallest contact radius divided by the largest.  For a
-        translation, it is the stick radius of a straight oscillation with the same reach (Eq 8).
-        For a rotation, it is Lubkin's stick radius (Eq 30), under any pressure: this grading does
-        no harm there.
+        If the load oscillates, the result is the smallest contact radius divided by the largest.
+        For a translation, it is the stick radius of a straight oscillation with the same reach (Eq
+        8).  For a rotation, it is Lubkin's stick radius (Eq 30).  This radius is derived for Hertz
+        pressure, but as a grading it does no harm under other pressures.
         """
         if self._normal.share:
             smallest = pressure.radius(self._extreme(-1.0, amplitude, pressure))
@@ -297,10 +309,12 @@ class Motion(spec.Named):
         return within_rings(float(paper.bore_stick_radius(turn)))
 
     def turns(self, velocity: float, amplitude: float) -> tuple[float, ...]:
-        """Phases of the turning points during a march, including its start and its end.
+        """Return the phases of the turning points in the time integration, with its start and its
+        end.
 
-        A march covers half a period or a period.  It begins at the smallest load if the load
-        oscillates.  A longitudinal motion v t + A sin t turns where its velocity changes sign.
+        The time integration covers half a period or a whole period.  If the load oscillates, it
+        begins at the smallest load.  A longitudinal motion v t + A sin t turns where its velocity
+        changes sign.
         """
         if self._longitudinal and velocity < amplitude * self.reach:
             back = float(np.arccos(-velocity / (amplitude * self.reach)))
@@ -316,25 +330,26 @@ class Motion(spec.Named):
         return waves[0] if waves else Wave(0.0)
 
     def _depth_at(self, height: np.ndarray, pressure: Pressure) -> np.ndarray:
-        """Indentation depth at a load or an indentation; 0 below contact."""
+        """Return the indentation depth at a load or an indentation; 0 if there is no contact."""
         height = np.maximum(height, 0.0)
         return pressure.of_load(height) if "load" in self.components else height
 
     def _extreme(self, sign: float, amplitude: float, pressure: Pressure) -> float:
-        """Smallest (sign = -1) or largest (sign = 1) indentation depth."""
+        """Return the smallest (sign = -1) or largest (sign = 1) indentation depth."""
         height = np.array(1.0 + sign * amplitude * self._normal.share)
         return float(self._depth_at(height, pressure))
 
     def depth(self, phase: np.ndarray, amplitude: float, pressure: Pressure) -> np.ndarray:
-        """Indentation depth divided by its reference value, >= 0; 0 if there is no contact."""
+        """Compute the indentation depth divided by its reference value; 0 if there is no
+        contact."""
         return self._depth_at(1.0 + amplitude * self._normal(phase), pressure)
 
     def deepest(self, amplitude: float, pressure: Pressure) -> float:
-        """Largest value of `depth` in a period."""
+        """Return the largest value of `depth` in a period."""
         return self._extreme(1.0, amplitude, pressure) if self.loads else 1.0
 
     def mean_load(self, amplitude: float, pressure: Pressure) -> float:
-        """Mean normal load divided by its reference value."""
+        """Compute the mean normal load, divided by its reference value."""
         if not self.loads:
             return 1.0
         size, by_load = amplitude * self._normal.share, "load" in self.components
@@ -349,11 +364,13 @@ class Motion(spec.Named):
     def closed_form(
         self, velocity: float, amplitude: float, pressure: Pressure
     ) -> tuple[float, float] | None:
-        """Mean friction and dissipated energy per period at nu = 0; None without a closed form.
+        """Return the mean friction and the dissipated energy per period at nu = 0, if there is a
+        closed form.
 
-        Velocity 0 is the static limit.  A motion along the direction of sliding follows Masing's
-        rule under every pressure with a known loading curve.  An oscillating load alone has a
-        closed form for axisymmetric indenters (theory/oscillating_load.py).
+        The result is None without a closed form.  Velocity 0 stands for the static limit.  A motion
+        along the direction of sliding follows Masing's rule under every pressure with a known
+        loading curve.  If only the load oscillates, there is a closed form for axisymmetric
+        indenters (theory/oscillating_load.py).
         """
         if self._longitudinal and pressure.loading is not None:
             place = velocity, amplitude * self.reach, pressure.loading
@@ -367,7 +384,7 @@ class Motion(spec.Named):
 
 
 def _is_like_sine(form: Callable[[np.ndarray], np.ndarray]) -> bool:
-    """Whether a wave form has the symmetries of the sine, and the value 1 at pi/2."""
+    """Return whether a waveform has the symmetries of the sine, and the value 1 at pi/2."""
     phase = np.linspace(-2.0 * np.pi, 2.0 * np.pi, 33)
     values = form(phase)
     images = np.stack([-form(-phase), form(np.pi - phase)])
@@ -381,10 +398,10 @@ def within_rings(radius: float) -> float:
 
 
 def stick_focus(reach: float, pressure: Pressure) -> float | None:
-    """Stick radius of an oscillation along a line with the amplitude `reach`, in u_lim.
+    """Return the stick radius of an oscillation along a line.  `reach` is its amplitude, in u_lim.
 
-    For a sphere, it is Eq 8.  The result is None at full slip, or if the stick zone is not a
-    circle.
+    For a sphere, the stick radius is given by Eq 8.  The result is None at full slip, or if the
+    stick zone is not a circle.
     """
     radius = pressure.stick_radius(reach) if reach < 1.0 else None
     return None if radius is None else within_rings(radius)

@@ -1,4 +1,4 @@
-"""The motions of the package, declared by their waves."""
+"""The motions of the package; most of them are declared by their waves."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ class Longitudinal(Motion):
 
 
 def triangle(phase: np.ndarray) -> np.ndarray:
-    """Triangular wave with the zeros and the sign of the sine, and the amplitude 1."""
+    """Evaluate a triangular wave of amplitude 1 with the zeros and the sign of the sine."""
     return 2.0 / np.pi * np.arcsin(np.sin(phase))
 
 
@@ -58,7 +58,7 @@ class Bore(Motion):
 class ContinuousBore(Motion):
     """Sliding forward with a steady rotation about the contact normal (Eqs 12 and 13).
 
-    The phase is the angle in u_lim / a.
+    The phase equals the angle of rotation in units of u_lim / a.
     """
 
     summary = "sliding forward while rotating steadily about the contact normal"
@@ -70,11 +70,12 @@ class ContinuousBore(Motion):
     def displacement(
         self, phase: np.ndarray, velocity: float, amplitude: float, poisson: float
     ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Forward displacement v~ t, no lateral displacement, and the angle t."""
+        """Return the forward displacement v~ t, the lateral displacement 0, and the angle t."""
         return velocity * phase, np.zeros_like(phase), phase + 0.0
 
     def focus(self, velocity: float, amplitude: float, pressure: Pressure) -> float | None:
-        """Radius of the instantaneous centre of rotation if it is inside the contact (Eq 14)."""
+        """Return the radius of the instantaneous centre of rotation (Eq 14); None if it is outside
+        the contact."""
         return within_rings(velocity) if velocity < 1.0 else None
 
 
@@ -85,8 +86,8 @@ class TransverseBore(Motion):
     Parameters
     ----------
     lateral, angle : float
-        Amplitudes divided by the amplitude of the motion, 0 to 1.  The unit of `lateral` is u_lim,
-        and the unit of `angle` is phi_lk(a/2).
+        Amplitudes divided by the amplitude of the motion, from 0 to 1.  The unit of `lateral` is
+        u_lim, and the unit of `angle` is phi_lk(a/2).
     phase : float
         Phase lead of the rotation, in degrees.
     """
@@ -108,16 +109,17 @@ class TransverseBore(Motion):
 
 @dataclass(frozen=True)
 class Elliptic(Motion):
-    """Sliding forward while oscillating along two directions: lines, ellipses, Lissajous figures.
+    """Sliding forward while oscillating along two directions, on a line, an ellipse or a Lissajous
+    figure.
 
     Parameters
     ----------
     forward, lateral : float
-        Amplitude in each direction divided by the amplitude of the motion, 0 to 1.
+        Amplitude in each direction, divided by the amplitude of the motion, from 0 to 1.
     phase : float
         Phase lead of the forward oscillation, in degrees.
     forward_cycles, lateral_cycles : int
-        Number of cycles in a period, 1 to 20.
+        Number of cycles in a period, from 1 to 20.
     """
 
     forward: float = 1.0
@@ -143,25 +145,25 @@ class Elliptic(Motion):
 class Normal(Motion):
     """Sliding forward while the normal load or the indentation oscillates.
 
-    The motion can oscillate in the plane as well.  Friction is divided by mu times the mean load.
+    The contact can oscillate in the plane as well.  Friction is divided by mu times the mean load.
 
     Parameters
     ----------
     load, indentation : float
-        Amplitude of the load or of the indentation, divided by the amplitude of the motion, 0 to 1.
-        `load` must keep its default of 1 if `indentation` is above 0.
+        Amplitude of the load or of the indentation, divided by the amplitude of the motion, from 0
+        to 1.  `load` must keep its default of 1 if `indentation` is above 0.
     lateral, forward, angle : float
-        In-plane amplitudes divided by the amplitude of the motion, 0 to 1.  The units are u_lim for
-        displacements and phi_lk(a/2) for the angle.
+        In-plane amplitudes divided by the amplitude of the motion, from 0 to 1.  The unit is u_lim
+        for displacements, and phi_lk(a/2) for the angle.
     phase : float
-        Phase lead of the oscillation in the plane, in degrees.
+        Phase lead of the in-plane oscillation, in degrees.
     normal_cycles, lateral_cycles, forward_cycles, angle_cycles : int
-        Number of cycles in a period, 1 to 20.
+        Number of cycles in a period, from 1 to 20.
 
     Raises
     ------
     InputError
-        If neither the load nor the indentation oscillates, or if both are given.
+        If neither the load nor the indentation oscillates, or if both are specified.
     """
 
     load: float = 1.0

@@ -1,5 +1,5 @@
-"""Pressures.  A pressure is the distribution of the load over the contact, and gives the friction
-bound at each point.
+"""Pressures: distributions of the load over the contact, which give the friction bound at each
+point.
 
 Working units are dimensionless: mu F_z = 1, u_lim = 1 and a = 1.  The length a is the outer radius
 of a round contact; for other contacts, it is half the longer side of the bounding rectangle.  The
@@ -9,10 +9,10 @@ computed with the compliance averaged over directions,
     u_lim = max of 1/(pi G*) Integral mu p(z') / |z - z'| dA'.
 
 For an axisymmetric indenter at the depth d, u_lim is mu d E*/G*, which is 3 mu F_z/(4 G* a) for a
-sphere.  A round contact that moves in one direction from rest slides everywhere once the
-displacement exceeds u_lim, and so does any contact at nu = 0.  Other contacts at nu > 0 slide a few
-percent earlier or later, depending on the direction.  In working units, the reduced shear modulus
-is the number G*, which is 3/4 for a sphere.
+sphere.  A contact that moves in one direction from rest slides everywhere once the displacement
+exceeds u_lim, if it is round or if nu = 0.  For other contacts at nu > 0, full slip begins at a
+displacement that differs from u_lim by a few percent, depending on the direction.  In working
+units, the reduced shear modulus is the number G*, which is 3/4 for a sphere.
 """
 
 from __future__ import annotations
@@ -49,13 +49,13 @@ NO_UNITS: Units = None, None
 class Pressure(spec.Named):
     """A distribution of the load over the contact, in working units (see the module pressure).
 
-    Each pressure is a subclass.  Its fields are the numbers that may
-    follow its name in a text such as "power:exponent=1"; `str` returns this text.
+    Each pressure is a subclass.  The fields of the subclass are the parameters that can be given
+    after the name in a string such as "power:exponent=1"; `str` returns this string.
 
     Attributes
     ----------
     summary : str
-        Description in one line.
+        One-line description.
     G_star : float
         Reduced shear modulus 4G/(2 - nu).
     torque : float
@@ -66,13 +66,14 @@ class Pressure(spec.Named):
     mirrored : bool
         Whether the pressure is symmetric under lateral -> -lateral.
     inner : float
-        Radius of the hole in the middle; 0 if there is no hole.
+        Radius of the hole at the centre; 0 if there is no hole.
     hertzian : bool
-        Whether the contact is an elliptic Hertz contact.  Its stick zones are ellipses of the same
-        shape (Vermeulen and Johnson), so `loading` is the same as for a sphere.
+        Whether the contact is an elliptic Hertz contact.  The stick zone of such a contact is an
+        ellipse of the same shape (Vermeulen and Johnson), so that `loading` is the same as for a
+        sphere.
     readings : tuple of Pressure
-        Alternative pressures that agree with the values of a grid.  The differences in friction
-        between these pressures give the error due to the grid.
+        Alternative pressures that agree with the values on a grid.  The differences in friction
+        between these pressures are an estimate of the error due to the grid.
     """
 
     summary: ClassVar[Any] = ""
@@ -85,21 +86,22 @@ class Pressure(spec.Named):
     """Contact area divided by a^2."""
     inner = 0.0
     half_widths: ClassVar[Any] = (1.0, 1.0)
-    """Half of the forward and the lateral width of the rectangle around the contact, divided by
-    a."""
+    """Half the forward width and half the lateral width of the rectangle around the contact,
+    divided by a."""
     cell_loads: ClassVar[Any] = None
-    """cell_loads(cells): load on each of cells x cells cells of the rectangle around the contact,
-    (forward, lateral); the sum is 1."""
+    """cell_loads(n): loads of the n x n cells of the rectangle around the contact, an array with
+    the axes (forward, lateral).  The sum of the loads is 1."""
 
-    # For pressures that depend on the radius alone:
+    # Attributes of pressures that depend on the radius alone
     ring_means: ClassVar[Any] = None
     """ring_means(psi) -> (bound, lever): mean friction bound of the rings with the edges r =
-    sin(psi), and mean lever arm of a traction with the shape of the bound.  psi has the shape (n +
-    1,), and each result has the shape (n,)."""
+    sin(psi), and mean lever arm of a traction proportional to the bound.  psi is an array of shape
+    (n + 1,); each result has the shape (n,)."""
     bound: ClassVar[Any] = None
-    """bound(r): friction bound mu p at radii r, any shape; for an indenter also bound(r, c)."""
+    """bound(r): friction bound mu p at an array of radii r of any shape.  For an indenter, bound(r,
+    c) gives the bound at the contact radius c."""
 
-    # For axisymmetric indenters, whose contact is a full circle that grows with the load:
+    # Attributes of axisymmetric indenters, whose contact is a full circle that grows with the load
     depth: ClassVar[Any] = None
     """depth(c): indentation depth for the contact radius c; depth(1) = 1."""
     radius: ClassVar[Any] = None
@@ -107,12 +109,12 @@ class Pressure(spec.Named):
     of_load: ClassVar[Any] = None
     """of_load(share): depth at which the load is `share` times the mean load."""
     load: ClassVar[Any] = None
-    """load(r, c): load within the radius r of a contact of radius c; arrays broadcast."""
+    """load(r, c): load within the radius r if the contact radius is c; arrays broadcast."""
 
     loading: ClassVar[Any] = None
-    """loading(u): tangential force divided by mu F_z after a displacement u >= 0 (in u_lim) in one
-    direction from rest, at nu = 0.  It is available for axisymmetric indenters and elliptic Hertz
-    contacts."""
+    """loading(u): tangential force divided by mu F_z, after a displacement u >= 0 (in u_lim) in one
+    direction from rest, at nu = 0.  This loading curve is defined for axisymmetric indenters and
+    elliptic Hertz contacts."""
 
     def __post_init__(self) -> None:
         spec.refuse_strange(self, "pressure")
@@ -124,8 +126,8 @@ class Pressure(spec.Named):
         """Create a pressure from values on a regular grid.
 
         The unit of length a is half the longer side of the smallest rectangle that contains all
-        pressure.  The error estimate of friction includes the effect of the unknown pressure
-        between points.
+        nonzero pressures.  The error estimate of friction includes the effect of the unknown
+        pressure between the points.
 
         Parameters
         ----------
@@ -134,8 +136,8 @@ class Pressure(spec.Named):
         pressure : array, shape (n, m)
             Pressure in any unit, 0 outside the contact.
         grid : str
-            "cells" if values are means over the cells around the points; "samples" if they are
-            values at the points, which are interpolated bilinearly.
+            "cells" if each value is the mean over the cell around its point; "samples" if the
+            values apply at the points and are to be interpolated bilinearly.
 
         Raises
         ------
@@ -166,28 +168,29 @@ class Pressure(spec.Named):
 
     @property
     def is_indenter(self) -> bool:
-        """Whether the pressure belongs to an axisymmetric indenter."""
+        """Whether the pressure is that of an axisymmetric indenter."""
         return self.depth is not None
 
     @property
     def stiffness(self) -> float:
-        """Force for a uniform displacement u_lim without slip, divided by mu F_z.
+        """Tangential force for a uniform displacement u_lim without slip, divided by mu F_z.
 
-        It is 2 G* a, which is an upper bound for a contact that does not fill the circle of
+        The value is 2 G* a.  It is an upper bound for a contact that does not fill the circle of
         radius a.
         """
         return 2.0 * self.G_star
 
     def total(self, depth: np.ndarray) -> np.ndarray:
-        """Load of an indenter at depths >= 0.  The array of depths can have any shape."""
+        """Compute the load of an indenter at an array of depths >= 0, of any shape."""
         radius = self.radius(depth)
         return self.load(radius, radius)
 
     def stick_radius(self, displacement: float) -> float | None:
-        """Stick radius after a displacement >= 0 (in u_lim) in one direction from rest.
+        """Return the stick radius after a displacement >= 0 (in u_lim) in one direction from rest.
 
-        The stick radius is the contact radius at the depth 1 - displacement (Ciavarella, Jaeger),
-        and 0.0 at full slip.  The result is None except for axisymmetric indenters.
+        The stick radius is the contact radius at the depth 1 - displacement (Ciavarella, Jaeger).
+        The result is 0.0 at full slip, and None if the pressure is not that of an axisymmetric
+        indenter.
         """
         if self.depth is None:
             return None
@@ -198,12 +201,11 @@ class Pressure(spec.Named):
 
 @dataclass(frozen=True)
 class RoundPressure(Pressure):
-    """Base class of pressures that depend on the radius alone.  They are computed from integrals
-    over rings.
+    """Base class of pressures that depend on the radius alone, computed from integrals over rings.
 
-    A subclass defines `ring_loads` and `ring_moments`.  They integrate the friction bound, and the
-    bound times the radius, over the rings with the edges r = sin(psi).  psi has the shape (n + 1,),
-    and the result has the shape (n,).
+    A subclass defines `ring_loads`, the integral of the friction bound over each ring, and
+    `ring_moments`, the integral of the bound times the radius.  The rings have the edges r =
+    sin(psi), where psi is an array of shape (n + 1,).  The result is an array of shape (n,).
     """
 
     def ring_loads(self, psi: np.ndarray) -> np.ndarray:
@@ -213,19 +215,21 @@ class RoundPressure(Pressure):
         raise NotImplementedError
 
     def ring_means(self, psi: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Mean friction bound and lever arm of the rings with the edges r = sin(psi)."""
+        """Compute the mean friction bound and the lever arm of the rings with the edges r =
+        sin(psi)."""
         loads, moments, radii = self.ring_loads(psi), self.ring_moments(psi), np.sin(psi)
-        # a ring without load needs a lever arm as well
+        # a ring without load needs a finite lever arm, too
         lever = np.where(loads > 0.0, moments / np.where(loads > 0.0, loads, 1.0), radii[1:])
         return loads / (np.pi * np.diff(radii**2)), lever
 
     def cell_loads(self, cells: int) -> np.ndarray:
-        """Compute the load on each square, (cells, cells)."""
+        """Compute the load on each cell, as an array of shape (cells, cells)."""
         return round_loads(cells, self.ring_loads, self.inner)
 
 
 def _numbers(name: str, values: Any) -> np.ndarray:
-    """Convert an argument to an array of floats.  Raises an InputError that names the argument."""
+    """Convert an argument to an array of floats.  Raise an InputError that names the argument if
+    this is impossible."""
     try:
         return np.ascontiguousarray(values, float)
     except (TypeError, ValueError):
@@ -234,21 +238,22 @@ def _numbers(name: str, values: Any) -> np.ndarray:
 
 @dataclass(frozen=True, eq=False)
 class Measured(spec.NamedByText, Pressure):
-    """A pressure given by values on a grid, see `Pressure.from_array`.
+    """A pressure given by values on a grid; see `Pressure.from_array`.
 
-    The unit of length a is half the longer side of the smallest rectangle that contains all
-    pressure.  Rotations are about the centre of this rectangle.
+    The unit of length a is half the longer side of the smallest rectangle that contains all nonzero
+    pressures.  The contact rotates about the centre of this rectangle.
 
     Attributes
     ----------
     text : str
-        Name of the pressure, with a digest of the values.
+        Name of the pressure, including a digest of the values.
     grid : grid.Grid
-        The values, divided by the largest one.  The unit of the axes is the longer step.
+        The values divided by the largest value, on axes in units of the longer grid step.
     step, peak : float
-        The longer step and the largest value, in the units of the coordinates and the values.
+        The longer grid step, in the unit of the coordinates, and the largest value, in the unit of
+        the values.
     units : tuple
-        Units of the coordinates and of the values, see Units.
+        Units of the coordinates and of the values; see Units.
     """
 
     text: str
@@ -271,10 +276,11 @@ class Measured(spec.NamedByText, Pressure):
         reading: str = "cells",
         units: Units = NO_UNITS,
     ) -> Measured:
-        """Create a pressure with this name.  The readings are the pressures of the same values with
-        the other meaning in `grid.READINGS`, and with half the resolution.
+        """Create a pressure with the given name.
 
-        Raises InputError as `grid.checked` does.
+        The attribute `readings` contains two further pressures: the same values with the other
+        meaning in `grid.READINGS`, and the values at half the resolution.  An InputError is raised
+        in the same cases as by `grid.checked`.
         """
         points, values, step = checked(forward, lateral, values)
         peak = float(values.max())
@@ -298,7 +304,7 @@ class Measured(spec.NamedByText, Pressure):
         return forward, lateral
 
     def cell_loads(self, cells: int) -> np.ndarray:
-        """Compute the load on each square, (cells, cells)."""
+        """Compute the load on each cell, as an array of shape (cells, cells)."""
         edges = np.arange(cells + 1) * 2.0 / cells - 1.0
         return of_loads(self.grid.loads(*(side.middle + side.half * edges for side in self._sides)))
 
@@ -309,7 +315,8 @@ class Measured(spec.NamedByText, Pressure):
 
     @cached_property
     def torque(self) -> float:
-        """Mean distance from the centre, weighted with the pressure.  It is exact for cells."""
+        """Mean distance from the centre, weighted by the pressure.  It is exact if the values are
+        means over cells."""
         edges = [side.edges(-(-FINE // side.steps)) for side in self._sides]
         loads = self.grid.loads(*edges)
         pairs = zip(edges, self._sides, strict=True)
@@ -320,7 +327,7 @@ class Measured(spec.NamedByText, Pressure):
 
     @property
     def area(self) -> float:
-        """Area of the cells under pressure, divided by a^2."""
+        """Area of the cells with nonzero pressure, divided by a^2."""
         cell = self.grid.forward.step * self.grid.lateral.step
         return np.count_nonzero(self.grid.values) * cell / self._half**2
 
@@ -341,7 +348,7 @@ class Measured(spec.NamedByText, Pressure):
 
     @property
     def load_N(self) -> float | None:
-        """Integral of the pressure over the contact, in N; None without units."""
+        """Integral of the pressure over the contact, in N; None if the values have no units."""
         metre, pascal = self.units
         if metre is None or pascal is None:
             return None

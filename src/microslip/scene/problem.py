@@ -1,6 +1,7 @@
-"""A problem: a motion at one velocity and amplitude, with its drive and its pressure.
+"""The class Problem: a motion at one velocity and amplitude, with a drive and a pressure.
 
-A drive prescribes the velocity (no Drive), the force, or the velocity of a spring's far end:
+Without a drive, the velocity is prescribed.  A drive prescribes the force, or the velocity of the
+far end of a spring.  The equations of motion are
 
     velocity   u = v t                              force   m u'' + f = P
     spring     m u'' + c u' + f = k (v t - u)
@@ -75,7 +76,7 @@ class Force(Drive):
 
 @dataclass(frozen=True)
 class Spring(Drive):
-    """A spring attached to a body.  The far end of the spring moves at the velocity of the problem.
+    """A spring attached to the body.  Its far end moves at the velocity of the problem.
 
     Parameters
     ----------
@@ -89,7 +90,7 @@ class Spring(Drive):
     Raises
     ------
     InputError
-        If a number is negative or not finite.
+        If an argument is negative or not finite.
     """
 
     stiffness: float
@@ -105,36 +106,37 @@ class Spring(Drive):
 
 @dataclass(frozen=True)
 class Problem:
-    """A motion at one velocity and amplitude.  All quantities are dimensionless, and the object is
-    hashable.
+    """A motion at one velocity and amplitude.
+
+    All quantities are dimensionless.  The object is hashable.
 
     Parameters
     ----------
     motion : Motion
         The motion, such as `Transverse()` or `Elliptic(forward=0.5)`.
     velocity : float
-        The paper's dimensionless velocity; 0 is the limit v -> 0.  Under a prescribed force, the
-        velocity is part of the result; leave this argument at 0.
+        Dimensionless velocity, as in the paper; 0 stands for the limit v -> 0.  If the force is
+        prescribed, the velocity is part of the result; keep the default of 0.
     amplitude : float or None
-        The paper's dimensionless amplitude; None for steady motions.
+        Dimensionless amplitude, as in the paper; None for steady motions.
     poisson : float
-        Poisson's ratio, 0 to 0.5.
+        Poisson's ratio, from 0 to 0.5.
     pressure : Pressure
-        Distribution of the load.
+        Distribution of the normal load over the contact.
     drive : Force, Spring or None
         Drive of the forward motion; None if the velocity is prescribed.
     backward : bool
-        Whether the forward direction is reversed.  Then, under a symmetric pressure, friction at v
-        equals minus the friction of the original motion at -v.
+        Whether the forward direction is reversed.  For a symmetric pressure, the friction at v is
+        then minus the friction of the original motion at -v.
     follows : bool
-        Whether the body follows the forward oscillation of the contact, as a massless body under a
-        constant force does.  The forward oscillation is then subtracted.
+        Whether the body follows the forward oscillation of the contact, like a massless body under
+        a constant force.  If True, the forward oscillation is subtracted from the motion.
 
     Raises
     ------
     InputError
-        If an argument has another type, if a number is not finite, if the amplitude is missing, or
-        if a steady motion has an amplitude.
+        If an argument has the wrong type, if a number is not finite, if the amplitude is missing,
+        or if a steady motion is given an amplitude.
     """
 
     motion: Motion
@@ -166,7 +168,7 @@ class Problem:
                 raise InputError(name, value, "allowed is a finite number")
 
     def __str__(self) -> str:
-        """The problem as one line of text, without default values."""
+        """Describe the problem in one line, without default values."""
         words = [f"{self.motion.name} velocity={self.velocity:.12g}"]
         if self.amplitude is not None:
             words.append(f"amplitude={self.amplitude:.12g}")
@@ -175,7 +177,7 @@ class Problem:
         words += [str(self.drive)] if self.drive else []
         return " ".join(words)
 
-    # Symmetries that both the motion and the pressure have
+    # Symmetries shared by the motion and the pressure
 
     @cached_property
     def half_period_mirror(self) -> bool:
@@ -189,7 +191,7 @@ class Problem:
 
     @property
     def force(self) -> float | None:
-        """Prescribed force; None if the velocity is prescribed, also through a spring."""
+        """Prescribed force; None if the velocity is prescribed, directly or through a spring."""
         return None if self.drive is None else self.drive.force
 
     @property
@@ -211,8 +213,10 @@ class Problem:
     def displacement(
         self, phase: np.ndarray, velocity: float | None = None
     ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Rigid displacement (forward, lateral, angle) at a phase, by default for the velocity of
-        the problem."""
+        """Return the rigid displacement (forward, lateral, angle) at a phase.
+
+        The default of `velocity` is the velocity of the problem.
+        """
         motion, sign = self.motion, self._sign
         velocity = sign * (self.velocity if velocity is None else velocity)
         forward, lateral, angle = motion.displacement(phase, velocity, self.size, self.poisson)
@@ -221,13 +225,15 @@ class Problem:
         return sign * forward, lateral, sign * angle
 
     def oscillation(self, phase: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Rigid displacement (forward, lateral, angle) at a phase, for velocity 0."""
+        """Return the rigid displacement (forward, lateral, angle) at a phase, for velocity 0."""
         return self.displacement(phase, 0.0)
 
     @cached_property
     def turns(self) -> tuple[float, ...]:
-        """Phases of the turning points; see Motion.  They cover a whole period if the pressure is
-        not symmetric."""
+        """Phases of the turning points; see Motion.
+
+        The phases cover a whole period if the pressure is not symmetric.
+        """
         velocity = 0.0 if self.follows else self._sign * self.velocity
         first = self.motion.turns(velocity, self.size)
         if self.motion.half_period_mirror and not self.half_period_mirror:
@@ -260,11 +266,11 @@ class Problem:
         moves = np.diff(np.stack(self.oscillation(LOOP)), axis=1)
         return float(np.sqrt(np.sum(moves**2, axis=0)).sum()) / (2.0 * np.pi)
 
-    # Numbers from files
+    # Data from files
 
     @property
     def readings(self) -> tuple[Problem, ...]:
-        """Problems that interpolate the same data differently; see Motion.readings and
+        """Problems with alternative interpolations of the same data; see Motion.readings and
         Pressure.readings."""
         motions = (replace(self, motion=other) for other in self.motion.readings)
         pressures = (replace(self, pressure=other) for other in self.pressure.readings)
@@ -274,9 +280,9 @@ class Problem:
 
     @property
     def depth(self) -> Callable[[np.ndarray], np.ndarray] | None:
-        """Function of the phase that returns the indentation depth divided by its reference value.
+        """Function that returns, for a phase, the indentation depth divided by its reference value.
 
-        The attribute is None if the load is constant.
+        It is None if the load is constant.
         """
         if not self.motion.loads:
             return None
@@ -284,5 +290,5 @@ class Problem:
 
     @cached_property
     def mean_load(self) -> float:
-        """Mean normal load in a period divided by its reference value."""
+        """Mean normal load over a period, divided by its reference value."""
         return float(self.motion.mean_load(self.size, self.pressure))

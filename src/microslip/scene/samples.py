@@ -1,8 +1,8 @@
-"""Motions from samples: a path from the first row to the last one, or one period of any shape.
+"""Motions from samples: a path through a sequence of samples, or one period of any shape.
 
-A row holds the forward, lateral and angular displacement of the indenter, and the normal load or
-the indentation.  Along a path, all of these quantities change linearly between rows.  A period is
-interpolated by periodic cubic splines through equally spaced rows.
+Each sample is a row with the forward, lateral and angular displacement of the indenter, and the
+normal load or the indentation.  Along a path, all of these quantities change linearly between the
+rows.  A period is interpolated by periodic cubic splines through equally spaced rows.
 """
 
 from __future__ import annotations
@@ -59,13 +59,13 @@ class _Samples(Motion):
         return bool(np.ptp(self.rows[:, column]) > 0.0)
 
     def _depth_at(self, height: np.ndarray, pressure: Pressure) -> np.ndarray:
-        """Indentation depth at a load or an indentation."""
+        """Return the indentation depth at a load or an indentation."""
         return pressure.of_load(height) if self.by_load else height
 
 
 @dataclass(frozen=True, eq=False)
 class SampledPath(_Samples):
-    """A motion through a sequence of rows, without repetition.  The phase is the row number."""
+    """A motion through a sequence of rows, which is not repeated.  The phase is the row number."""
 
     periodic = False
     summary = "a path through rows"
@@ -78,16 +78,16 @@ class SampledPath(_Samples):
         Raises
         ------
         InputError
-            If a column has an unknown name, or contains values that are not numbers from -1e6 to
-            1e6, if columns have different lengths, if there are fewer than two rows, if a load or
-            an indentation is below 0, or if both are given.
+            If a column has an unknown name, if a value is not a number from -1e6 to 1e6, if columns
+            have different lengths, if there are fewer than two rows, if a load or an indentation is
+            below 0, or if both a load and an indentation are given.
         """
         return cls(*_rows_of(columns, 2))
 
     name = "path"
 
     def at(self, phase: np.ndarray, values: np.ndarray) -> np.ndarray:
-        """Interpolate the values of the rows linearly."""
+        """Interpolate values, which are given at the rows, linearly at a phase."""
         return np.interp(phase, np.arange(len(values)), values)
 
     def displacement(
@@ -104,10 +104,10 @@ class SampledPath(_Samples):
         return float(self.depth(np.arange(len(self.rows)), amplitude, pressure).max())
 
     def lengths(self, pressure: Pressure) -> np.ndarray:
-        """Largest displacement of a contact point between consecutive rows, in u_lim, shape (rows -
-        1,).
+        """Compute the largest displacement of a contact point between consecutive rows, in u_lim.
 
-        If the indentation changes, the change in the local u_lim counts as a displacement.
+        If the indentation changes, the change in the local u_lim counts as a displacement.  The
+        result has the shape (rows - 1,).
         """
         forward, lateral, angle = np.abs(np.diff(self.rows, axis=0)).T
         out = np.hypot(forward, lateral) + angle
@@ -118,10 +118,10 @@ class SampledPath(_Samples):
 
 @dataclass(frozen=True, eq=False)
 class Sampled(spec.NamedByText, _Samples):
-    """One period of a motion of any shape, from equally spaced samples.
+    """One period of a motion of any shape, given by equally spaced samples.
 
-    With the amplitude A, the indenter moves by A times the interpolated displacements.  A load or
-    an indentation h oscillates as 1 + A (h - 1).
+    With the amplitude A, the indenter moves by A times the interpolated displacements.  If h is the
+    interpolated load or indentation, the actual one is 1 + A (h - 1).
 
     Attributes
     ----------
@@ -133,8 +133,8 @@ class Sampled(spec.NamedByText, _Samples):
     by_load : bool
         Whether `height` is a load.
     text : str
-        Name of the motion, with a digest of the numbers or of their file.  Motions with equal names
-        are equal.
+        Name of the motion, including a digest of the samples or of the file.  Motions with equal
+        names are equal.
     """
 
     text: str
@@ -175,7 +175,7 @@ class Sampled(spec.NamedByText, _Samples):
 
     @cached_property
     def _loop(self) -> np.ndarray:
-        """Displacements at the phases LOOP for A = 1, shape (phases, 3)."""
+        """Displacements at the phases LOOP for A = 1, as an array of shape (phases, 3)."""
         return self._plane(LOOP)
 
     @cached_property
@@ -188,8 +188,8 @@ class Sampled(spec.NamedByText, _Samples):
         return (Sampled(self.rows[::2], height, self.by_load, text),)
 
     def _repeats(self, signs: Sequence[float]) -> bool:
-        """Whether the forward, lateral and angular displacements are multiplied by these signs
-        after half a period, and the load is unchanged."""
+        """Return whether half a period later the load is unchanged, and the forward, lateral and
+        angular displacements are multiplied by the given signs."""
         if len(self.rows) % 2:
             return False
         plane = self.rows - self.rows.mean(axis=0)
@@ -209,7 +209,7 @@ class Sampled(spec.NamedByText, _Samples):
 
     @cached_property
     def cycles(self) -> int:
-        """Root-mean-square number of cycles in a period, in the column with the most cycles."""
+        """Root-mean-square number of cycles in a period, for the column where it is largest."""
         power = np.abs(np.fft.rfft(self.rows - self.rows.mean(axis=0), axis=0)) ** 2
         if self.height is not None:
             height = np.abs(np.fft.rfft(self.height - self.height.mean())) ** 2
@@ -227,8 +227,12 @@ class Sampled(spec.NamedByText, _Samples):
         return velocity * phase + forward, lateral, angle
 
     def focus(self, velocity: float, amplitude: float, pressure: Pressure) -> float | None:
-        """Stick radius of a straight oscillation that has the same largest distance from the
-        centre.  Under an oscillating load, the smallest contact radius divided by the largest."""
+        """Return the radius towards which rings are graded.
+
+        If the load oscillates, it is the smallest contact radius divided by the largest.
+        Otherwise, it is the stick radius of a straight oscillation that has the same largest
+        distance from the centre.
+        """
         if self.loads:
             least, most = self._extremes(amplitude, pressure)
             return within_rings(float(pressure.radius(least) / pressure.radius(most)))
@@ -246,7 +250,7 @@ class Sampled(spec.NamedByText, _Samples):
         )
 
     def _extremes(self, amplitude: float, pressure: Pressure) -> tuple[float, float]:
-        """Smallest and largest indentation."""
+        """Return the smallest and the largest indentation."""
         turns = self._height_spline.derivative().roots(extrapolate=False)
         phases = np.concatenate([[0.0], turns[np.isfinite(turns)]])
         depths = self.depth(phases, amplitude, pressure)
@@ -256,7 +260,7 @@ class Sampled(spec.NamedByText, _Samples):
         return self._extremes(amplitude, pressure)[1]
 
     def share_without_load(self, amplitude: float) -> float:
-        """Fraction of a period in which the load or the indentation is at most 0."""
+        """Compute the fraction of a period in which the load or the indentation is at most 0."""
         if not self.loads:
             return 0.0
         height = 1.0 + amplitude * self._height_spline(self._fine_phases)
@@ -274,14 +278,16 @@ class Sampled(spec.NamedByText, _Samples):
 
 
 FEWEST_SAMPLES = 4
-"""Smallest number of rows in a period.  It also applies to the motion through every second row."""
+"""Smallest number of rows in a period, also for the motion through every second row."""
 ROUNDING = 1e-9
-"""Largest accepted deviation of samples from a symmetry, divided by the largest sample."""
+"""Tolerance for the symmetries of samples, divided by the largest sample."""
 
 
 def uneven_row(time: np.ndarray, most: float) -> int | None:
-    """Index of the time that is farthest from equal spacing.  It is None if the times increase and
-    no time deviates by more than `most` spacings."""
+    """Return the index of the time that deviates most from equal spacing.
+
+    The result is None if the times increase and no time deviates by more than `most` spacings.
+    """
     even = np.linspace(time[0], time[-1], len(time))
     distance = np.abs(time - even)
     step = (time[-1] - time[0]) / max(len(time) - 1, 1)
@@ -289,17 +295,17 @@ def uneven_row(time: np.ndarray, most: float) -> int | None:
 
 
 def _spline(values: np.ndarray) -> CubicSpline:
-    """Periodic cubic spline through one period of samples (along the first axis) as a function of
-    the phase."""
-    from scipy.interpolate import CubicSpline  # only here: it takes a while to load
+    """Return the periodic cubic spline through one period of samples (along the first axis), as a
+    function of the phase."""
+    from scipy.interpolate import CubicSpline  # imported here, as loading takes a while
 
     phase = np.linspace(0.0, 2.0 * np.pi, len(values) + 1)
     return CubicSpline(phase, np.concatenate([values, values[:1]]), bc_type="periodic")
 
 
 def _rows_of(columns: Mapping[str, Any], fewest: int) -> tuple[np.ndarray, np.ndarray | None, bool]:
-    """Return three values: displacements (rows, 3), the load or indentation (rows,) or None, and
-    whether it is a load."""
+    """Convert columns to three values: the displacements as an array of shape (rows, 3), the load
+    or indentation as an array of shape (rows,) or None, and whether it is a load."""
     for name in columns:
         if name not in (*PLANE, *NORMAL):
             raise InputError("columns", name, f"unknown; allowed are {', '.join(PLANE + NORMAL)}")
