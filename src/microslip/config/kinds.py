@@ -9,13 +9,14 @@ class Kind(NamedTuple):
     Attributes
     ----------
     draw : str
-        Module of microslip.report.figures and its function that draws the figure; empty for a page.
+        Module in microslip.report.figures and its drawing function, as "module.function"; empty for
+        a page.
     study : str
         Study whose dataset is drawn; empty for figures of sweeps.
     run : dict
         Default settings of the single run that is drawn; empty if sweeps or studies are drawn.
     motion : str
-        Motion that the sweep must have; empty if every motion is allowed.
+        Motion required of the sweep; empty if every motion is allowed.
     """
 
     draw: str

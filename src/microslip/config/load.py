@@ -27,7 +27,7 @@ ROLES = ("motion", "pressure")
 
 class ConfigError(ValueError):
     """Error for an invalid configuration.  The message is one line with the file, the key, the
-    value and the allowed values."""
+    value, and the allowed values."""
 
     def __init__(self, message: object):
         super().__init__(" ".join(str(message).split()))
@@ -37,7 +37,7 @@ class ConfigError(ValueError):
 
 
 class Loader(yaml.SafeLoader):
-    """Loader for the numbers of YAML 1.2, in which 1e-3 is a number and 010 is 10.
+    """YAML loader that reads numbers by the rules of YAML 1.2: 1e-3 is a number, and 010 is 10.
 
     It refuses keys that occur twice, and files with too many values.
     """
@@ -49,7 +49,7 @@ class Loader(yaml.SafeLoader):
     }
 
     def get_single_node(self) -> yaml.Node | None:
-        """Parse the document.  It is checked before any value is constructed."""
+        """Parse the document, and check its size before any value is constructed."""
         node = super().get_single_node()
         if node is not None and _size(node, {}) > MOST_VALUES:
             raise yaml.MarkedYAMLError(None, None, f"more than {MOST_VALUES} values with aliases")
@@ -62,7 +62,7 @@ class Loader(yaml.SafeLoader):
         return spec.read("value", re.sub(r"\.(inf|nan)$", r"\1", node.value.lower()))
 
     def construct_object(self, node: yaml.Node, deep: bool = False) -> object:
-        """Construct a value.  An error of a constructor gets a line number."""
+        """Construct a value.  The line number is added to errors."""
         try:
             return super().construct_object(node, deep)
         except (ValueError, TypeError, KeyError) as error:
@@ -77,10 +77,10 @@ for _tag in ("tag:number", "tag:yaml.org,2002:int", "tag:yaml.org,2002:float"):
 
 
 def _size(node: yaml.Node, sizes: dict[yaml.Node, int]) -> int:
-    """Number of nodes in a tree after expansion of aliases.  Raises MarkedYAMLError for a key that
-    occurs twice in a mapping, except <<.
+    """Return the number of nodes in a tree after expansion of aliases.  Raises MarkedYAMLError if a
+    key other than << occurs twice in a mapping.
 
-    sizes: sizes of nodes.
+    sizes: sizes of the nodes counted so far; this function adds to it.
     """
     if sizes.get(node) == 0:
         raise yaml.MarkedYAMLError(None, None, "a value contains itself", node.start_mark)
@@ -130,11 +130,11 @@ def read_yaml(path: str | os.PathLike) -> dict:
 
 
 def reread(config: dict, paths: Iterable[str | os.PathLike]) -> dict:
-    """Return a copy of a configuration in which `read_yaml` has read the values from files.
+    """Return a copy of a configuration with the values of files as `read_yaml` reads them.
 
-    Snakemake reads files as YAML 1.1, in which 1e-3 is a text and 010 is 8.
+    Snakemake reads files as YAML 1.1, in which 1e-3 is a string and 010 is 8.
 
-    config: configuration as Snakemake has merged it from these files and from --config.
+    config: configuration that Snakemake merged from these files and from --config.
     """
     from snakemake.utils import update_config
 
@@ -148,8 +148,8 @@ def reread(config: dict, paths: Iterable[str | os.PathLike]) -> dict:
 
 
 def _replaced(value: Any, old: Any, new: Any) -> Any:
-    """Return a new value in place of an equal old one, also in mappings.  An ellipsis is no
-    value."""
+    """Return `new` if `value` equals `old`, else `value`, and do the same inside mappings.  An
+    ellipsis stands for a missing value."""
     if value == old and new is not ...:
         return new
     if not all(isinstance(one, dict) for one in (value, old, new)):
@@ -161,7 +161,7 @@ def _replaced(value: Any, old: Any, new: Any) -> Any:
 
 
 def load(path: str | os.PathLike) -> Configuration:
-    """Read and check a YAML file; return a Configuration or raise ConfigError.
+    """Read a YAML file and return the checked Configuration.  Raises ConfigError if it is invalid.
 
     Motion and pressure files are searched for in the folder of the YAML file, then in the working
     directory.
@@ -181,15 +181,15 @@ def from_mapping(
     mapping : dict
         Parsed YAML.
     source : str
-        Name of the configuration in messages, usually the file.
+        Name of the configuration in messages, usually the name of the file.
     folders : iterable of paths
         Folders in which motion and pressure files are searched for, before the working directory.
 
     Returns
     -------
     Configuration
-        Files of motions and pressures are named by their content.  `refuse_unsolvable` checks
-        whether the solver accepts the points.
+        In it, files of motions and pressures are named by their content.  To check that the solver
+        accepts the points, call `refuse_unsolvable`.
 
     Raises
     ------
@@ -210,9 +210,9 @@ def from_mapping(
 
 
 def with_paths(mapping: dict, folders: Iterable = ()) -> dict:
-    """Return a checked mapping in which the files of sweeps have absolute paths and digests.
+    """Return a copy of a checked mapping with absolute paths and digests of the sweeps' files.
 
-    A job can use the result in any working directory.
+    A job can use this copy in any working directory.
     """
     sweeps = {name: dict(sweep) for name, sweep in mapping.get("sweeps", {}).items()}
     for sweep, role in product(sweeps.values(), ROLES):
@@ -226,10 +226,10 @@ def refuse_unsolvable(
     names: Collection[str] | None = None,
     source: str = "configuration",
 ) -> None:
-    """Raise ConfigError for a sweep that the solver refuses.
+    """Raise ConfigError if the solver refuses a sweep.
 
-    Motions, pressures, models and drives are checked at the ends of all axes.  The solver is
-    imported, which takes half a second.
+    Motions, pressures, models and drives are checked at the ends of all axes.  This function
+    imports the solver, which takes half a second.
 
     names: names of the sweeps to check; the default is all sweeps.
     """
@@ -251,7 +251,8 @@ def _refuse_corners(sweep: Sweep) -> None:
 
 
 def _file_in(name: Any, role: str, folders: Iterable) -> named_files.NamedFile | None:
-    """Return the file in the name of a motion or a pressure, with its path and digest, or None.
+    """Return the file that the name of a motion or pressure refers to, with its path and digest, or
+    None if it refers to none.
 
     Raises InputError if the file is missing.
     """
@@ -263,8 +264,8 @@ def _file_in(name: Any, role: str, folders: Iterable) -> named_files.NamedFile |
 
 
 def _called(function: Callable[[Sweep], T], sweeps: dict[str, Sweep], source: str) -> dict[str, T]:
-    """Results of a function for each sweep.  An InputError becomes a ConfigError with the key,
-    because arguments of the solver and keys have the same names."""
+    """Return the result of a function for each sweep.  An InputError is replaced by a ConfigError
+    for the key, which has the same name as the argument of the solver."""
     results = {}
     for name, sweep in sweeps.items():
         try:
@@ -277,7 +278,7 @@ def _called(function: Callable[[Sweep], T], sweeps: dict[str, Sweep], source: st
 
 
 def _line(error: ValidationError) -> str:
-    """Message for the first one of these errors, with the key, the value and what is allowed."""
+    """Return a message for the first error, with the key, the value, and the allowed values."""
     first = error.errors(include_url=False)[0]
     where = "".join(f".{key}" for key in first["loc"] if key != "[key]")
     refusal = first.get("ctx", {}).get("error")

@@ -1,6 +1,7 @@
-"""Keys of a configuration: types, ranges, defaults and descriptions.
+"""Types, ranges, defaults and descriptions of the keys of a configuration.
 
-The tables in config/README.md are written from these models.  All quantities are dimensionless.
+The tables in config/README.md are generated from the models in this module.  All quantities are
+dimensionless.
 """
 
 import math
@@ -28,32 +29,32 @@ MOST_POINTS = 1_000_000
 MOST_MAP_POINTS = 10_000
 """Largest number of points in a map of a study.  Every model computes all of these points."""
 MOST_ON_PAGE = 20_000
-"""Largest number of points on a page of the explorer.  A point takes about 80 bytes."""
+"""Largest number of points on a page of the explorer.  Each point takes about 80 bytes."""
 LOOSEST_POINTS = 1e-2
 """Largest tolerance of the points in a certified map.  The refinement would mistake larger errors
-for curvature, and halve cells without need."""
+for curvature and halve cells unnecessarily."""
 SHARE_OF_POINTS = 0.3
-"""Default tolerance of the points in a certified map, divided by its error."""
+"""Default tolerance of the points in a certified map, divided by the error of the map."""
 STATIC_AMPLITUDES = {"transverse": 1.0, "bore": 5.0}
-"""Largest amplitude with static friction in the maps of the paper, for each motion."""
+"""Largest amplitude at which the paper's map of a motion shows static friction."""
 AXES = ("mass", "damping", "stiffness", "poisson", "amplitude", "velocity", "force")
 """Axes of a sweep, in the order of dataset dimensions."""
 STUDIES = ("accuracy", "stability", "claims")
-"""Keys of the studies, which are the names of their datasets."""
+"""Keys of the studies. They are also the names of the datasets."""
 SOLVING = ("all", "solve_batch", "solve_map")
 MAKING = ("make_products", "make_dataset", "draw_figure", "make_page", "link_file")
-"""Names of the rules of the workflow, which datasets and figures must not have."""
+"""Names of the workflow's rules. Datasets and figures must have other names."""
 EXPONENT = re.compile(r"[-+]?[0-9]+(\.[0-9]*)?[eE][-+]?[0-9]+")
-"""Numbers that YAML 1.1 reads as texts, such as 1e-3."""
+"""Numbers that YAML 1.1 reads as strings, such as 1e-3."""
 
 
 class Refusal(ValueError):
-    """A value that is not allowed.  The message is one line.
+    """Error for a value that is not allowed.  The message is one line.
 
     Attributes
     ----------
     key : str
-        Key of the value, relative to the settings that are checked, such as ".velocity[0]".
+        Key of the value relative to the checked settings, such as ".velocity[0]".
     """
 
     def __init__(self, message: str, key: str = ""):
@@ -62,13 +63,13 @@ class Refusal(ValueError):
 
 
 def refuse(is_bad: bool, message: str, key: str = "") -> None:
-    """Raise Refusal with a message if a condition is true."""
+    """Raise Refusal with the given message if `is_bad` is true."""
     if is_bad:
         raise Refusal(message, key)
 
 
 def refuse_unknown(name: Any, names: Collection[str], problem: str, key: str = "") -> None:
-    """Raise Refusal with a problem if a name is not one of the names, which are then listed."""
+    """Raise Refusal if `name` is not in `names`. The message states the problem and the names."""
     if name not in names:
         allowed = ", ".join(names) or "none"
         raise Refusal(f"{problem}; {near_miss(name, names)}allowed: {allowed}", key)
@@ -83,15 +84,15 @@ def _refuse_crowd(points: int, most: int, key: str = "") -> None:
 
 @dataclass(frozen=True)
 class Allowed:
-    """Type of a value, as metadata of pydantic.
+    """Type of a value, stored as Pydantic field metadata.
 
     Attributes
     ----------
     text : str
         The allowed values, for messages and for config/README.md.
     convert : callable
-        Function that converts a value from YAML.  It raises ValueError or TypeError for a value
-        that is not allowed, and InputError or Refusal with a message of its own.
+        Function that converts a value from YAML.  For a value that is not allowed, it raises
+        ValueError or TypeError, or else InputError or Refusal with a specific message.
     """
 
     text: str
@@ -112,9 +113,9 @@ class Allowed:
 
 
 def _number(low: float, high: float, step: int = 0, above: bool = False) -> Allowed:
-    """Number between two bounds.
+    """Return the type of a number between two bounds.
 
-    step: 1 for whole numbers, 2 for even numbers.  above: True if `low` itself is not allowed.
+    step: 1 for whole numbers, 2 for even numbers.  above: if True, `low` itself is not allowed.
     """
     word = ("a number", "a whole number", "an even number")[step]
 
@@ -153,7 +154,7 @@ def _one_of(*names: str) -> Allowed:
 
 
 def _each(kinds: Iterable[Allowed], values: Any, key: str = "") -> list:
-    """Convert values.  A Refusal gets the index of its value."""
+    """Convert values.  If a value is refused, its index is added to the key of the Refusal."""
     result = []
     for i, (kind, value) in enumerate(zip(kinds, values, strict=False)):
         try:
@@ -164,9 +165,9 @@ def _each(kinds: Iterable[Allowed], values: Any, key: str = "") -> list:
 
 
 def _list(kind: Allowed, text: str, alone: bool = False) -> Allowed:
-    """List of at least one value of a kind, without repetition; it is converted to a tuple.
+    """Return the type of a list of one or more different values. The list is converted to a tuple.
 
-    alone: True if a text is allowed in place of a list of one text.
+    alone: if True, a string is allowed in place of a list with one string.
     """
 
     def convert(values: Any) -> tuple:
@@ -184,7 +185,8 @@ def _list(kind: Allowed, text: str, alone: bool = False) -> Allowed:
 def _axis(
     low: float = 0.0, high: float = LARGEST["velocity"], step: int = 0, above: bool = False
 ) -> Allowed:
-    """Axis: a number, or a list of numbers and ranges; it is converted to an ascending tuple."""
+    """Return the type of an axis: a number, or a list of numbers and ranges. It is converted to an
+    ascending tuple."""
     one = _number(low, high, step, above)
     item = Allowed(one.text, lambda item: _spaced(item) if isinstance(item, dict) else [one(item)])
 
@@ -202,7 +204,7 @@ def _axis(
 
 
 def _spaced(item: dict) -> list[float]:
-    """Values of a range such as {"log": [0.001, 10, 25]}, rounded to six significant digits."""
+    """Return the values of a range such as {"log": [0.001, 10, 25]}, to six significant digits."""
     spacing, ends = next(iter(item.items())) if len(item) == 1 else ("", None)
     key, is_log = f".{spacing}", spacing == "log"
     if spacing not in ("log", "linear"):
@@ -257,7 +259,7 @@ Methods = Annotated[
 
 
 class Settings(BaseModel):
-    """Settings by key.  Unknown keys are refused."""
+    """Base class of settings.  Unknown keys are refused."""
 
     model_config = ConfigDict(frozen=True, use_attribute_docstrings=True)
 
@@ -280,13 +282,13 @@ class Settings(BaseModel):
 
 
 def _tolerance(given: dict[str, Any]) -> float:
-    """Default tolerance of the points, which depends on the error of a certified map."""
+    """Return the default tolerance of the points. For a certified map, it depends on the error."""
     error = given.get("error")
     return 1e-3 if error is None else min(float(number(SHARE_OF_POINTS * error)), LOOSEST_POINTS)
 
 
 class Sweep(Settings):
-    """A grid of points.  Every axis with more than one value is a dimension of the dataset.
+    """A grid of points.  Each axis with more than one value is a dimension of the dataset.
 
     A sweep with `error` is a certified map over the ranges of its axes.
     """
@@ -318,16 +320,15 @@ class Sweep(Settings):
     model: Annotated[str, _MODEL] = "auto"
     """Contact model. The value auto selects the cheapest model that is exact for the motion."""
     method: Annotated[str | None, _or_null(_METHOD)] = None
-    """Method to compare with that of microslip.solve, which is the default."""
+    """Method to compare with the default, which is the method of microslip.solve."""
     error: Annotated[float | None, _or_null(_number(1e-5, 0.1))] = None
-    """Largest absolute error of mu_macro anywhere between the ends of the axes of a certified
-    map."""
+    """Largest absolute error of mu_macro within the ranges of the axes of a certified map."""
     tolerance: Annotated[float | None, _or_null(_number(1e-6, 0.1))] = Field(
         default_factory=_tolerance
     )
-    """Largest accepted absolute error of mu_macro. With null, cells and steps are prescribed, and a
-    point has converged if its runs have reached the periodic state. The default for a certified map
-    is three tenths of `error`, at most 0.01."""
+    """Largest accepted absolute error of mu_macro. With null, cells and steps must be prescribed,
+    and a point counts as converged if its runs reach the periodic state. The default for a
+    certified map is three tenths of `error`, at most 0.01."""
     cells: Cells = None
     """Number of rings, or of squares across the contact. By default, it follows from the
     tolerance."""
@@ -336,17 +337,17 @@ class Sweep(Settings):
 
     @property
     def axes(self) -> dict[str, tuple[float, ...]]:
-        """Values by axis, in the order of AXES.  An axis that is not given is left out."""
+        """Values of each axis, in the order of AXES.  An axis without values is omitted."""
         return {name: getattr(self, name) for name in AXES if getattr(self, name)}
 
     @property
     def dims(self) -> tuple[str, ...]:
-        """Dimensions of the dataset: the names of the axes with more than one value."""
+        """Dimensions of the dataset, which are the names of the axes with more than one value."""
         return tuple(name for name, values in self.axes.items() if len(values) > 1)
 
     @property
     def drives(self) -> dict[str, tuple[float, ...]]:
-        """Values by parameter of the drive, for the parameters that are given."""
+        """Values of the given parameters of the drive, keyed by name."""
         return {name: values for name, values in self.axes.items() if name in DRIVES}
 
     @property
@@ -360,7 +361,8 @@ class Sweep(Settings):
         return len(self.amplitude) > 1 and sum(v > 0 for v in self.velocity) > 1
 
     def model_post_init(self, context: Any, /) -> None:
-        """Raise Refusal if settings contradict each other, as far as no solver is needed."""
+        """Raise Refusal if settings contradict each other. Only checks that need no solver are
+        made."""
         free = [name for name in ("cells", "steps") if getattr(self, name) is None]
         free = [name for name in free if self.amplitude or name != "steps"]
         if self.tolerance is None and (free or self.is_certified):
@@ -388,8 +390,9 @@ class Figure(Settings):
     """A figure.  Its kind determines what is drawn."""
 
     kind: Annotated[str, _one_of(*KINDS)]
-    """Kind of figure. map draws friction over two axes, and curves over one axis, with a panel for
-    each sweep. history, field and transients draw a single run. explorer is an interactive page."""
+    """Kind of figure. map shows friction over two axes, and curves shows it along one axis, with a
+    panel for each sweep. history, field and transients show a single run. explorer is an
+    interactive page."""
     sweep: Annotated[
         tuple[str, ...], _list(_SWEEP, f"{_SWEEP.text}, or a list of names", True)
     ] = ()
@@ -399,7 +402,7 @@ class Figure(Settings):
     amplitude: Annotated[float | None, _number(0, LARGEST["amplitude"])] = None
     """Amplitude of the single run (history)."""
     periods: Annotated[int | None, _number(1, 1000, 1)] = None
-    """Number of periods, which begin without tractions (history)."""
+    """Number of periods, starting without tractions (history)."""
     travel: Annotated[float | None, _POSITIVE] = None
     """Forward displacement of each run, in units of u_lim (transients)."""
     cells: Cells = None
@@ -415,7 +418,7 @@ class Figure(Settings):
 
     @property
     def datasets(self) -> tuple[str, ...]:
-        """Names of the datasets that are drawn."""
+        """Names of the drawn datasets."""
         study = KINDS[self.kind].study
         return (study,) if study else self.sweep
 
@@ -437,7 +440,7 @@ _OSCILLATIONS = ("transverse", "longitudinal", "bore", "zigzag")
 
 
 class StudyPoint(Settings):
-    """A point at which methods are compared."""
+    """A point at which the methods are compared."""
 
     motion: Annotated[str, _one_of(*_OSCILLATIONS, "continuous-bore")]
     """Name of the motion."""
@@ -478,10 +481,10 @@ class _Grid(Settings):
 
 
 class ModelMap(_Grid):
-    """Grid for maps of the cheapest model for each tolerance, at Poisson's ratio 0."""
+    """Grid of the maps that show the cheapest model for each tolerance, at Poisson's ratio 0."""
 
     tolerance: Annotated[tuple[float, ...], _axis(1e-6, 0.1)] = (1e-3, 1e-2)
-    """Absolute tolerances of mu_macro. Each one has a map."""
+    """Absolute tolerances of mu_macro. There is a map for each tolerance."""
 
     def model_post_init(self, context: Any, /) -> None:
         """Raise Refusal if settings contradict each other."""
@@ -492,25 +495,25 @@ class ModelMap(_Grid):
 
 
 class Accuracy(Settings):
-    """Study of the cost of accuracy, with the dataset accuracy.nc."""
+    """Study of the cost of accuracy. Its dataset is accuracy.nc."""
 
     methods: Methods = method_names()
-    """Methods to compare, with parameters as in "projected-gradient:step=0.5". The name
-    of a file in src/microslip/periodic/methods, with hyphens, names a method; "shipped" is the
-    method of microslip.solve. The default is all methods."""
+    """Methods to compare, with parameters as in "projected-gradient:step=0.5". A method is named
+    like its file in src/microslip/periodic/methods, but with hyphens; "shipped" is the method of
+    microslip.solve. The default is all methods."""
     points: dict[Text, StudyPoint]
-    """Points at which all methods and models run, by name. Each point has a panel."""
+    """Points at which all methods and models are run, by name. Each point has a panel."""
     levels: Annotated[int, _number(1, 6, 1)] = 6
-    """Number of resolutions of each method, starting at the coarsest one."""
+    """Number of resolutions of each method, starting with the coarsest one."""
     repeats: Annotated[int, _number(1, 100, 1)] = 5
-    """Number of measurements of each computing time. The result is their median."""
+    """Number of measurements of each computing time. Their median is used."""
     map: ModelMap
-    """Grid for maps of the cheapest model for each tolerance."""
+    """Grid of the maps that show the cheapest model for each tolerance."""
 
 
 class Block(Settings):
-    """Cases at which all methods run: a point of which one quantity is varied. Exactly one key is a
-    list of several numbers."""
+    """Cases in which all methods are run. They differ in one quantity of a point: exactly one key
+    must have a list of several numbers as its value."""
 
     motion: Annotated[str, _one_of(*_OSCILLATIONS)]
     """Name of the motion."""
@@ -525,7 +528,7 @@ class Block(Settings):
     steps: Annotated[tuple[int, ...], _axis(8, LARGEST["steps"], step=2)] = ()
     """Imposed number of time steps in a period. By default, it follows from the tolerance."""
     step: PositiveAxis = ()
-    """Parameter `step`, for methods with this parameter. Other methods are left out of the
+    """Parameter `step` of the methods. Methods without this parameter are omitted from the
     block."""
     title: Title = None
     """Heading of the block. The default is the name of the varied quantity."""
@@ -543,7 +546,7 @@ class Block(Settings):
 
     @property
     def note(self) -> str:
-        """Values of the fixed quantities, as text."""
+        """Text with the values of the fixed quantities."""
         symbols = {"velocity": "v", "amplitude": "A", "poisson": "nu"}
         values = {name: getattr(self, name)[0] for name in symbols if name != self.quantity}
         words = [f"{symbols[n]} {v:g}" for n, v in values.items() if v or n != "poisson"]
@@ -557,24 +560,24 @@ class Block(Settings):
 
 
 class Stability(Settings):
-    """Study of the failures of methods, with the dataset stability.nc."""
+    """Study of the failures of methods. Its dataset is stability.nc."""
 
     methods: Methods = method_names()
-    """Methods to compare, named as under `accuracy`."""
+    """Methods to compare, named as in `accuracy`."""
     tolerance: Tolerance = 1e-3
     """Largest accepted absolute error of mu_macro."""
     axes: dict[Text, Block]
-    """Blocks of the atlas by name."""
+    """Blocks of cases by name."""
 
 
 class Claims(_Grid):
-    """Test of the statements of the paper, with the dataset claims.nc."""
+    """Test of the statements of the paper. Its dataset is claims.nc."""
 
     tolerance: Tolerance = 5e-4
     """Largest accepted absolute error of mu_macro."""
     cells: Annotated[int, _number(8, 64, 2)] = 32
     """Number of rings, and number of angular points on half the disc, in the runs whose tractions
-    are evaluated. A run with half this number gives the error estimate."""
+    are evaluated. The error estimate comes from a run with half this number."""
 
     def model_post_init(self, context: Any, /) -> None:
         """Raise Refusal if settings contradict each other."""
@@ -587,15 +590,15 @@ class Claims(_Grid):
 
 
 class Configuration(Settings):
-    """A configuration: points to compute, figures to draw, and the folder of results."""
+    """A configuration of points to compute and figures to draw."""
 
     results: Annotated[str, _FOLDER] = "results"
     """Folder for all results, relative to the working directory of the workflow."""
     points_per_job: Annotated[int, _number(1, 100_000, 1)] = 320
-    """Mean number of points that one job computes in sequence. A job takes about a second to start.
-    Large jobs leave cores idle at the end."""
+    """Mean number of points that one job computes in sequence. A job takes about a second to start,
+    but large jobs leave cores idle at the end."""
     sweeps: dict[Name, Sweep] = {}
-    """Sweeps by name. Each has a dataset with this name."""
+    """Sweeps by name. The dataset of a sweep has the same name."""
     figures: dict[Name, Figure] = {}
     """Figures by name."""
     accuracy: Accuracy | None = None
@@ -607,12 +610,12 @@ class Configuration(Settings):
 
     @property
     def studies(self) -> dict[str, Accuracy | Stability | Claims]:
-        """Studies of the configuration by name."""
+        """Studies in the configuration by name."""
         return {name: study for name in STUDIES if (study := getattr(self, name)) is not None}
 
     @property
     def datasets(self) -> dict[str, Sweep | Accuracy | Stability | Claims]:
-        """Sweeps and studies by the name of their dataset."""
+        """Sweeps and studies, keyed by the name of the dataset."""
         return self.sweeps | self.studies
 
     def model_post_init(self, context: Any, /) -> None:

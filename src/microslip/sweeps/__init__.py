@@ -1,1 +1,1 @@
-"""Requests and results of sweeps, and the store in which results are kept."""
+"""Requests and results of sweeps, and the store of results."""

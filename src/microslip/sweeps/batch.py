@@ -1,10 +1,10 @@
-"""Files with the records of batches, and journals of the jobs that compute them.
+"""Batch files, which contain the records of batches, and journals of the jobs that compute them.
 
-A batch file contains the names of the rows of its requests in the first line, then a record in
-each line, and a checksum at the end.  It is written in one atomic step.  Batch files are also the
-cache: a job takes records from all batch files in the folder that share a row with its batch, and
-from all journals.  A journal contains the records that a job has computed so far; a job that is
-killed loses only the point in progress.
+The first line of a batch file contains the names of the rows of its requests.  Each of the
+following lines is a record, and the last line is a checksum.  The file is written atomically.
+Batch files are also the cache: a job takes records from all journals in the folder, and from all
+batch files that contain points of the same rows.  A journal contains the records that a job has
+computed so far, so a killed job loses only the point in progress.
 
 A record has the keys key, request, result and versions.
 """
@@ -37,7 +37,8 @@ NOT_FINAL = b" not final\n"
 """End of the checksum line if the solver failed at a point or reached its time limit.  Such a point
 is computed again by the next run."""
 BETWEEN_FLUSHES = 1.0
-"""Seconds between two flushes of a journal to disk, for a crash of the computer."""
+"""Seconds between two flushes of a journal to disk, which limit the loss if the computer
+crashes."""
 
 
 Compute = Callable[[Sequence[dict]], Iterable[tuple[dict, float]]]
@@ -45,7 +46,7 @@ Compute = Callable[[Sequence[dict]], Iterable[tuple[dict, float]]]
 
 
 class SourcesEdited(CacheError):
-    """The code on disk differs from the running code, so that a result could come from either."""
+    """Error if the code on disk differs from the running code: a result could come from either."""
 
     def __init__(self, file: str):
         problem = f"{file} was edited while its code was running, and its result is not stored"
@@ -56,8 +57,8 @@ class SourcesEdited(CacheError):
 
 
 def write(path: str | Path, records: Sequence[dict]) -> None:
-    """Write the records of a batch to a file in one atomic step.  Raises CacheError if the file
-    cannot be written."""
+    """Write the records of a batch to a file atomically.  Raises CacheError if the file cannot be
+    written."""
     final = all(is_settled(record["result"]) for record in records)
     rows = sorted({row_of(record["request"]) for record in records})
     lines = [canonical_json({"rows": rows}), *map(canonical_json, records)]
@@ -66,14 +67,14 @@ def write(path: str | Path, records: Sequence[dict]) -> None:
 
 
 def read(path: str | Path) -> list[dict]:
-    """Read the records of a batch file in their order.  Raises CacheError if the file is missing or
-    damaged."""
+    """Return the records of a batch file in the order of the file.  Raises CacheError if the file
+    is missing or damaged."""
     content, _ = _checked(path)
     return [json.loads(line) for line in content.splitlines()[1:]]
 
 
 def is_final(path: str | Path) -> bool:
-    """True if a batch file is undamaged and all its records are final."""
+    """Return True if a batch file is undamaged and all its records are final."""
     with suppress(CacheError):
         return _checked(path)[1]
     return False
@@ -110,17 +111,17 @@ def _checked(path: str | Path) -> tuple[bytes, bool]:
 
 
 class Job(ExitStack):
-    """A job that writes a batch file: a context manager, which closes the journal.
+    """Context manager for a job that writes a batch file.  On exit, it closes the journal.
 
-    It takes records from other batch files and journals in the folder.  It appends each computed
-    record to a journal of its own, which stays until its records are in a batch file.
+    The job takes records from other batch files and journals in the folder.  It appends each
+    computed record to its own journal, which is removed after its records are in a batch file.
 
     Attributes
     ----------
     path : Path
         File of the batch.
     records : dict of str to dict
-        Records of the job and final records of the folder, by key.
+        Records of the job and final records from the folder, by key.
     seconds : list of float
         CPU time of each computed record.
     """
@@ -139,10 +140,10 @@ class Job(ExitStack):
         self._flushed = 0.0
 
     def solve(self, requests: Sequence[dict], compute: Compute | None = None) -> list[dict]:
-        """Return the records of requests, in their order.  Only missing records are computed.
+        """Return the records in the order of the requests.  Only missing records are computed.
 
-        compute: function that yields (record, CPU time) of requests, in any order; the default
-        calls `computed` for one request after the other.
+        compute: function that yields (record, CPU time) for each request, in any order.  The
+        default calls `computed` for the requests one by one.
         """
         self._find(requests)
         keys = [key_of(request) for request in requests]
@@ -182,8 +183,8 @@ class Job(ExitStack):
         return sorted(self.path.parent.glob(pattern))
 
     def _find(self, requests: Iterable[dict]) -> None:
-        """Read the batch files that share a row with the requests.  The rows are in the first line
-        of a file."""
+        """Read the batch files that contain points of the same rows as the requests.  The first
+        line of a file lists its rows."""
         rows = {row_of(request) for request in requests}
         for file in set(self._glob("*.jsonl")) - self._read:
             try:
@@ -196,13 +197,13 @@ class Job(ExitStack):
             self._read.add(file)
 
     def _add(self, records: Iterable[dict]) -> set[str]:
-        """Add the final ones of these records, and return their keys."""
+        """Add those of the records that are final, and return their keys."""
         final = {r["key"]: r for r in records if is_settled(r["result"])}
         self.records.update(final)
         return set(final)
 
     def _append(self, record: dict) -> None:
-        """Append a record to the journal.  Raises CacheError if it cannot be written."""
+        """Append a record to the journal.  Raises CacheError if the journal cannot be written."""
         path = self.path.with_suffix(f".{uuid.uuid4().hex[:8]}.journal")
         try:
             if self._journal is None:
@@ -217,7 +218,7 @@ class Job(ExitStack):
 
 
 def _lines_of(journal: Path) -> Iterator[dict]:
-    """Records of a journal, whose last line can be incomplete."""
+    """Yield the records of a journal.  Its last line can be incomplete."""
     with suppress(OSError):
         for line in journal.read_bytes().splitlines():
             with suppress(ValueError):
@@ -228,10 +229,10 @@ def _lines_of(journal: Path) -> Iterator[dict]:
 
 
 def computed(request: dict) -> tuple[dict, float]:
-    """Compute a request.  Return its record, and the CPU time of the solver in seconds.
+    """Compute a request.  Returns its record and the CPU time of the solver in seconds.
 
-    Raises SourcesEdited if code that was imported during the computation differs from the code that
-    names the result.
+    Raises SourcesEdited if code that was imported during the computation differs from the code
+    whose digest is in the name of the result.
     """
     loaded = len(sys.modules)
     from microslip.sweeps import evaluate  # late, since it imports the solver
@@ -247,7 +248,8 @@ def computed(request: dict) -> tuple[dict, float]:
 
 
 def solve(requests: Sequence[dict], path: str | Path) -> dict:
-    """Write the batch file of these requests.  Only records that the folder lacks are computed.
+    """Write the batch file of the requests.  Only records that are missing in the folder are
+    computed.
 
     Returns the statistics of `Job.finish`.  Raises CacheError if the file cannot be written.
     """
@@ -257,6 +259,6 @@ def solve(requests: Sequence[dict], path: str | Path) -> dict:
 
 @cache
 def versions() -> dict[str, str]:
-    """Versions of Python and of the numerical libraries, by name."""
+    """Return the versions of Python and of the numerical libraries, by name."""
     libraries = {name: importlib.metadata.version(name) for name in ("numpy", "scipy", "numba")}
     return {"python": platform.python_version(), **libraries}

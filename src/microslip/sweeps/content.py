@@ -1,7 +1,7 @@
-"""Files that are named by their content, and the links with plain names to them.
+"""Files that are named by their content, and links with plain names to these files.
 
-The name of such a file contains a hash of all that it is made of, so that a file that exists is
-right, unless it is damaged.
+The name of such a file contains a hash of everything that it is made from.  If the file exists and
+is undamaged, it is therefore up to date.
 """
 
 from __future__ import annotations
@@ -15,13 +15,13 @@ from microslip.foundation.files import writing_beside
 from microslip.sweeps import batch
 
 GAPS = ".gaps"
-"""Ending of a marker file beside a dataset in which points have failed. Each run makes this dataset
+"""Ending of the marker file of a dataset with failed points. Each run makes such a dataset
 again."""
 
 
 def is_whole(path: Path) -> bool:
-    """True unless a file is truncated, or in another format than its ending says.  Batch files are
-    compared with their checksum, and must not contain points that failed."""
+    """Return False if a file is truncated, or if its format does not match its ending.  The
+    checksum of a batch file must match, and its points must not have failed."""
     if path.suffix == ".jsonl":
         return batch.is_final(path)
     try:
@@ -39,8 +39,8 @@ def is_whole(path: Path) -> bool:
 
 
 def link(file: Path, plain: Path) -> None:
-    """Let a plain name refer to a file: by a symbolic link, or by a copy where links are not
-    possible.  Another file with this name, which may belong to the user, is renamed."""
+    """Make a file available under a plain name, as a symbolic link or, where links are not
+    possible, as a copy.  Another file with this name may belong to the user, so it is renamed."""
     target = os.path.relpath(file, plain.parent)
     if plain.is_symlink():
         if os.readlink(plain) == target:
@@ -59,8 +59,8 @@ def link(file: Path, plain: Path) -> None:
 
 
 def remove_others(path: Path) -> None:
-    """Remove the damaged files that a new file replaces. Only the number at the end of their names
-    differs."""
+    """Remove the damaged files that a new file replaces. Their names differ from its name only in
+    the number at the end."""
     stem, ending = path.name.partition("-")[0].removesuffix(path.suffix), path.suffix
     for other in path.parent.glob(f"{stem}*{ending}"):
         same = other.stem.partition("-")[0] == stem

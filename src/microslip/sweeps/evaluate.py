@@ -1,4 +1,4 @@
-"""Compute the result of a request as plain values for JSON.
+"""Compute the result of a request as plain values that JSON can represent.
 
 Requests are defined in microslip.sweeps.request.  This module imports the solver.
 """
@@ -28,8 +28,8 @@ log = logging.getLogger(__name__)
 OTHER_KEYS = ("kind", "cpu")
 """Keys of requests that are not arguments.  A measured time is valid for one CPU only."""
 SHORTEST = 0.02
-"""Shortest CPU time that is measured, in seconds.  Shorter runs are repeated and measured
-together."""
+"""Shortest measured CPU time, in seconds.  A shorter run is repeated, and the repetitions are
+measured together."""
 LONG_ENOUGH = 2.0
 """Total CPU time of the readings, in seconds, after which no further reading is taken."""
 
@@ -37,10 +37,10 @@ LONG_ENOUGH = 2.0
 def computed(request: dict) -> dict:
     """Compute the result of a request as a dict of values that JSON can represent.
 
-    Without a periodic state, `converged` is False, and `reason` says why.  If the solver raises
-    another SolverError, or InputError, the point is a gap in the dataset: `crashed` is True as
-    well, and `reason` is the error message in one line.  Any other exception is an error of the
-    code or the machine and propagates.
+    If no periodic state is found, `converged` is False, and `reason` is the cause.  If the solver
+    raises another SolverError or an InputError, `crashed` is also True, `reason` is the error
+    message in one line, and the point is a gap in the dataset.  Any other exception is an error of
+    the code or the machine and propagates.
     """
     arguments = {
         name: float(value) if name in REALS and value is not None else value
@@ -58,7 +58,7 @@ def computed(request: dict) -> dict:
 
 
 def timed(run: Callable[[], Answer], repeats: int) -> tuple[Answer, float]:
-    """Call a function repeatedly.  Return its result and the CPU time of one call, in seconds.
+    """Call a function repeatedly, and return its result and the CPU time of one call in seconds.
 
     The first call is not timed, because it may compile code.  The time is the median of `repeats`
     readings, or of fewer if the readings take longer than LONG_ENOUGH.  CPU time excludes other
@@ -103,12 +103,13 @@ def _patches(**arguments: Any) -> dict:
 
 
 def _run(**arguments: Any) -> dict:
-    """Run at one resolution.  Times are not measured, so that equal requests have equal results."""
+    """Run at one resolution.  No time is measured, so that equal requests have equal results."""
     return point.run_trial(**arguments)
 
 
 def _trial(repeats: int, **arguments: Any) -> dict:
-    """Time a run at one resolution; `applies` is False if the method cannot be used."""
+    """Time a run at one resolution.  In the result, `applies` is False if the method cannot be
+    used."""
     arguments["steps"] = arguments["steps"] or 2  # a steady motion ignores the number of steps
     return _refusal(**arguments) or {"applies": True} | _timed(partial(_run, **arguments), repeats)
 
@@ -119,7 +120,8 @@ def _choice(repeats: int, **arguments: Any) -> dict:
 
 
 def _probe(**arguments: Any) -> dict:
-    """Solve with another method; `applies` is False if the method cannot be used."""
+    """Solve with another method.  In the result, `applies` is False if the method cannot be
+    used."""
     names = ("motion", "velocity", "amplitude", "pressure", "poisson")
     problem = problem_of(**{name: arguments[name] for name in names if name in arguments})
     model = choose_model(problem, arguments["model"])
@@ -131,9 +133,9 @@ _KINDS: dict[str, Callable[..., dict]] = {one.__name__.removeprefix("_"): one fo
 
 
 def _refusal(**arguments: Any) -> dict:
-    """Return the result for a model or a method that does not apply, and an empty dict otherwise.
+    """Return the result for a model or a method that does not apply, or {} if both apply.
 
-    arguments: those of point.applies, and others.
+    arguments: the arguments of point.applies, and possibly others.
     """
     names = ("motion", "poisson", "model", "method", "pressure")
     reason = point.applies(**{name: arguments[name] for name in names if name in arguments})

@@ -1,12 +1,12 @@
 """Scaled coordinates of a map of friction.
 
-The axes of a map are velocity and amplitude, and optionally Poisson's ratio; a map of the static
-limit has no velocity.  A map is divided into patches at the known kinks of the motion
-(theory.exact).  Patches are boxes in scaled coordinates.  Below the velocity of the kink, the
-scaled velocity is proportional to velocity^(1/3).  Friction approaches its static limit with twice
-this exponent.  In this range, amplitudes are divided at their kinks, and nodes are clustered at the
-kinks.  Above the velocity of the kink, the scaled velocity is logarithmic.  Where there are no
-kinks, amplitudes are scaled by log(1 + 2 A).
+The axes of a map are velocity, amplitude and, optionally, Poisson's ratio.  A map of the static
+limit has no velocity axis.  A map is divided into patches at the known kinks of the motion
+(theory.exact).  Each patch is a box in scaled coordinates.  Below the velocity of the kink, the
+scaled velocity is proportional to velocity^(1/3), since friction approaches its static limit with
+twice this exponent.  In this range, the amplitude axis is divided at its kinks, and nodes are
+clustered at the kinks.  Above the velocity of the kink, the scaled velocity is logarithmic.  Where
+there are no kinks, amplitudes are scaled by log(1 + 2 A).
 """
 
 from __future__ import annotations
@@ -24,17 +24,17 @@ from microslip.theory.exact import Kinks, kink_velocity
 DIGITS = 9
 """Number of significant digits in a node's coordinates."""
 CLEAR = 2.0
-"""Smallest ratio between a kink's velocity and either end of the velocity range.  Closer kinks do
-not divide the map."""
+"""Smallest ratio between the velocity of a kink and either end of the velocity range.  A kink
+closer to an end does not divide the map."""
 SLOW_POWER = 1.0 / 3.0
-"""Power of the velocity in the scaled coordinate below the kink."""
+"""Exponent of the velocity in the scaled coordinate below the kink."""
 FAST = 2.0
-"""Scaled velocity just above the kink; just below the kink it is 1."""
+"""Scaled velocity just above the kink.  Just below the kink, it is 1."""
 FAST_PATCHES = 2
 """Number of patches along the velocity above the kink.  With fewer patches, the nodes may not
 resolve a steep rise of friction."""
 SPREAD = 2.0
-"""Where there are no kinks, amplitudes are evenly spaced in log(1 + SPREAD A)."""
+"""Coefficient of the scaled amplitude log(1 + SPREAD A), used where there are no kinks."""
 DEGREES = {"velocity": 4, "amplitude": 4, "poisson": 2}
 """Degrees of the polynomials in a cell; friction is nearly linear in Poisson's ratio."""
 
@@ -43,13 +43,14 @@ Box = tuple[tuple[float, ...], tuple[float, ...]]
 
 
 class Scale(NamedTuple):
-    """A monotone function and its inverse.  Nodes are evenly spaced in the function's values."""
+    """A monotone function and its inverse.  Nodes are evenly spaced in the values of the
+    function."""
 
     forward: Callable
     back: Callable
 
     def between(self, ends: Sequence) -> Scale:
-        """Return the scale whose function is 0 and 1 at two ends."""
+        """Return this scale mapped linearly so that its function is 0 and 1 at two ends."""
         low, high = map(self.forward, ends)
         return Scale(
             lambda value: np.clip((self.forward(value) - low) / (high - low), 0.0, 1.0),
@@ -68,7 +69,8 @@ CLUSTERS = {
         lambda s: 0.5 - np.sin(np.arcsin(1.0 - 2.0 * s) / 3.0), lambda x: x * x * (3.0 - 2.0 * x)
     ),
 }
-"""Scales of relative positions, by whether nodes are clustered at the lower and the upper end."""
+"""Scales of relative positions.  The keys state whether nodes are clustered at the lower and at the
+upper end."""
 
 
 class MapCoordinates(NamedTuple):
@@ -77,7 +79,7 @@ class MapCoordinates(NamedTuple):
     Attributes
     ----------
     velocity : tuple of float
-        Smallest and largest velocity, above 0; () for a map of the static limit.
+        Smallest and largest velocity, both above 0; () for a map of the static limit.
     amplitude : tuple of float
         Smallest and largest amplitude, at least 0.
     kinks : theory.exact.Kinks
@@ -103,7 +105,7 @@ class MapCoordinates(NamedTuple):
 
     @property
     def patches(self) -> list[Box]:
-        """Boxes in scaled coordinates that cover the map, slow velocities first."""
+        """Boxes in scaled coordinates that cover the map, from slow to fast velocities."""
         boxes = [((0.0, float(y)), (1.0, y + 1.0)) for y in range(len(self._rows))]
         if self._cut:
             ends = np.linspace(FAST, FAST + 1.0, FAST_PATCHES + 1).tolist()
@@ -114,16 +116,16 @@ class MapCoordinates(NamedTuple):
 
     @classmethod
     def from_json(cls, text: str) -> MapCoordinates:
-        """Read the coordinates from the JSON text of `to_json`."""
+        """Read the coordinates from the JSON string that `to_json` returns."""
         velocity, (low, high), kinks, poisson = json.loads(text)
         return cls(tuple(velocity), (low, high), Kinks(*map(tuple, kinks)), tuple(poisson))
 
     def to_json(self) -> str:
-        """Return the coordinates as JSON text for the attribute of a dataset."""
+        """Return the coordinates as a JSON string for the attribute of a dataset."""
         return canonical_json(self)
 
     def scaled(self, *places: np.ndarray) -> np.ndarray:
-        """Scaled coordinates, shape (n, directions), of points in the range.
+        """Return the scaled coordinates of n points, as an array of shape (n, directions).
 
         places: coordinates of the points, one array of shape (n,) for each direction, velocities
         first.
@@ -146,8 +148,8 @@ class MapCoordinates(NamedTuple):
         return np.stack([at[name] for name in self.directions], axis=-1)
 
     def place(self, node: tuple[float, ...]) -> tuple[float, ...]:
-        """Return the values of velocity, amplitude and Poisson's ratio at scaled coordinates,
-        rounded to DIGITS digits."""
+        """Return the velocity, amplitude and Poisson's ratio at scaled coordinates, rounded to
+        DIGITS digits."""
         at = dict(zip(self.directions, node, strict=True))
         x, y = at.get("velocity", 0.0), at["amplitude"]
         fast, rows = x >= FAST, self._rows
@@ -162,16 +164,16 @@ class MapCoordinates(NamedTuple):
 
     @property
     def _rows(self) -> list[tuple[tuple[float, float], Scale]]:
-        """Ends and scale of the amplitudes between two kinks, for velocities below that of the
-        kink.  An amplitude at a kink belongs to the later row."""
+        """Ends and scale of each range of amplitudes between two kinks, for velocities below the
+        velocity of the kink.  An amplitude at a kink belongs to the later range."""
         low, high = self.amplitude
         borders = (low, *(a for a in self.kinks.amplitudes if low < a < high), high)
         return [(ends, self._row_scale(ends)) for ends in pairwise(borders)]
 
     @property
     def _cut(self) -> Callable | None:
-        """Function of the amplitude that returns the velocity of the kink, clear of the ends of the
-        range; None if no kink divides the map."""
+        """Function that returns the velocity of the kink at an amplitude, at a distance from the
+        ends of the velocity range; None if no kink divides the map."""
         if not (self.velocity and self.kinks.velocity):
             return None
         low, high = CLEAR * self.velocity[0], self.velocity[1] / CLEAR
@@ -181,7 +183,8 @@ class MapCoordinates(NamedTuple):
         return lambda amplitude: np.clip(kink_velocity(self.kinks, amplitude), low, high)
 
     def _speeds(self, fast: bool, amplitude: Any) -> Scale:
-        """Scale of the velocity at an amplitude, above or below the velocity of the kink."""
+        """Return the scale of the velocity at an amplitude.  fast: if True, above the velocity of
+        the kink."""
         if not (cut := self._cut):
             return LOG.between(self.velocity)
         slowest, fastest = self.velocity
@@ -190,9 +193,9 @@ class MapCoordinates(NamedTuple):
         return SLOW.between((slowest, cut(amplitude)))
 
     def _row_scale(self, ends: tuple[float, float]) -> Scale:
-        """Scale of the amplitudes between two borders.
+        """Return the scale of the amplitudes between two borders.
 
-        Nodes are clustered at kinks and, in a row below a kink, at the amplitude 0.
+        Nodes are clustered at kinks and, if the upper border is a kink, also at the amplitude 0.
         """
         low, high = ends
         below, above = (end in self.kinks.amplitudes for end in ends)

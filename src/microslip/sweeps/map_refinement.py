@@ -1,11 +1,11 @@
-"""Certified maps: adaptive refinement into cells, and the computation of their points.
+"""Refine certified maps adaptively into cells, and compute the points of the maps.
 
 A cell is a box in scaled coordinates (map_coordinates) with equally spaced nodes: 5 along the
 velocity, 5 along the amplitude and 3 along Poisson's ratio.  Friction in a cell is interpolated by
-the polynomial through its nodes.  The surplus of a direction is computed from the largest
-differences of the highest order along this direction.  It equals the error of a polynomial whose
-degree is lower by one.  The error of the cell's polynomial is estimated as a fraction of the
-surplus; the fraction was calibrated on other points.  A cell whose error is too large is halved
+the polynomial through its nodes.  The surplus along a direction is computed from the largest
+differences of the highest order in this direction.  It equals the error of a polynomial whose
+degree is lower by one.  The error of the cell's own polynomial is estimated as a fraction of the
+surplus.  This fraction was calibrated on other points.  A cell whose error is too large is halved
 along the direction with the largest surplus.  Both halves reuse the nodes of the cell.
 
 The cells depend only on the results at the nodes, not on the order of the requests.
@@ -34,14 +34,14 @@ from microslip.theory.exact import kinks_of
 SHARE = 0.1
 """Ratio of a cell's polynomial error to its surplus, calibrated by benchmarks/certified.py."""
 LOWER_ORDER = 0.35
-"""Weight of third differences in the surplus, for cells in which fourth differences cancel by
-chance."""
+"""Weight of third differences in the surplus.  They matter in cells where the fourth differences
+cancel by chance."""
 LOW_DEGREE = 2.0
-"""Weight of second differences in the surplus.  Polynomials of degree 2 have a larger error
-relative to the surplus."""
+"""Weight of second differences in the surplus.  The error of a polynomial of degree 2 is a
+larger fraction of the surplus than that of a polynomial of degree 4."""
 RESOLVED = 0.05
-"""Largest surplus of a cell that is not halved.  Above this value, the error can be much larger
-than SHARE times the surplus, so the cell is halved even if its error bound is small."""
+"""Largest surplus of a cell that need not be halved.  Above this value, the error can be much
+larger than SHARE times the surplus, so the cell is halved even if its error bound is small."""
 SMALLEST = 2.0**-9
 """Smallest width of a cell, as a fraction of a patch's width."""
 
@@ -56,10 +56,10 @@ class Refinement(NamedTuple):
     Attributes
     ----------
     cells : tuple of Box
-        Cells that cover the map, including cells with missing nodes.
+        Cells that cover the map.  Nodes of some cells can be missing.
     errors : tuple of float
-        Error bound of each cell, due to the interpolation and to the errors of the nodes; infinite
-        if unknown.
+        Error bound of each cell, which includes the errors of the interpolation and of the nodes;
+        infinite if unknown.
     missing : tuple of Node
         Nodes to be solved next, in ascending order; empty if the map is finished.
     """
@@ -70,20 +70,20 @@ class Refinement(NamedTuple):
 
 
 def nodes_of(cell: Box, degrees: tuple[int, ...]) -> list[Node]:
-    """Nodes of a cell; the last direction changes fastest."""
+    """Return the nodes of a cell.  The coordinate along the last direction changes fastest."""
     ends = zip(*cell, degrees, strict=True)
     return list(product(*(np.linspace(low, high, n + 1).tolist() for low, high, n in ends)))
 
 
 def halves_of(cell: Box, direction: int) -> tuple[Box, Box]:
-    """The two halves of a cell along the direction with this index."""
+    """Return the two halves of a cell that is divided along the direction with this index."""
     begin, end = map(list, cell)
     begin[direction] = end[direction] = 0.5 * (begin[direction] + end[direction])
     return (cell[0], tuple(end)), (tuple(begin), cell[1])
 
 
 def surpluses_of(values: np.ndarray) -> tuple[float, ...]:
-    """Surplus along each direction, computed from the values at the nodes."""
+    """Return the surplus along each direction, computed from the values at the nodes."""
 
     def largest(axis: int, order: int) -> float:
         return float(np.abs(np.diff(values, order, axis=axis)).max())
@@ -135,10 +135,10 @@ def refine_cells(coordinates: MapCoordinates, answers: Answers, error: float) ->
 
 
 def coordinates_of(sweep: Sweep) -> MapCoordinates:
-    """Scaled coordinates of a certified map over the ranges of a sweep.
+    """Return the scaled coordinates of a certified map over the ranges of a sweep.
 
-    Velocities reach from the smallest one above 0 to the largest.  A map of the static limit has
-    no velocity.
+    Velocities range from the smallest one above 0 to the largest.  A map of the static limit has no
+    velocity axis.
     """
     positive = [velocity for velocity in sweep.velocity if velocity > 0]
     velocity = (positive[0], positive[-1]) if sweep.spans_a_map else ()
@@ -160,8 +160,8 @@ def refine(sweep: Sweep, ask: Callable[[list[dict]], Iterable[dict]]) -> tuple[A
     Returns
     -------
     answers : dict of tuple to (float, float)
-        Friction and its error at each node.  They depend only on the records.  If the point did not
-        converge, the friction is NaN and the error is infinite.
+        Friction and its error at each node.  If the point did not converge, the friction is NaN and
+        the error is infinite.  The answers depend only on the records.
     refinement : Refinement
         The cells.
     """
@@ -178,7 +178,7 @@ def refine(sweep: Sweep, ask: Callable[[list[dict]], Iterable[dict]]) -> tuple[A
 
 
 def _request(sweep: Sweep, coordinates: MapCoordinates, node: Node) -> dict:
-    """Request for a node.  It equals a sweep's request for the same point."""
+    """Return the request for a node.  It equals the request of a sweep for the same point."""
     place = dict(zip(coordinates.directions, coordinates.place(node), strict=True))
     point = {"velocity": (0.0,)} | {name: (value,) for name, value in place.items()}
     (request,) = points_of(sweep.model_copy(update=point)).requests
@@ -186,7 +186,7 @@ def _request(sweep: Sweep, coordinates: MapCoordinates, node: Node) -> dict:
 
 
 def solve_points(sweep: Sweep, path: str | Path, processes: int) -> dict:
-    """Solve all points of a map in several processes, and write its batch file.
+    """Solve all points of a map in several processes, and write the batch file of the map.
 
     Progress is printed on standard error.  Returns the statistics of the job.
     """
@@ -214,8 +214,8 @@ def solve_points(sweep: Sweep, path: str | Path, processes: int) -> dict:
 
 
 def _begin(places: dict[str, Path]) -> None:
-    """Prepare a worker process: store the paths of motion and pressure files by digest, and make
-    the process end with its parent."""
+    """Prepare a worker process: store the paths of motion and pressure files by digest, and end the
+    process when its parent ends."""
     named_files.PLACES.update(places)
     Thread(target=_end_with_parent, daemon=True).start()
 

@@ -1,9 +1,8 @@
 """Compact storage of a period of the periodic state.
 
 Half the disc and half the period are stored; the rest follows from symmetry.  Tractions are stored
-as fractions of the friction bound in steps of 1/127, which is sufficient for drawings.  The density
-of the dissipated energy is stored in 65,535 steps.  Forces have seven decimals.  Slip flags are
-exact.
+as multiples of 1/127 of the friction bound, which is sufficient for drawings.  The density of the
+dissipated energy is stored in 65,535 steps, and forces with seven decimals.  Slip flags are exact.
 """
 
 from __future__ import annotations
@@ -40,20 +39,20 @@ def packed(period: Period, angles: int) -> dict:
     Returns
     -------
     dict
-        radius, bound: one value for each ring, (cells,).
+        radius, bound: arrays of shape (cells,), with one value for each ring.
 
-        The quantities in HISTORIES: one value for each time, (steps + 1,).
+        The quantities in HISTORIES: arrays of shape (steps + 1,), with one value for each time.
 
-        tractions: base64 of int8, (steps/2 + 1, 2, angles, cells), forward and lateral, in steps of
-        bound/127.
+        tractions: base64 of an int8 array of shape (steps/2 + 1, 2, angles, cells), in units of
+        bound/127.  The second axis is forward and lateral.
 
-        slips: base64 of bits, (steps/2 + 1, angles, cells).
+        slips: base64 of the bits of an array of shape (steps/2 + 1, angles, cells).
 
-        densities: base64 of uint16, (angles, cells), density of the dissipated energy, scaled so
-        that its largest value is 65535.
+        densities: base64 of a uint16 array of shape (angles, cells) with the density of the
+        dissipated energy, scaled so that its largest value is 65535.
 
-        turned: True if the other half of the disc is this half rotated by half a turn, as in
-        translations.  False if it is the mirror image across the lateral axis.
+        turned: True if the other half of the disc is the stored half rotated by half a turn, as in
+        translations.  False if it is the mirror image of the stored half across the lateral axis.
 
         mu_macro, converged, reason: values of the Period.
     """
@@ -82,8 +81,9 @@ def packed(period: Period, angles: int) -> dict:
 def unpacked_half(result: dict) -> tuple[np.ndarray, np.ndarray]:
     """Unpack tractions and slips on half the disc over half the period.
 
-    Returns two arrays.  Forward and lateral tractions are int8, (steps/2 + 1, 2, angles, cells), in
-    steps of bound/127.  Slips are bool, (steps/2 + 1, angles, cells).
+    Returns two arrays.  The forward and lateral tractions are an int8 array of shape (steps/2 + 1,
+    2, angles, cells), in units of bound/127.  The slip flags are a boolean array of shape (steps/2
+    + 1, angles, cells).
     """
     frames = (len(result["phase"]) + 1) // 2
     shape = frames, result["angles"], len(result["radius"])
@@ -100,5 +100,5 @@ def text_of(values: np.ndarray) -> str:
 
 
 def values_of(text: str, kind: DTypeLike) -> np.ndarray:
-    """Decode a text from `text_of` to a flat array of type `kind`."""
+    """Decode a string from `text_of` to a flat array of type `kind`."""
     return np.frombuffer(base64.b64decode(text), np.dtype(kind).newbyteorder("<"))

@@ -1,7 +1,7 @@
-"""Requests: what is computed, as plain dicts of physical and numerical settings.
+"""Requests, which are plain dicts with the physical and numerical settings of a computation.
 
-Numbers of a request are canonical texts.  A result is named by the hash of its request and of the
-solver's code, so that it is never outdated and never computed twice.
+Numbers in a request are canonical strings.  The name of a result is the hash of its request and of
+the solver's code, so that a result is never outdated and never computed twice.
 """
 
 from __future__ import annotations
@@ -20,18 +20,18 @@ if TYPE_CHECKING:
     from microslip.config.settings import Configuration, Sweep
 
 FORMAT = 1
-"""Version of the content of records.  Increase it if this content changes without a change of the
-solver."""
+"""Version of the content of records.  It must be increased if this content changes without a change
+of the solver."""
 STARTS = ("stress-free", "full-rotation", "full-slip")
 """Initial states in Figure 5."""
 REALS = {"velocity", "amplitude", "poisson", "tolerance", "travel", *DRIVES}
-"""Keys of requests whose values are numbers written as texts."""
+"""Keys of requests whose values are numbers written as strings."""
 CONTENT_NAME = 16
 """Number of hexadecimal digits of a hash in the name of a file."""
 
 
 class Batch(NamedTuple):
-    """Requests of a job: each row is combined with each value on an axis.
+    """Requests of a job, obtained by combining each row with each value along an axis.
 
     Attributes
     ----------
@@ -67,24 +67,26 @@ class Batch(NamedTuple):
 
 
 def request_of(kind: str, **arguments: Any) -> dict:
-    """Return a request with the arguments of the function that computes it. Numbers become
-    canonical texts."""
+    """Return a request with the arguments of the function that computes it. Numbers are converted
+    to canonical strings."""
     texts = {name: number(v) for name, v in arguments.items() if name in REALS and v is not None}
     return {"kind": kind} | arguments | texts
 
 
 def is_settled(result: dict) -> bool:
-    """False if the solver failed or reached its time limit.  Such a point is computed again."""
+    """Return False if the solver failed or reached its time limit.  Such a point is computed
+    again."""
     return not result.get("crashed") and result.get("exhausted") != "time"
 
 
 def folder_of(motion: str) -> str:
-    """Name of the folder for batches of a motion: the motion or its file, without parameters."""
+    """Return the name of the folder for the batches of a motion.  It is the name of the motion or
+    of its file, without parameters."""
     return re.sub(r"[^\w-]", "_", motion.partition(":")[0].removesuffix(".py"))
 
 
 def solver_names(sweep: Sweep) -> tuple[str, str]:
-    """Canonical names of the motion and the pressure of a sweep.
+    """Return the canonical names of the motion and the pressure of a sweep.
 
     Equal motions and equal pressures have equal names, so that they share results.
     """
@@ -101,7 +103,7 @@ def _canonical_names(motion: str, pressure: str) -> tuple[str, str]:
 
 
 def settings_of(sweep: Sweep) -> dict:
-    """Entries that the requests of all points of a sweep share."""
+    """Return the entries that the requests of all points of a sweep have in common."""
     motion, pressure = solver_names(sweep)
     how = {name: getattr(sweep, name) for name in ("model", "tolerance", "cells", "steps")}
     how |= {} if pressure == "hertz" else {"pressure": pressure}
@@ -112,8 +114,8 @@ def settings_of(sweep: Sweep) -> dict:
 def points_of(sweep: Sweep) -> Batch:
     """Return the requests for all points of a sweep.
 
-    The requests are in the order of the dataset's dimensions.  The last dimension, velocity or
-    force, changes fastest and is the axis of the batch.
+    The requests are in the order of the dataset's dimensions.  The last dimension, which is
+    velocity or force, changes fastest and is the axis of the batch.
     """
     axes = {name: [*map(number, values)] for name, values in sweep.axes.items()}
     last, along = axes.popitem()
@@ -125,7 +127,7 @@ def points_of(sweep: Sweep) -> Batch:
 def runs_of(configuration: Configuration, name: str) -> list[dict]:
     """Return the requests for the single runs in the dataset of the sweep `name`.
 
-    Figures of the kinds history, field and transients need these runs.
+    Figures of the kinds history, field and transients show these runs.
     """
     requests = []
     for figure in configuration.figures.values():
@@ -140,7 +142,8 @@ def runs_of(configuration: Configuration, name: str) -> list[dict]:
 
 
 def divide(points: Batch, size: int) -> list[Batch]:
-    """Divide points into batches, in order.  A batch contains whole rows, or parts of long rows.
+    """Divide points into batches in the order of the points.  A batch contains whole rows, or a
+    part of a long row.
 
     size: mean number of points in a batch.
     """
@@ -152,8 +155,9 @@ def divide(points: Batch, size: int) -> list[Batch]:
 def cut(items: Sequence, mean: int) -> list[list]:
     """Divide items into lists of consecutive items, with about `mean` items each.
 
-    The lists are equal within an eighth of their length, or within one item.  Inside this margin,
-    hashes of the items decide, so that an additional item changes few lists if they are long.
+    The lengths of the lists differ by at most an eighth, or by one item.  Within this margin,
+    hashes of the items determine the ends, so that an additional item changes only a few of the
+    lists if they are long.
     """
     count = max(round(len(items) / max(mean, 1)), 1)
     margin = len(items) // (16 * count)
@@ -169,7 +173,7 @@ def key_of(request: dict) -> str:
     """Return the name of a request's result: a hash of the request and of the code.
 
     Results differ by rounding errors between versions of NumPy, SciPy and Numba.  These versions
-    are recorded in each result, but they are not part of the name.
+    are stored in each result, but are not part of the name.
     """
     content = {"request": request, "source": source_digest.of_request(request), "format": FORMAT}
     return sha256(canonical_json(content))
@@ -183,7 +187,7 @@ def row_of(request: dict) -> str:
 
 
 def label(request: dict) -> str:
-    """Describe a request in a few words, for messages."""
+    """Return a short description of a request for messages."""
     names = ["pressure", "poisson", "amplitude", "velocity", *DRIVES, "start"]
     if request["kind"] != "point":
         names += ["model", "method", "cells", "angles", "steps"]
