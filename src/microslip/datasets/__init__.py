@@ -1,1 +1,1 @@
-"""Datasets in xarray and netCDF, built from records, with theoretical limits and interpolation."""
+"""Build xarray and netCDF datasets from records, add theoretical limits, and interpolate maps."""

@@ -17,16 +17,18 @@ from microslip.foundation.errors import InputError
 
 ALLOWED = "allowed is a finite number, or several"
 BLOCK = 2**14
-"""Number of points that are interpolated at once.  It limits the memory."""
+"""Number of points that are interpolated at once, which limits the memory use."""
 
 
 class Map:
-    """Friction, or the velocity under a force, between the points of a sweep's dataset.
+    """Accessor that interpolates friction between the points of a sweep's dataset.  For a
+    prescribed force, it interpolates the velocity.
 
     Parameters
     ----------
     dataset : xarray.Dataset
-        Dataset of a sweep, or a selection or join of such datasets, in memory or in dask chunks.
+        Dataset of a sweep, a selection from it, or several such datasets joined, in memory or in
+        dask chunks.
     """
 
     def __init__(self, dataset: xr.Dataset):
@@ -35,29 +37,29 @@ class Map:
     def at(self, velocity: Any = None, amplitude: Any = None, **others: Any) -> xr.Dataset:
         """Interpolate friction and its error bound at any point of the map.
 
-        On a regular map, the bound is the interpolation error plus the errors of the points, see
-        datasets/interpolation.py.  In a certified map, each cell has its own bound.  Next to a
-        point that did not converge, mu_macro is NaN and its bound is infinite.
+        On a regular map, the bound is the sum of the interpolation error and the errors of the
+        points (see datasets/interpolation.py).  In a certified map, each cell has its own bound.
+        Next to a point that did not converge, mu_macro is NaN and the bound is infinite.
 
         Parameters
         ----------
         velocity, amplitude, **others : number, sequence or DataArray
-            Coordinates: one for each dimension of the map, such as `poisson` or `stiffness`.  A
-            sequence becomes a dimension of the result; DataArrays broadcast by their dimensions.
-            If an argument is in dask chunks, so is the result.
+            Coordinates, with one argument for each dimension of the map, such as `poisson` or
+            `stiffness`.  A sequence adds a dimension to the result; DataArrays broadcast by
+            dimension.  If an argument is in dask chunks, the result is as well.
 
         Returns
         -------
         xarray.Dataset
-            Variables mu_macro and mu_macro_error; velocity and velocity_error for a map over
-            forces.
+            Dataset with the variables mu_macro and mu_macro_error, or velocity and velocity_error
+            for a map over forces.
 
         Raises
         ------
         InputError
-            If a coordinate is missing, is not a coordinate of the map or is outside its range, or
-            if the dataset lacks a variable.  The message names the coordinate or the variable.
-            Outside the range, `microslip.solve` computes any point.
+            If a coordinate is missing, unknown or outside the range of the map, or if the dataset
+            lacks a variable.  The message names the coordinate or the variable.  Points outside the
+            range can be computed with `microslip.solve`.
         """
         requests = {"velocity": velocity, "amplitude": amplitude} | others
         requests = {one: value for one, value in requests.items() if value is not None}
@@ -102,8 +104,8 @@ class Map:
 
 
 def _coordinate(name: str, value: Any) -> xr.DataArray:
-    """Convert an argument to a DataArray of finite numbers.  A sequence becomes the dimension
-    `name`.  Values in dask chunks are checked when they are computed."""
+    """Convert an argument to a DataArray of finite numbers.  A sequence gets the dimension `name`.
+    Values in dask chunks are checked only when they are computed."""
     if isinstance(value, xr.DataArray) and value.chunks is not None:
         return value
     if hasattr(value, "units") and not isinstance(value, xr.DataArray):
@@ -133,7 +135,7 @@ def _block(
     ranges: dict[str, tuple[float, float]],
     *parts: np.ndarray,
 ) -> tuple[np.ndarray, ...]:
-    """Evaluate an interpolation at broadcast coordinates, after a check of their ranges."""
+    """Check the ranges of the coordinates, broadcast them, and evaluate an interpolation there."""
     arrays = np.broadcast_arrays(*parts)
     points = {}
     for (name, (low, high)), array in zip(ranges.items(), arrays, strict=True):

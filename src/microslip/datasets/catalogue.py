@@ -1,12 +1,12 @@
-"""Closed forms for each motion, with their limits, ranges of validity and names.
+"""Catalogue of the closed forms for each motion, with limits, ranges of validity and names.
 
-The catalogue is used for datasets, figures and the study of the paper's statements.  The forms
-apply to Hertz pressure; for other pressures see datasets.pressure_limits.  The solver uses exact.py
+Datasets, figures and the study of the paper's statements use this catalogue.  The forms apply to
+Hertz pressure; for other pressures, see datasets.pressure_limits.  The solver uses exact.py
 instead, so editing a name here does not change stored results.
 
 The table catalogue.csv has a row for each form, in the order in which datasets list them.  The
-column `function` is a function of microslip.theory, and `properties` lists properties that are
-True.
+column `function` names a function in microslip.theory, and `properties` lists the properties that
+are True.
 """
 
 from __future__ import annotations
@@ -33,18 +33,19 @@ class ClosedForm:
     name : str
         Name of the variable in a dataset.
     function : callable
-        Function of the ``arguments``. Arguments and result are dimensionless arrays.
+        Function of the ``arguments``. Its arguments and its result are dimensionless arrays.
     arguments : tuple of str
         "velocity", "amplitude", "force", or two of them.
     equation, label : str
-        Equation in the paper ("" if the paper does not contain the form), and name in a legend.
+        equation: number of the equation in the paper, "" if the paper does not contain the form.
+        label: name in legends.
     long_name, description : str
         Long name and description in a dataset. An empty description is omitted.
     exact : bool
-        True if the form is exact in its limit, False if it is an estimate.
+        True if the form is exact in the limit that it describes, False if it is an estimate.
     any_poisson, any_pressure : bool
-        any_poisson: True if the form applies to every Poisson's ratio; otherwise it applies to 0
-        only. any_pressure: True if it applies to every pressure; otherwise it applies to Hertz
+        any_poisson: True if the form applies to every Poisson's ratio, False if it applies to 0
+        only. any_pressure: True if the form applies to every pressure, False if it applies to Hertz
         pressure only.
     """
 
@@ -61,7 +62,7 @@ class ClosedForm:
 
 
 def _form(function: str, arguments: str, properties: str, **more: Any) -> ClosedForm:
-    """Return the closed form of a row of the table."""
+    """Return the closed form described by a row of the table."""
     module, _, name = function.partition(".")
     more |= dict.fromkeys(properties.split(), True)
     computes = getattr(import_module(f"microslip.theory.{module}"), name)
@@ -69,10 +70,9 @@ def _form(function: str, arguments: str, properties: str, **more: Any) -> Closed
 
 
 FORMS: dict[str, dict[str, ClosedForm]] = {}
-"""Closed forms of friction and torque by motion and name, in the order in which datasets list
-them."""
+"""Closed forms of friction and torque, by motion and name, in the order of datasets."""
 DRIFT_FORMS: dict[str, ClosedForm] = {}
-"""Closed forms for the mean velocity under a constant force, by motion."""
+"""Closed forms of the mean velocity at a constant force, by motion."""
 for _row in rows(Path(__file__).with_suffix(".csv")):
     _motion = _row.pop("motion")
     _one = _form(**_row)

@@ -1,12 +1,11 @@
-"""The dataset of a certified map, with its points and the cells used for interpolation.
+"""Build the dataset of a certified map, with the points and the cells used for interpolation.
 
     transverse.nc     dims point, cell and node
 
 A cell is a box in the scaled coordinates of sweeps.map_coordinates.  Friction in a cell is
-interpolated by the polynomial through its points: 5 along the velocity and 5 along the amplitude.
-If Poisson's ratio is a direction of the map, there are 3 points along it.  cell_error is an error
-bound for the cell.  Equal records give equal
-bytes.
+interpolated by the polynomial through its points: 5 along the velocity, 5 along the amplitude and,
+if Poisson's ratio is a direction of the map, 3 along Poisson's ratio.  cell_error is the error
+bound of the cell.  Identical records give byte-identical files.
 """
 
 from __future__ import annotations
@@ -30,7 +29,7 @@ from microslip.sweeps.request import solver_names
 def build(
     configuration: Configuration, name: str, records: Iterable[dict]
 ) -> tuple[xr.Dataset, dict[str, xr.Dataset]]:
-    """Build the dataset of a certified map; it has no groups.
+    """Build the dataset of a certified map.  The dict of its groups is empty.
 
     Parameters
     ----------

@@ -1,10 +1,10 @@
-"""Interpolation of a map by local polynomials, with an error bound.
+"""Interpolate a map by local polynomials, and estimate an error bound.
 
 On a regular grid, values are interpolated along each axis by the cubic through the four nearest
-nodes.  To estimate the error, each node is also predicted from its neighbours by a cubic with twice
-the spacing.  The error bound of a cell is the largest difference between prediction and value at
-the nodes of its cubic.  The true error is sixteen times smaller for a smooth function and about as
-large at a kink.
+nodes.  To estimate the error, the value at each node is also predicted from the neighbouring nodes,
+by a cubic with twice the spacing.  The error bound of a cell is the largest difference between
+prediction and value at the nodes of its cubic.  Compared with this bound, the true error is sixteen
+times smaller for a smooth function, and about equal at a kink.
 
 In a certified map, each cell has its own polynomial and its own error bound.
 """
@@ -30,7 +30,7 @@ BORDERS = {
     "amplitude": ("cell_low", "cell_high"),
     "poisson": ("cell_poisson_low", "cell_poisson_high"),
 }
-"""For each direction: the variables that contain the lower and upper ends of the cells."""
+"""Names of the variables that contain the lower and the upper ends of the cells, by direction."""
 AXES = ("mass", "damping", "stiffness", "poisson", "amplitude", "velocity", "force")
 """Coordinates of maps, in the order of the dimensions of a result."""
 SAME = 1e-12
@@ -39,22 +39,24 @@ LOST = "microslip.at needs it, and the dataset has lost it: keep it"
 ANY = "microslip.solve computes any"
 
 Points = dict[str, np.ndarray]
-"""Coordinates of points, an array of shape (n,) for each axis."""
+"""Coordinates of n points, as one array of shape (n,) for each axis."""
 
 
 @dataclass(frozen=True, eq=False)
 class Axis:
-    """Ascending coordinates of one axis of a grid.
+    """One axis of a grid, with ascending coordinates.
 
-    The axis is logarithmic if the coordinates are closer to equal ratios than to equal steps.
+    The axis is logarithmic if the ratios of neighbouring coordinates vary less than the steps
+    between them.
 
     Attributes
     ----------
     values : numpy.ndarray
         Coordinates.
     static : int
-        1 if the first coordinate is the velocity 0, else 0.  The static limit is not interpolated:
-        between it and the smallest velocity, friction rises with the power 2/3 of the velocity.
+        1 if the first coordinate is the velocity 0, else 0.  No values are interpolated between the
+        static limit and the smallest velocity, because friction rises steeply there, as
+        velocity^(2/3).
     """
 
     values: np.ndarray
@@ -89,7 +91,7 @@ class Axis:
         cell : numpy.ndarray, shape (n,)
             Index of the node below each point.
         share : numpy.ndarray, shape (n,)
-            Position of the point in its cell, 0 to 1.
+            Position of each point in its cell, from 0 to 1.
         index, weights : numpy.ndarray, shape (n, k)
             Indices and weights of the k nodes of the cubic, with k at most 4.
         """
@@ -108,12 +110,11 @@ class Axis:
         return cell, share, index, weights
 
     def misses(self, table: np.ndarray) -> np.ndarray:
-        """Return the absolute difference between the value at each node and the cubic through its
-        neighbours.
+        """Return the absolute error of a cubic through the neighbouring nodes, for each node.
 
-        The nodes are along the first axis of the table.  An end node is assigned the difference of
-        its neighbour.  If there are only two nodes, both are assigned the difference between their
-        values.  At the static limit, the difference is 0.
+        The nodes are along the first axis of the table.  An end node is assigned the error of its
+        neighbour.  If there are only two nodes, both are assigned the difference between their
+        values.  At the static limit, the error is 0.
         """
         if self.static:
             moving = Axis(self.values[1:]).misses(table[1:])
@@ -138,9 +139,10 @@ def _unevenness(values: np.ndarray) -> float:
 
 
 def lagrange(nodes: np.ndarray, points: np.ndarray) -> np.ndarray:
-    """Return the Lagrange weights for interpolation from k nodes to n points, shape (n, k).
+    """Return the Lagrange weights for n points and k nodes, as an array of shape (n, k).
 
-    nodes: shape (n, k), or (1, k) if all points have the same nodes; points: shape (n,).
+    nodes: array of shape (n, k), or (1, k) if all points have the same nodes.  points: array of
+    shape (n,).
     """
     weights = np.ones((len(points), nodes.shape[1]))
     for own in range(nodes.shape[1]):
@@ -152,11 +154,12 @@ def lagrange(nodes: np.ndarray, points: np.ndarray) -> np.ndarray:
 
 
 def polynomial(nodes: np.ndarray, weights: Iterable[np.ndarray]) -> np.ndarray:
-    """Sum values at nodes with weights along each axis.
+    """Return the weighted sum of the values at nodes, with weights along each axis.
 
-    Terms are summed one by one, so that rounding at a point does not depend on the other points.
+    Terms are added one by one, so that the rounding error at a point does not depend on the others.
 
-    nodes: shape (k, l, ..., n).  weights: shapes (n, k), (n, l), ...  Returns shape (n,).
+    nodes: values, as an array of shape (k, l, ..., n).  weights: arrays of shapes (n, k), (n, l),
+    ...  The result has the shape (n,).
     """
     for one in weights:
         nodes = sum(weight * part for weight, part in zip(one.T, nodes, strict=True))
@@ -165,14 +168,14 @@ def polynomial(nodes: np.ndarray, weights: Iterable[np.ndarray]) -> np.ndarray:
 
 @dataclass(frozen=True, eq=False)
 class Grid:
-    """Values and errors at the nodes of a regular grid with one or more axes.
+    """A regular grid with one or more axes, and the values and errors at its nodes.
 
     Attributes
     ----------
     axes : dict of str to Axis
         Axes of the grid by name.
     values, errors : np.ndarray, shape (n, m, ...)
-        Values and their error estimates, with one dimension for each axis.  Unknown values are NaN.
+        Values and error estimates, with one dimension for each axis.  Unknown values are NaN.
     """
 
     axes: dict[str, Axis]
@@ -186,18 +189,19 @@ class Grid:
 
     @cached_property
     def _misses(self) -> list[np.ndarray]:
-        """Differences of the leave-one-out prediction along each axis, see Axis.misses."""
+        """Errors of the cubics through neighbouring nodes along each axis (see Axis.misses)."""
         return [
             np.moveaxis(axis.misses(np.moveaxis(self.values, k, 0)), 0, k)
             for k, axis in enumerate(self.axes.values())
         ]
 
     def at(self, points: Points) -> tuple[np.ndarray, np.ndarray]:
-        """Return values and error bounds at points inside the grid, shape (n,) each.
+        """Return values and error bounds at n points inside the grid, as two arrays of shape (n,).
 
-        Between two nodes of an axis, the interpolation error is proportional to the product of the
-        distances to them.  The bound is the sum over all axes, plus the largest error of the nodes.
-        If a value at one of the nodes is unknown, the result is NaN and the bound is infinite.
+        Along an axis, the interpolation error is assumed proportional to the product of the
+        distances to the two neighbouring nodes.  The bound is the sum of these errors over all
+        axes, plus the largest error of the nodes.  If a value at one of the nodes is unknown, the
+        result is NaN and the bound is infinite.
 
         Raises InputError for a velocity between the static limit and the smallest velocity.
         """
@@ -230,7 +234,8 @@ class Cells:
     borders : numpy.ndarray, shape (k, directions, 2)
         Lower and upper ends of the cells, in scaled coordinates.
     nodes : numpy.ndarray, shape (k, 5, 5) or (k, 5, 5, 3)
-        Friction at the nodes of each cell.  The axes are the cells, and the directions of the map.
+        Friction at the nodes of each cell.  The first axis is the cell, and the other axes are the
+        directions of the map.
     bounds : numpy.ndarray, shape (k,)
         Error bound for each cell.
     """
@@ -247,7 +252,7 @@ class Cells:
         return {axis: tuple(getattr(self.coordinates, axis)) for axis in directions}
 
     def at(self, points: Points) -> tuple[np.ndarray, np.ndarray]:
-        """Return values and error bounds at points inside the map, shape (n,) each.
+        """Return values and error bounds at n points inside the map, as two arrays of shape (n,).
 
         In a cell with an unknown node, the values are NaN and the error bounds are infinite.
         """
@@ -268,7 +273,7 @@ class Cells:
 
 
 def of_map(dataset: xr.Dataset, name: str) -> Grid | Cells:
-    """Return the interpolation of a variable in a certified or a regular map."""
+    """Return the interpolation of a variable in a certified or regular map."""
     return cells_of(dataset) if COORDINATES in dataset.attrs else grid_of(dataset, name)
 
 
@@ -300,12 +305,12 @@ def cells_of(dataset: xr.Dataset) -> Cells:
 
 
 def grid_of(dataset: xr.Dataset, name: str) -> Grid:
-    """Read the grid of a variable of a regular map.  Values that did not converge are unknown.
+    """Read a variable of a regular map as a Grid.  Values that did not converge count as unknown.
 
-    Raises InputError with the name of a variable or a coordinate that is missing or not allowed.
+    Raises InputError with the name of the variable or coordinate that is missing or not allowed.
     """
     nodes, work = dataset[[name, f"{name}_error"]], dataset.get("work", xr.DataArray(0.0))
-    if ((work % 1.0) > 0.0).any():  # numbers of solves are not integers between points
+    if ((work % 1.0) > 0.0).any():  # between points, the numbers of solves are not integers
         allowed = "allowed are computed points, with microslip.at in place of other interpolations"
         raise InputError(name, "interpolated", f"in the dataset; {allowed}")
     if "converged" in dataset:

@@ -1,8 +1,8 @@
-"""Write datasets to netCDF files with groups, and read them.
+"""Write datasets to netCDF files with groups, and read such files.
 
-The root of a file contains the variables that have the sweep's axes.  The root can therefore be
-converted to one table and joined with other files.  Variables with other axes, such as curves and
-single runs, are in groups, which are opened by name:
+The root of a file contains the variables that have the sweep's axes, so that it can be converted to
+one table and joined with the roots of other files.  Variables with other axes, such as curves and
+single runs, are in groups.  A group is opened by its name:
 
     xr.open_dataset(path)                    # the root
     xr.open_dataset(path, group="history")   # one of its groups
@@ -29,21 +29,20 @@ from microslip.foundation.files import writing_beside
 def divide(
     dataset: xr.Dataset, groups: Iterable[Mapping[str, str]]
 ) -> tuple[xr.Dataset, dict[str, xr.Dataset]]:
-    """Divide a dataset into one dataset for the root of a file and one for each group.
+    """Divide a dataset into a dataset for the root of a file and a dataset for each group.
 
     Parameters
     ----------
     dataset : xarray.Dataset
         All variables.
     groups : iterable of mapping
-        Name `group`, `title` and dimensions `dims` of each group.  A variable is assigned to the
-        first group whose dimensions include all dimensions of the variable.
+        For each group, a mapping with its name `group`, its `title` and its dimensions `dims`.  A
+        variable is assigned to the first group that has all dimensions of the variable.
 
     Returns
     -------
     root : xarray.Dataset
-        Variables that fit no group or have no dimension.  The root has all attributes of the
-        dataset.
+        Variables that fit no group or have no dimension, with all attributes of the dataset.
     parts : dict of xarray.Dataset
         Datasets of the groups, by name.  Empty groups are omitted.
     """
@@ -59,16 +58,17 @@ def divide(
 
 
 TEXTS = "flag_texts"
-"""Attribute of a variable that contains codes of texts: the texts, one on each line, in the order
-of `flag_values`.  `flag_meanings` lists them as single words, as CF requires."""
+"""Name of the attribute that lists the strings behind the codes of a variable, one on each line, in
+the order of `flag_values`.  The attribute `flag_meanings` lists them as single words, as CF
+requires."""
 
 
 def coded(variable: xr.Variable) -> xr.Variable:
-    """Return a variable of texts as a variable of integers with flag_values and flag_meanings.
+    """Encode a variable of strings as integers with the attributes flag_values and flag_meanings.
 
-    xarray's operations support integers without exception, also on disk and in dask chunks.  The
-    code of a text is its CRC-32 in 31 bits, and 0 for an empty text, so that a text has the same
-    code in all files, and files can be joined.
+    All operations of xarray support integers, also on disk and in dask chunks.  The code of a
+    string is its CRC-32 in 31 bits, and 0 for an empty string.  A string therefore has the same
+    code in all files, so that files can be joined.
     """
     codes: dict[int, str] = {}
     code_of = {}
@@ -89,7 +89,7 @@ def coded(variable: xr.Variable) -> xr.Variable:
 
 
 def texts(codes: xr.DataArray) -> xr.DataArray:
-    """Texts of a variable that contains codes, such as `model` and `reason` of a map.
+    """Return the strings of a variable that contains codes, such as `model` or `reason` of a map.
 
     Parameters
     ----------
@@ -99,8 +99,8 @@ def texts(codes: xr.DataArray) -> xr.DataArray:
     Returns
     -------
     xarray.DataArray
-        The texts, in dask chunks if the codes are.  A code without a text, from a dataset that was
-        joined with this one, becomes "?".
+        The strings, in dask chunks if the codes are in dask chunks.  "?" stands for a code without
+        a string, which comes from another dataset joined with this one.
 
     Raises
     ------
@@ -126,7 +126,8 @@ def texts(codes: xr.DataArray) -> xr.DataArray:
 def write(
     path: str | os.PathLike[str], root: xr.Dataset, parts: Mapping[str, xr.Dataset] | None = None
 ) -> None:
-    """Write a root and its groups to a netCDF-4 file, atomically.  Equal datasets give equal bytes.
+    """Write a root and its groups to a netCDF-4 file atomically.  Identical datasets give
+    byte-identical files.
 
     parts: datasets of the groups, by name.  Raises CacheError with a one-line message if the file
     cannot be written.
@@ -140,7 +141,7 @@ def write(
 def _append(dataset: xr.Dataset, path: str | os.PathLike[str], **how: Any) -> None:
     of_text = {n: v for n, v in dataset.variables.items() if v.dtype.kind in "OUT"}
     dataset = dataset.assign({n: coded(v) for n, v in of_text.items() if n not in dataset.dims})
-    # xarray mistakes an axis of texts for one of numbers if it is empty.
+    # xarray mistakes an empty axis of strings for an axis of numbers.
     empty = {n: v.astype(str) for n, v in of_text.items() if n in dataset.dims and not v.size}
     dataset = dataset.assign_coords(empty)
     for name, variable in dataset.variables.items():
@@ -154,10 +155,10 @@ def _encoding(name: Hashable, kind: str) -> dict:
     if kind == "f":
         return {"_FillValue": None}
     if kind in "OUT":
-        # Axes of texts are stored as arrays of characters, other texts as codes, see `coded`.  If a
-        # file that is open is opened again, HDF5 loses the type of variable-length strings, and
-        # Python crashes.  Each variable has its own dimension of characters, so that a selection
-        # can be saved.
+        # Axes of strings are stored as arrays of characters, and other strings as codes (see
+        # `coded`).  If an open file is opened again, HDF5 loses the type of variable-length
+        # strings, and Python crashes.  Each variable has its own dimension of characters, so that a
+        # selection can be saved.
         return {"dtype": "S1", "char_dim_name": f"characters_of_{name}"}
     return {}
 
@@ -166,7 +167,7 @@ def refuse_oversized(path: str | os.PathLike[str]) -> None:
     """Raise CacheError if a file declares more values than it has bytes.
 
     xarray reads coordinates into memory when it opens a file, so a damaged file could fill the
-    memory.  Sweep data are hardly compressible, so an intact file has more bytes than values.
+    memory.  Data of sweeps hardly compress, so an intact file has more bytes than values.
     """
     size = os.stat(path).st_size
     with netCDF4.Dataset(path) as file:
@@ -193,7 +194,7 @@ def group_names(path: str | os.PathLike[str]) -> tuple[str, ...]:
 def whole(path: str | os.PathLike[str]) -> xr.Dataset:
     """Read the root and all groups of a file into one dataset with the attributes of the root.
 
-    Codes of texts are decoded.
+    Codes are decoded to strings.
 
     Raises CacheError if the file declares more values than it has bytes.  Raises xarray's errors if
     the file is not a netCDF file.

@@ -1,4 +1,4 @@
-"""Convert single results to datasets: points, histories, periods, predictions."""
+"""Convert single results, such as points, histories, periods and predictions, to datasets."""
 
 from __future__ import annotations
 
@@ -18,34 +18,34 @@ from microslip.si.response import RealResponse
 RECORDS = (Result, Prediction, History, Period, Response, RealResponse)
 """Classes of results that can be converted."""
 OF_POINTS = ("forward_position", "lateral_position", "area", "bound", "dissipated_energy_density")
-"""Arrays in a Period whose only axis is `point`."""
+"""Arrays of a Period whose only axis is `point`."""
 
 ROW_ERRORS = {
     "force_forward": "force_error",
     "force_lateral": "force_error",
     "torque": "torque_error",
 }
-"""Columns with the error estimates of the forces and the torque of a response."""
+"""Column of the error estimate, for each force and for the torque of a response."""
 ROUNDING = 1e-9
-"""A force is printed as 0 if its absolute value, divided by the error estimate, is at most this
-number."""
+"""Largest ratio of a force's absolute value to its error estimate at which the force is printed as
+0."""
 
 
 def to_xarray(record: Any) -> xr.Dataset:
-    """Convert a result to a dataset.  Numbers and arrays become variables, and texts become
+    """Convert a result to a dataset.  Numbers and arrays are stored as variables, and strings as
     attributes.
 
     Parameters
     ----------
     record : Result, Prediction, History, Period, Response or RealResponse
-        Result of solve, predict, history, period, response or predict_response.
+        Value returned by solve, predict, history, period, response or predict_response.
 
     Returns
     -------
     xarray.Dataset
-        The dimension is `phase` for a History and `row` for a response.  A Period has the
-        dimensions `phase` and `point`.  Other results have no dimension.  Fields that are None are
-        omitted.
+        Dataset with the dimension `phase` for a History, `row` for a response, and `phase` and
+        `point` for a Period.  Datasets of other results have no dimension.  Fields that are None
+        are omitted.
 
     Raises
     ------
@@ -78,7 +78,7 @@ def to_xarray(record: Any) -> xr.Dataset:
 
 
 def response_text(record: Response | RealResponse) -> str:
-    """The lines that `microslip response` prints: a CSV table with six digits.
+    """Return the lines that `microslip response` prints: a CSV table with six digits.
 
     A force or a torque that is only a rounding error is printed as 0.
     """

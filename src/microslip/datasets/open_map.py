@@ -5,7 +5,7 @@ friction.mu_macro.sel(velocity=0.1, method="nearest")     # plain xarray
 friction.microslip.at(velocity=0.05, amplitude=0.8)       # interpolated, with an error bound
 microslip.open_map("transverse", group="history")         # a group with axes of its own
 
-The modules `interpolation` and `cells` explain the error bound.
+The error bound is explained in the module `interpolation`.
 """
 
 from __future__ import annotations
@@ -25,8 +25,7 @@ from microslip.sweeps.content import is_whole
 PAPER = ("transverse", "bore", "continuous_bore")
 """Names of the sweeps of the paper."""
 SOLVED = {"mu_macro", "velocity_error"}
-"""Variables that identify the dataset of a sweep.  Such a dataset contains at least one of these
-variables."""
+"""Variables that identify the dataset of a sweep, which contains at least one of them."""
 
 
 def open_map(
@@ -48,22 +47,23 @@ def open_map(
     chunks : optional
         Argument `chunks` of xarray.open_dataset.  Use {} for dask arrays.
     group : str, optional
-        Group of the file to open instead of the map: velocity_curves or amplitude_curves (limits
-        from theory on fine axes), history (Figure 1), field (Figure 3) or transients (Figure 5).
-        Each file has only some of these groups.
+        Group of the file to open instead of the map: velocity_curves or amplitude_curves
+        (theoretical limits on fine axes), history (Figure 1), field (Figure 3) or transients
+        (Figure 5). Each file has only some of these groups.
 
     Returns
     -------
     xarray.Dataset
         The map or the group, with dimensionless variables.  A group has the attributes of the map,
-        except the title.
+        except for the title.
 
     Raises
     ------
     InputError
         If the name or the group is unknown.
     CacheError
-        If the file is missing, damaged or not the dataset of a sweep.  The message has one line.
+        If the file is missing, is damaged or is not the dataset of a sweep.  The message is one
+        line.
     """
     if not (isinstance(name, str | os.PathLike) and isinstance(os.fspath(name), str)):
         raise InputError("name", name, "allowed is the name of a sweep, or a path")

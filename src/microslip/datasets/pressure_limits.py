@@ -1,4 +1,4 @@
-"""Closed forms for pressures other than Hertz's pressure under a sphere, as in datasets.catalogue.
+"""Closed forms for pressures other than the Hertz pressure of a sphere, as in datasets.catalogue.
 
 Some closed forms are valid for any pressure (Eqs 6 and 7), others for axisymmetric indenters.  Some
 closed forms of circular Hertz contacts are also valid for elliptic ones.
@@ -24,12 +24,13 @@ ZONE = replace(
 
 
 STEADY = (("mu_forward_theory", "Eq 17", "mu_macro"), ("mu_torque_theory", "Eq 18", "mu_torque"))
-"""Closed forms of the steady bore, with the equations that replace Eqs 21 and 22."""
+"""Name, equation and quantity of the closed forms of the steady bore.  The equations replace Eqs 21
+and 22."""
 
 
 def formulas_under(motion: str, name: str) -> dict[str, ClosedForm]:
-    """Return a dict of the closed forms by name.  motion, name: names of the motion and the
-    pressure."""
+    """Return the closed forms for a motion and a pressure, as a dict keyed by the name of the form.
+    name: name of the pressure."""
     pressure, of_sphere = pressure_named(name), FORMS.get(motion, {})
     forms = {key: form for key, form in of_sphere.items() if form.any_pressure}
     if motion == "continuous-bore" and pressure.is_round:

@@ -1,4 +1,4 @@
-"""Interpolate a map on a grid that is fine enough for drawing.
+"""Interpolate a map onto a grid that is fine enough for drawing.
 
 Datasets contain values at the computed points only.  For figures, this module interpolates between
 the points with the cubics of `datasets.interpolation`.
@@ -18,19 +18,19 @@ FINE = 200
 class Surface:
     """Values of a map on a fine grid that contains all computed points.
 
-    The values equal those of `microslip.at`, except if the cubic leaves the range of the two
-    neighbouring points.  This happens on coarse maps.  Such a value is clipped to this range, so
-    that figures show only computed extrema.  If a point of a cubic is unknown, the value is
-    interpolated linearly.
+    The values equal those of `microslip.at` with two exceptions.  A value outside the range of the
+    two neighbouring points, which occurs on coarse maps, is clipped to this range, so that figures
+    show only computed extrema.  If the value at a point of a cubic is unknown, the interpolation is
+    linear.
 
     Parameters
     ----------
     velocity : ndarray, shape (m,)
-        Dimensionless, ascending, above 0.
+        Dimensionless velocities above 0, in ascending order.
     amplitude : ndarray, shape (n,)
-        Dimensionless, ascending.
+        Dimensionless amplitudes, in ascending order.
     values : ndarray, shape (n, m)
-        Values at the points.  Values that are not finite are unknown.
+        Values at the points.  Values that are not finite count as unknown.
 
     Attributes
     ----------
@@ -53,12 +53,12 @@ class Surface:
         """Return the values on the fine grid, masked in cells without reliable contours.
 
         A contour is reliable if the interpolation error is below half the distance between two
-        levels.  The interpolation error is estimated by leaving points out.
+        levels.  To estimate this error, each point is interpolated from its neighbours.
 
         Parameters
         ----------
         levels : sequence of float
-            Levels of the contours, ascending.
+            Levels of the contours, in ascending order.
         """
         error = np.zeros(np.subtract(self._points.shape, 1))
         for missed in (
@@ -67,7 +67,7 @@ class Surface:
         ):
             error += largest_around(np.nan_to_num(missed))
         cells = error <= np.diff(levels).min(initial=np.inf) / 2.0
-        # A line between two cells is drawn if it is reliable in one of them.
+        # A line on the border of two cells is drawn if it is reliable in one of them.
         rows = _cells(self._rows, self.amplitude)
         columns = _cells(self._columns, self.velocity)
         drawn = np.logical_or.reduce([cells[np.ix_(i, j)] for i in rows for j in columns])
@@ -75,7 +75,8 @@ class Surface:
 
 
 def _subdivided(axis: Axis) -> np.ndarray:
-    """Return the coordinates of an axis, with additional evenly spaced coordinates between them."""
+    """Return the coordinates of an axis, with evenly spaced coordinates inserted between
+    neighbours."""
     parts = -(-FINE // (len(axis.nodes) - 1))
     share = np.arange(1, parts) / parts
     between = axis.nodes[:-1, None] + share * np.diff(axis.nodes)[:, None]
@@ -96,8 +97,8 @@ def _refined(axis: Axis, coordinates: np.ndarray, table: np.ndarray) -> np.ndarr
 
 
 def _cells(axis: Axis, coordinates: np.ndarray) -> list[np.ndarray]:
-    """Return the indices of the cells to the left and right of each coordinate.  Both are equal if
-    the coordinate is inside a cell."""
+    """Return the indices of the cells to the left and to the right of each coordinate.  The two
+    indices are equal if the coordinate is inside a cell."""
     sides = (np.searchsorted(axis.values, coordinates, side) for side in ("left", "right"))
     return [np.clip(side - 1, 0, len(axis.values) - 2) for side in sides]
 
@@ -105,9 +106,10 @@ def _cells(axis: Axis, coordinates: np.ndarray) -> list[np.ndarray]:
 def largest_around(values: np.ndarray) -> np.ndarray:
     """Return the largest entry at the nodes around each cell of a table.
 
-    values: entries at the nodes, shape (n, m).  Windows have four nodes along a side.  The table is
-    padded with its edge entries.  Returns shape (n - 1, m - 1), with at least one entry along each
-    axis.
+    The windows have four nodes along each side, and the table is padded with its edge entries.  The
+    result has the shape (n - 1, m - 1), but at least one entry along each axis.
+
+    values: entries at the nodes, as an array of shape (n, m).
     """
     padded = np.pad(values, [(1, max(1, 3 - n)) for n in values.shape], mode="edge")
     windows = np.lib.stride_tricks.sliding_window_view(padded, (4, 4))

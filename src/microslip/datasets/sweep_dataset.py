@@ -1,9 +1,9 @@
-"""The dataset of a sweep.
+"""Build the dataset of a sweep.
 
-Every dataset follows the CF conventions.  Limits from theory are variables, and attributes record
-the provenance.  The root of a file contains the map.  Groups contain fine curves and single runs
-(see `netcdf`).  All quantities are dimensionless.  Equal results give equal bytes: a file does not
-depend on the time, the computer or the number of jobs.
+Every dataset follows the CF conventions.  Theoretical limits are stored as variables, and the
+provenance as attributes.  The root of a file contains the map.  Groups contain fine curves and
+single runs (see `netcdf`).  All quantities are dimensionless.  Identical results give
+byte-identical files: a file does not depend on the time, the computer or the number of jobs.
 """
 
 import math
@@ -43,8 +43,8 @@ def build(
     name : str
         Name of the sweep.
     records : iterable of dict
-        Records of the points in the order of request.points_of, then of the single runs in the
-        order of request.runs_of.
+        Records of the points in the order of request.points_of, followed by the records of the
+        single runs in the order of request.runs_of.
 
     Raises
     ------
@@ -88,7 +88,7 @@ def build(
     values["reason"][:] = [_shortened(text) for text in values["reason"]]
     shape = [len(sweep.axes[dim]) for dim in sweep.dims]
     values = {one: column.reshape(shape) for one, column in values.items()}
-    if "poisson" in sweep.dims:  # changes from the smallest ratio, with summed errors
+    if "poisson" in sweep.dims:  # differences from the smallest ratio, with summed errors
         for change, row in rows_of("change").items():
             source, sign = values[row["source"]], 1.0 if change.endswith("_error") else -1.0
             first = source.take([0], axis=sweep.dims.index("poisson"))
@@ -112,11 +112,11 @@ GROUPS = {
     "field": "Tractions in the whole contact, the data of Figure 3",
     "transients": "Forces on the way to steady motion, the data of Figure 5",
 }
-"""Titles of the groups in a sweep's file.  Each motion has only some of the groups."""
+"""Titles of the groups in the file of a sweep.  For each motion, only some of the groups exist."""
 ENTRIES = {"history": "periods", "transients": "travel"}
-"""Entry that identifies the requests of a group of single runs."""
+"""Entry of a request by which the requests of a group of single runs are recognised."""
 LONGEST_TEXT = 256
-"""Maximum number of characters in a text.  A longer text is truncated and ends with dots."""
+"""Maximum number of characters in a string.  A longer string is truncated and ends with dots."""
 
 
 def _shortened(text: str) -> str:
@@ -126,8 +126,8 @@ def _shortened(text: str) -> str:
 def _of_runs(runs: list[dict]) -> dict[str, dict]:
     """Return the variables of single runs by group.
 
-    The values are entries of requests and results, and closed forms.  For a variable without the
-    dimension `start`, only the first run of a group counts.
+    The values come from the requests, the results and the closed forms.  A variable without the
+    dimension `start` is taken from the first run of its group.
     """
     of_group: dict[str, list[dict]] = {}
     for record in runs:
@@ -162,7 +162,7 @@ def provenance(title: str, settings: dict, versions: set, **more: object) -> dic
     return {
         "Conventions": CONVENTIONS,
         "title": title,
-        "institution": "not stated",  # for the publisher of a dataset to fill in
+        "institution": "not stated",  # to be filled in by the publisher of a dataset
         "source": f"microslip {microslip.__version__}: {METHOD}",
         "references": PAPER,
         "microslip_version": microslip.__version__,
@@ -173,8 +173,7 @@ def provenance(title: str, settings: dict, versions: set, **more: object) -> dic
 
 
 def report(dataset: xr.Dataset, name: str) -> Iterator[str]:
-    """Yield lines of text: the number of points, and one line for each point that did not
-    converge."""
+    """Yield a line with the number of points, and a line for each point that did not converge."""
     converged, reason = dataset["converged"], dataset["reason"]
     if netcdf.TEXTS in reason.attrs:
         reason = netcdf.texts(reason)

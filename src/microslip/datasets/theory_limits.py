@@ -1,7 +1,7 @@
-"""Compute the limits from theory for the dataset of a sweep.
+"""Compute the theoretical limits for the dataset of a sweep.
 
-Each closed form of datasets.catalogue is stored twice: at the points of the sweep, for comparison,
-and on a fine axis, for drawing.
+Each closed form of datasets.catalogue is evaluated twice: at the points of the sweep for
+comparison, and on a fine axis for drawing.
 """
 
 import numpy as np
@@ -16,7 +16,7 @@ CURVE_POINTS = 241
 
 
 def formulas(motion: str, pressure: str = "hertz") -> dict:
-    """Return the closed forms for a motion and a pressure, which are specified by name.
+    """Return the closed forms for a motion and a pressure, given by their names.
 
     The result is a dict of catalogue.ClosedForm by name.  It is empty if no closed form is known.
     """
@@ -28,8 +28,8 @@ def formulas(motion: str, pressure: str = "hertz") -> dict:
 
 
 def _forms(sweep: Sweep) -> dict[str, ClosedForm]:
-    """Return the closed forms of friction for a sweep.  With a drive, only the forms that depend on
-    amplitude alone are returned."""
+    """Return the closed forms of friction for a sweep.  If the sweep has a drive, only the forms
+    that depend on the amplitude alone are returned."""
     forms = formulas(*solver_names(sweep))
     if sweep.drives:
         forms = {name: form for name, form in forms.items() if form.arguments == ("amplitude",)}
@@ -37,7 +37,8 @@ def _forms(sweep: Sweep) -> dict[str, ClosedForm]:
 
 
 def variables(sweep: Sweep) -> dict:
-    """Evaluate the closed forms at the points of a sweep: name -> (dims, values, attributes)."""
+    """Evaluate the closed forms at the points of a sweep.  Returns a dict of tuples (dims, values,
+    attributes) by name."""
     motion, pressure = solver_names(sweep)
     forms, limits = [*_forms(sweep).values()], {}
     drift = catalogue.DRIFT_FORMS.get(motion)
@@ -45,7 +46,7 @@ def variables(sweep: Sweep) -> dict:
         forms += [drift] if drift.any_pressure or pressure == "hertz" else []
     for form in forms:
         axes = [np.array(sweep.axes[dim]) for dim in form.arguments]
-        # In meshgrid and in the datasets, the first argument is the last dimension.
+        # In the results of meshgrid and in the datasets, the first argument is the last dimension.
         values = form.function(*np.meshgrid(*axes))
         dims = tuple(dim for dim in form.arguments[::-1] if dim in sweep.dims)
         values = np.reshape(values, [len(sweep.axes[dim]) for dim in dims])
@@ -55,10 +56,10 @@ def variables(sweep: Sweep) -> dict:
 
 
 def curves(sweep: Sweep) -> dict:
-    """Evaluate the closed forms on fine axes, for `velocity_curves` and `amplitude_curves`.
+    """Evaluate the closed forms on fine axes, for the groups velocity_curves and amplitude_curves.
 
-    Each closed form becomes a variable `<name>_curve` over `velocity_curve` or `amplitude_curve`.
-    A closed form that depends on velocity and amplitude is evaluated at the largest amplitude.
+    Each closed form gives a variable `<name>_curve` over `velocity_curve` or `amplitude_curve`. A
+    closed form that depends on velocity and amplitude is evaluated at the largest amplitude.
     """
     groups: dict[str, dict] = {}
     for name, form in _forms(sweep).items():
@@ -77,7 +78,7 @@ def curves(sweep: Sweep) -> dict:
 def _fine(dim: str, axis: np.ndarray) -> np.ndarray:
     """Return a fine axis over the range of a coarse axis.
 
-    Velocities are logarithmically spaced and start at the smallest velocity above 0.
+    Velocities are spaced logarithmically, starting at the smallest velocity above 0.
     """
     positive = axis[axis > 0.0]
     if dim == "velocity" and len(positive):

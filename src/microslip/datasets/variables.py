@@ -1,13 +1,13 @@
 """Dataset variables with the attributes of the CF conventions.
 
-The table variables.csv describes every variable of a sweep's dataset, except for the closed forms,
-which catalogue.csv describes.  Its columns are:
+The table variables.csv describes every variable of a sweep's dataset, except the closed forms,
+which are described in catalogue.csv.  The columns of variables.csv are:
 
 - group: part of the dataset, or kind of sweep, that has the variable,
 - name, dims, kind, units: name, dimensions (of variables outside the map), type and unit,
-- source: entry of a result that the values are taken from; if it is empty, the entry with the name
-  of the variable.  For a change: the variable that it refers to,
-- long_name, description: a text that is short enough for the axis of a plot, and a longer one,
+- source: entry of a result from which the values are taken; if it is empty, the entry has the name
+  of the variable.  For a change, the variable whose change is computed,
+- long_name: text that is short enough for the axis of a plot; description: longer text,
 - flag_meanings: meanings of 0 and 1, if these are not "no" and "yes".
 """
 
@@ -21,13 +21,12 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 ANCILLARY = "ancillary_variables"
-"""Attribute of a variable.  It contains the name of a second variable, which is the error of the
-first."""
+"""Attribute of a variable that contains the name of the variable with its error."""
 TYPES: dict[str, type] = {"float": float, "int": np.int32, "bool": bool, "str": object}
-"""Types of values by their names in tables.  Any other name of a type is a text with the meanings
-of codes 0, 1, ..., separated by spaces."""
+"""Types of values by their names in tables.  Any other name lists the meanings of the codes 0, 1,
+..., separated by spaces."""
 MISSING = {"float": np.nan, "str": ""}
-"""Values without an entry by the type of the variable; 0 for the other types."""
+"""Value of a missing entry for each type of variable; 0 for the other types."""
 
 
 def rows(path: Path) -> list[dict[str, str]]:
@@ -41,7 +40,8 @@ TABLE = {row["name"]: row for row in rows(Path(__file__).with_suffix(".csv"))}
 
 
 def rows_of(*groups: str) -> dict[str, dict[str, str]]:
-    """Return the rows of variables.csv that belong to some groups, by name, in their order."""
+    """Return the rows of variables.csv that belong to the given groups, as a dict keyed by name, in
+    the order of the file."""
     return {name: row for group in groups for name, row in TABLE.items() if row["group"] == group}
 
 
@@ -53,17 +53,17 @@ def columns(
     Parameters
     ----------
     table : iterable of mapping
-        Rows of the variables, with their name, kind and source.
+        Rows of the variables, with the entries name, kind and source.
     entries : iterable of mapping
-        Entries of each result.  An entry that is missing or None leaves the value of MISSING.  Only
-        one result is in memory at a time.
+        Entries of each result.  For an entry that is missing or None, the value of MISSING is used.
+        Only one result is in memory at a time.
     size : int
         Length of the dimension.
 
     Raises
     ------
     ValueError
-        If there are fewer results.
+        If there are fewer results than `size`.
     """
     sources = {row["name"]: row["source"] or row["name"] for row in table}
     values: dict[str, np.ndarray] = {
