@@ -18,7 +18,7 @@ in place of `_`), and columns of a table of contacts.
 |---|---|---|
 {inputs}
 
-The outputs are fields of the answer.  `NAME_error` is the numerical error estimate.  If
+The outputs are fields of the prediction.  `NAME_error` is the numerical error estimate.  If
 an input is uncertain, `NAME_spread` is the standard uncertainty, and `NAME_low` and
 `NAME_high` are the ends of the 95 % interval.  The unit is at the end of each name, as
 in `friction_force_error_N`.
