@@ -1,1 +1,1 @@
-"""Studies of accuracy and cost, failures of methods, and statements of the paper."""
+"""Studies of accuracy and cost, of the failures of methods, and of the statements of the paper."""

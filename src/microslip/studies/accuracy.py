@@ -1,9 +1,9 @@
 """Study of the accuracy and the cost of each model and method.
 
 At each point, every model is run with the shipped method at all levels of its ladder.  Every other
-method is run at the levels of the model that `model="auto"` selects.  Each point also has a
-reference, and solves at given tolerances.  For two motions, there are also maps, with trials of all
-models on a grid of points.
+method is run at the levels of the model that `model="auto"` selects.  A reference and solves at
+several tolerances are also computed for each point.  For two motions, there are also maps, with
+trials of all models on a grid of points.
 
 The dataset contains performance profiles: E. D. Dolan and J. J. More, Math. Program. 91 (2002)
 201-213, doi:10.1007/s101070100263.  A case is a point and a tolerance.  The cost of a competitor is
@@ -35,18 +35,19 @@ if TYPE_CHECKING:
 CHOICE_TOLERANCES = (1e-2, 1e-3, 1e-4)
 """Tolerances of the timed solves at each point."""
 MAP_LEVELS, MAP_REPEATS = 5, 3
-"""Largest number of levels and of repeated measurements in a map."""
+"""Largest number of levels, and largest number of repeated measurements, in a map."""
 MAP_SQUARES = 16
-"""Largest number of squares along a side in a map.  Even this mesh costs more than rings, which are
-far more accurate."""
+"""Largest number of squares along a side in a map.  Even this mesh is more expensive than rings,
+although rings are far more accurate."""
 TRUTH_SHARE = 0.1
-"""Tolerance of a map's references, divided by the map's tightest tolerance."""
+"""Tolerance of the references of a map, divided by the tightest tolerance of the map."""
 LARGE = 64
-"""A run with at least this many squares along a side takes as long as all coarser runs together."""
+"""Number of squares along a side from which on a run takes as long as all coarser runs together."""
 AS_CHEAP = 1.5
 """Two measured times count as equal if their ratio is below this number."""
 MODELS = "models"
-"""Contest of the models with the shipped method, and of methods that replace the whole run."""
+"""Name of the contest between the models with the shipped method and the methods that replace the
+whole run."""
 
 TITLE = "Accuracy and cost of methods for the friction of a vibrated Hertz contact"
 COMMENT = (
@@ -60,7 +61,7 @@ COMMENT = (
 
 
 def trials(study: Accuracy, point: AnyPoint) -> Iterator[tuple[int, dict]]:
-    """Yield (level, request) for the trials of one point, then for its solves at a tolerance.
+    """Yield (level, request) for the trials at a point, then for the solves at each tolerance.
 
     The level of a solve is the index of its tolerance in CHOICE_TOLERANCES.
     """
@@ -71,7 +72,7 @@ def trials(study: Accuracy, point: AnyPoint) -> Iterator[tuple[int, dict]]:
 
 
 def map_requests(study: Accuracy, motion: str) -> Iterator[tuple[float, dict, list[dict]]]:
-    """Yield the points of a map: the amplitude, the reference, and the trials of all models.
+    """Yield the amplitude, the reference request and the trial requests of each point of a map.
 
     The velocity varies fastest.
     """
@@ -84,7 +85,7 @@ def map_requests(study: Accuracy, motion: str) -> Iterator[tuple[float, dict, li
 
 
 def requests(study: Accuracy) -> Iterator[tuple[tuple, dict]]:
-    """Yield each request with its job.  A method that is added has jobs of its own."""
+    """Yield each request with its job.  Methods other than the shipped one have separate jobs."""
     for name, place in study.points.items():
         if place.amplitude is not None:  # else Eq 21 is exact
             yield (0, name, "reference"), forms.reference(place)
@@ -102,7 +103,7 @@ def requests(study: Accuracy) -> Iterator[tuple[tuple, dict]]:
 
 
 def values(study: Accuracy, answers: Answers) -> dict[str, Any]:
-    """Return the values of the variables."""
+    """Return the values of all variables of the dataset."""
     points = [_point(name, point, answers) for name, point in study.points.items()]
     runs = _trials(study, points, answers)
     tolerances = study.map.tolerance[::-1]  # from loose to tight
@@ -115,7 +116,8 @@ def values(study: Accuracy, answers: Answers) -> dict[str, Any]:
 
 
 def report(dataset: xr.Dataset) -> Iterator[str]:
-    """Yield a line for each point: the number of trials, and the reference's error estimate."""
+    """Yield a line for each point with the number of trials and the error estimate of the
+    reference."""
     for point in dataset["point"].values:
         own = dataset["trial_point"].values == point
         bad = int(own.sum() - dataset["converged"].values[own].sum())
@@ -127,7 +129,7 @@ def report(dataset: xr.Dataset) -> Iterator[str]:
 
 
 def _point(name: str, point: StudyPoint, answers: Answers) -> Row:
-    """Return the row of a point."""
+    """Return the row of a point, with its reference."""
     if point.amplitude is None:
         result: Row = {"mu_macro": float(paper.bore_forward(point.velocity)), "mu_macro_error": 0.0}
         source = "closed form, Eq 21"
@@ -140,7 +142,7 @@ def _point(name: str, point: StudyPoint, answers: Answers) -> Row:
 
 
 def _trials(study: Accuracy, points: list[Row], answers: Answers) -> pd.DataFrame:
-    """Return the trials at all points.  points: rows of the points."""
+    """Return a table of the trials at all points. points: rows of the points."""
     import pandas as pd
 
     rows: list[Row] = []
@@ -158,7 +160,7 @@ def _trials(study: Accuracy, points: list[Row], answers: Answers) -> pd.DataFram
                 rows.append(row | own)
     runs = pd.DataFrame(columns("accuracy", "trial", rows))
     for place in points:
-        # Errors below the reference's error count as equal.
+        # Errors below the error of the reference count as equal.
         good = runs[(runs["trial_point"] == place["point"]) & runs["converged"]]
         error = np.maximum(good["error"], number(place, "mu_macro_error"))
         for cost in ("seconds", "effort"):
@@ -167,7 +169,7 @@ def _trials(study: Accuracy, points: list[Row], answers: Answers) -> pd.DataFram
 
 
 def _map(study: Accuracy, motion: str, tolerances: Sequence[float], answers: Answers) -> dict:
-    """Return the cheapest model at each point of a map, for each tolerance."""
+    """Return the variables of a map: the cheapest model at each point, for each tolerance."""
     import pandas as pd
 
     rows = []
@@ -193,7 +195,7 @@ def _map(study: Accuracy, motion: str, tolerances: Sequence[float], answers: Ans
 
 
 def on_front(cost: ArrayLike, error: ArrayLike) -> np.ndarray:
-    """Return a bool array, shape (n,): True for trials on the Pareto front of cost and error.
+    """Return a boolean array of shape (n,), True for trials on the Pareto front of cost and error.
 
     A trial is on the front if every other trial is more expensive, less accurate, or equal in both.
 
@@ -207,23 +209,24 @@ def on_front(cost: ArrayLike, error: ArrayLike) -> np.ndarray:
 
 
 def largest_from(runs: pd.DataFrame, *series: str) -> pd.Series:
-    """Return the largest error at each level and all finer levels, NaN if the run has no error.
+    """Return, for each run, the largest error of this run and of all finer runs in its series.  It
+    is NaN if the run has no error.
 
-    A coarse run's error can be small by chance, where the error changes sign.
+    The error of a coarse run can be small by chance, where the error changes its sign.
 
-    runs: table with the column `error` and rows from coarse to fine.  series: columns with equal
-    values in the runs of a series of levels.
+    runs: table with the column `error` and rows from coarse to fine. series: names of the columns
+    whose values identify a series of levels.
     """
     return runs["error"][::-1].groupby([runs[name] for name in series]).cummax()
 
 
 def cheapest(runs: pd.DataFrame, exact: str, tolerance: float) -> pd.DataFrame:
-    """Return the cheapest run within the tolerance, by place.
+    """Return the cheapest run within the tolerance at each place.
 
     All finer runs of the same model must also be within the tolerance.  The finest run of a model
-    cannot be confirmed in this way, so it does not count.  The exception is the model `exact`,
-    which converges to the reference.  Times are uncertain, so costs within a factor AS_CHEAP of the
-    lowest cost count as equal.  The first of these runs is returned.
+    cannot be confirmed in this way, so it does not count, except for the model `exact`, which
+    converges to the reference.  Because times are uncertain, costs within a factor AS_CHEAP of the
+    lowest cost count as equal.  The first run with such a cost is returned.
 
     runs: table with the columns place, model, cells, seconds and error, from coarse to fine.
     """
@@ -235,7 +238,7 @@ def cheapest(runs: pd.DataFrame, exact: str, tolerance: float) -> pd.DataFrame:
 
 
 def contest_of(method: str) -> str:
-    """Return the contest of a method, which depends on the part of a run that it replaces.
+    """Return the contest of a method.  It depends on the part of a run that the method replaces.
 
     The result is "models" for the shipped method and for methods that replace the whole run, else
     "integrators", "solvers of a step" or "searches".
@@ -249,10 +252,11 @@ def contest_of(method: str) -> str:
 
 
 def profiles(runs: pd.DataFrame, points: list[str], tolerances: Sequence[float]) -> dict:
-    """Return the competitors of all contests, and their ratios.
+    """Return the competitors of all contests, and the cost ratios of the competitors.
 
-    A run counts only if all finer runs of its competitor and model are also within the tolerance.
-    The shipped method takes part at the points and models of its rivals.
+    A run counts only if all finer runs of the same competitor and model are also within the
+    tolerance. The shipped method takes part in a contest with the points and models of its
+    competitors.
 
     runs: table of trials.  points: names of all points.
     """

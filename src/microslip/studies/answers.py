@@ -1,4 +1,4 @@
-"""Answers to the requests of a study, and the tables of the variables of its dataset."""
+"""Answers to the requests of a study, and tables of the variables in the dataset of a study."""
 
 from __future__ import annotations
 
@@ -10,11 +10,11 @@ from typing import Any
 from microslip.foundation.canonical import canonical_json
 
 Row = dict[str, Any]
-"""An answer: the entries of the request and of its result, the name `key` of the result, the time
-steps in a period, and the index of the computer.  An entry of the result replaces the entry of the
-request with the same name."""
+"""An answer: a dict with the entries of a request and of its result, the name `key` of the result,
+the number of time steps in a period, and the index of the computer.  If the request and the result
+have an entry of the same name, that of the result is used."""
 MOTIONS = ("transverse", "bore")
-"""Motions that replace {motion} in the tables of variables and groups."""
+"""Motions that are inserted for {motion} in the tables of variables and groups."""
 
 
 class Answers:
@@ -23,7 +23,8 @@ class Answers:
     Attributes
     ----------
     rows : dict of str to (dict, Row)
-        Requests and their rows by the JSON text of the request, in the order of first use.
+        Each request and its row, keyed by the JSON string of the request, in the order of first
+        use.
     versions : set of str
         Versions of the libraries that computed the results.
     machines : list of dict
@@ -54,10 +55,10 @@ class Answers:
 
 
 def columns(study: str, dims: str, rows: list[Row], *shape: int) -> dict[str, Any]:
-    """Return the values of all variables of a study with the dimensions `dims`.
+    """Return the values of all variables of a study that have the dimensions `dims`.
 
-    rows: a row for each value, the last dimension fastest.  shape: lengths of the dimensions, if
-    there are several.
+    rows: one row for each value; the last dimension varies fastest. shape: lengths of the
+    dimensions, if there are several.
     """
     from microslip.datasets import variables  # imports NumPy
 
@@ -67,13 +68,13 @@ def columns(study: str, dims: str, rows: list[Row], *shape: int) -> dict[str, An
 
 
 def number(row: Row, name: str) -> float:
-    """Return a number of a row, or NaN if the row lacks this number."""
+    """Return the number with a name in a row, or NaN if the row lacks this number."""
     value = row.get(name)
     return math.nan if value is None else float(value)
 
 
 def rows_of(table: str, study: str) -> Iterator[dict[str, str]]:
-    """Yield the rows of a table for a study.  A row with {motion} becomes one for each motion.
+    """Yield the rows of a table for a study.  A row with {motion} is repeated for each motion.
 
     table: "variables.csv" or "groups.csv".
     """

@@ -1,5 +1,5 @@
-"""Check of the paper: verdicts on its statements, the runs behind them, static limits, and the
-stick patches of the oscillating bore."""
+"""Check the statements of the paper.  The dataset contains the verdicts, the runs that support
+them, static limits, and the stick patches of the oscillating bore."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ COMMENT = (
 
 
 def requests(study: Claims) -> Iterator[tuple[tuple, dict]]:
-    """Yield each request with its job."""
+    """Yield each request with the job that computes it."""
     tables = (rows for *_, rows in evidence.sources(study))
     for request in chain.from_iterable(chain.from_iterable(tables)):
         place = request["motion"], request.get("amplitude")
@@ -44,7 +44,7 @@ def requests(study: Claims) -> Iterator[tuple[tuple, dict]]:
 
 
 def values(study: Claims, answers: Answers) -> dict[str, Any]:
-    """Return the values of the variables."""
+    """Return the values of all variables of the dataset."""
     tables = evidence.tables_of(study, answers)
     entries = _verdicts(tables) | static_limits.values(study, tables) | _patches(study, answers)
     runs = [_run(*run) for run in answers.rows.values()]
@@ -52,7 +52,7 @@ def values(study: Claims, answers: Answers) -> dict[str, Any]:
 
 
 def report(dataset: xr.Dataset) -> Iterator[str]:
-    """Yield lines of text with the verdict on every statement."""
+    """Yield a line of text with the verdict on each statement."""
     for claim, verdict in zip(dataset["claim"].values, dataset["verdict"].values, strict=True):
         yield f"claim {claim}: {verdicts.WORDS[int(verdict)]}"
 
@@ -61,7 +61,7 @@ def report(dataset: xr.Dataset) -> Iterator[str]:
 
 
 def _verdicts(tables: dict[str, pd.DataFrame]) -> dict[str, Any]:
-    """Return the statements, their parts, and the checks of the parts.
+    """Return the variables of the statements, of their parts, and of the checks of the parts.
 
     tables: tables of evidence by name.
     """
@@ -107,8 +107,8 @@ SINGLE_RUNS = {
     "patches": ("tractions over a period", "['least_stick']"),
     "run": ("single run, method {method}", "['mu_macro']"),
 }
-"""For each kind of single run: a short description, and the part of the result that the command of
-the run prints."""
+"""For each kind of single run, a short description and the part of the result that is printed by
+the command that repeats the run."""
 
 
 def _description(request: dict) -> str:
@@ -135,7 +135,8 @@ def command(request: dict) -> str:
 
 
 def _patches(study: Claims, answers: Answers) -> dict:
-    """Return the stick patches and edges at the smallest velocity and the amplitude nearest 1."""
+    """Return the stick patches, with edges, at the smallest velocity and the amplitude closest to
+    1."""
     rows = [answers(fine) for fine, _ in evidence.periods(study)]
     slowest = min(float(row["velocity"]) for row in rows)
     rows = [r for r in rows if float(r["velocity"]) == slowest and r.get("converged")]
@@ -163,10 +164,10 @@ def _patches(study: Claims, answers: Answers) -> dict:
 def _edges(amplitude: float, moments: np.ndarray) -> dict:
     """Return the theoretical edges of the stick zone for v -> 0 at the moments of the patches.
 
-    stick_area.patches returns the moments.  Next to a turning point, the stick zone is a leaf on
-    one side of the contact, where |cos angle| >= tau/g.  A point inside the leaf slips only at the
-    other turning point.  In mid-stroke, the stick zone is a circle.  Its radius depends on the
-    rotation since the last turning point.
+    The moments are those of stick_area.patches.  Next to a turning point, the stick zone is a
+    leaf-shaped region on one side of the contact, where |cos angle| >= tau/g.  A point inside the
+    leaf slips only at the other turning point.  In mid-stroke, the stick zone is a circle, whose
+    radius depends on the rotation since the last turning point.
     """
     c = paper.bore_stick_radius(amplitude)
     radius = c * np.linspace(0.0, 1.0, BOUNDARY)

@@ -1,15 +1,16 @@
-"""Evidence for the statements of the paper: requests of the runs, and tables of their values.
+"""Evidence for the statements of the paper: requests of runs, and tables of values from the runs.
 
 Most runs are points at the tolerance of the study.  The others are single runs: the paper's own
 runs, transients, fields of tractions, and periods.
 
-A table of requests has rows that belong together, such as a fine and a coarse run.  A table of
-evidence has a line for each row, with the columns
+Each row of a table of requests contains requests that belong together, such as a fine and a coarse
+run.  The table of evidence has a line for each of these rows, with the columns
 
-- amplitude, velocity: place of the first run, NaN for the amplitude of a steady motion;
-- value, error: value that is read from the runs, and its error estimate, which is infinite if a
-  run did not converge;
-- other: second value to compare with;
+- amplitude, velocity: amplitude and velocity of the first run; for a steady motion, the amplitude
+  is NaN;
+- value, error: value read from the runs, and its error estimate, which is infinite if a run did not
+  converge;
+- other: second value, for comparison;
 - run, other_run: names of the first two results.
 """
 
@@ -37,26 +38,26 @@ if TYPE_CHECKING:
 PAPER_VELOCITY = 0.005
 """Smallest velocity in the paper's maps of the two motions."""
 PAPER_SQUARES, PAPER_STEPS = 32, 100
-"""Number of squares along a side (as in the paper), and number of steps per period in our run."""
+"""Number of squares along a side, as in the paper, and number of steps per period in our run."""
 PAPER_TOLERANCE = 1e-3
-"""Tolerance of the stresses in the paper."""
+"""Tolerance of the tractions in the paper."""
 STEADY_VELOCITIES = (0.1, 0.3, 0.5, 0.8, 1.2, 3.0)
 TRANSIENT = {"motion": "continuous-bore", "velocity": 0.8, "travel": 10.0}
-"""Transient of the continuous bore.  The forward travel is in units of u_lim, twice as far as in
-the paper's Figure 5."""
+"""Transient of the continuous bore.  The forward travel, in units of u_lim, is twice that of Figure
+5 in the paper."""
 CELLS = (32, 16)
-"""Number of rings for transients and steady tractions.  The error is the difference between the
-fine and the coarse run."""
+"""Number of rings for transients and steady tractions.  The error is estimated as the difference
+between the fine and the coarse run."""
 FIELD_VELOCITIES = (0.2, 0.5, 0.8, 1.2)
-"""Velocities of the runs for steady tractions.  At velocities up to 0.8, the centre of rotation is
-inside the contact."""
+"""Velocities of the runs for steady tractions.  The centre of rotation is inside the contact at
+velocities up to 0.8."""
 PERIOD_STEPS = 64
 NEAR_STATIC = PAPER_VELOCITY
-"""Largest velocity at which an oscillating bore counts as near static friction."""
+"""Largest velocity at which an oscillating bore counts as close to the static limit."""
 STIFF_EXPONENTS = (100, 50, 25)
-"""Indenter exponents for extrapolation to a flat end.  A flat end has a constant stiffness."""
+"""Exponents of the indenters for extrapolation to a flat end, which has a constant stiffness."""
 STIFF_AMPLITUDES, STIFF_RATIOS = (0.4, 0.8), (0.02, 0.1, 0.2, 0.35, 0.5, 0.7, 0.9)
-"""Amplitudes of the indentation, and ratios of the velocity to the amplitude."""
+"""Amplitudes of the indentation depth, and ratios of the velocity to the amplitude."""
 COLUMNS = ("amplitude", "velocity", "run", "other_run", "other", "value", "error")
 """Columns of a table of evidence."""
 
@@ -65,7 +66,7 @@ COLUMNS = ("amplitude", "velocity", "run", "other_run", "other", "value", "error
 
 
 def velocities(study: Claims) -> list[float]:
-    """Return the study's velocities and the paper's smallest velocity, in ascending order."""
+    """Return the velocities of the study and the paper's smallest velocity, in ascending order."""
     return sorted({*study.velocity, PAPER_VELOCITY})
 
 
@@ -75,7 +76,7 @@ def static_amplitudes(study: Claims, motion: str) -> list[float]:
 
 
 def paper_run(motion: str, amplitude: float) -> dict:
-    """Return the request for the paper's own run at its smallest velocity.
+    """Return the request that repeats the paper's own run at the paper's smallest velocity.
 
     The run has 32 x 32 squares and 8,000 steps.
     """
@@ -85,7 +86,7 @@ def paper_run(motion: str, amplitude: float) -> dict:
 
 
 def periods(study: Claims) -> list[list[dict]]:
-    """Return the requests for periods of the oscillating bore near static friction."""
+    """Return the requests for periods of the oscillating bore close to the static limit."""
     near_static = [v for v in velocities(study) if v <= NEAR_STATIC][-2:]
     sizes = study.cells, 2 * (study.cells // 4)
     return [
@@ -98,9 +99,10 @@ def periods(study: Claims) -> list[list[dict]]:
 
 
 def sources(study: Claims) -> Iterator[tuple[str, Callable[..., dict], list[list[dict]]]]:
-    """Yield the tables that are read from runs: name, function and requests.
+    """Yield the name, the function and the requests of each table that is read from runs.
 
-    The requests are in rows.  The function reads a line of evidence from the results of a row.
+    The requests are a list of rows.  The function reads a line of evidence from the results of a
+    row.
     """
 
     def point(*place: Any, model: str = "auto", cells: int | None = None) -> dict:
@@ -181,9 +183,9 @@ def tables_of(study: Claims, answers: Answers) -> dict[str, pd.DataFrame]:
 
 
 def beside_previous(points: pd.DataFrame, *by: str) -> pd.DataFrame:
-    """Return all points but the first of each group, with the value of the previous point.
+    """Return all points except the first of each group, each with the value of the previous point.
 
-    by: column with equal values in the points of a group.
+    by: names of the columns whose values identify a group.
     """
     groups = points.groupby(list(by)) if by else points
     before = groups[["value", "error", "run"]].shift()
@@ -196,24 +198,25 @@ def beside_previous(points: pd.DataFrame, *by: str) -> pd.DataFrame:
 
 
 def friction(row: Row) -> tuple[float, float]:
-    """Return (mu_macro, error estimate) of a point.  The error is infinite if the point did not
-    converge."""
+    """Return (mu_macro, error estimate) of a point.  The error estimate is infinite if the point
+    did not converge."""
     error = number(row, "mu_macro_error")
     is_good = bool(row.get("converged")) and np.isfinite(error)
     return number(row, "mu_macro"), error if is_good else np.inf
 
 
 def point_of(row: Row) -> dict:
-    """Return the friction of a point."""
+    """Return the friction at a point, as a line of evidence."""
     value, error = friction(row)
     return {"value": value, "error": error}
 
 
 def limit_of(closed: Row, rings: Row, squares: Row, own: Row) -> dict:
-    """Return the static limit in closed form, on rings and on squares, and the paper's own run.
+    """Return the static limit from the closed form, from rings and from squares, and the result of
+    the paper's own run.
 
-    The error of the closed form is an independent check: the distance from the limit on rings, plus
-    the error estimates of the two values.
+    The error of the closed form is estimated independently, as the distance from the limit on rings
+    plus the error estimates of these two values.
     """
     (value, rounding), (resolved, error) = friction(closed), friction(rings)
     return {
@@ -227,8 +230,8 @@ def limit_of(closed: Row, rings: Row, squares: Row, own: Row) -> dict:
 
 
 def paper_run_of(own: Row, accurate: Row) -> dict:
-    """Return the friction of the paper's own run.  Its error is the difference from a run at the
-    study's tolerance."""
+    """Return the friction of the paper's own run.  Its error is estimated as the difference from a
+    run at the study's tolerance, plus the error of that run."""
     mu, (value, error) = number(own, "mu_macro"), friction(accurate)
     return {"value": mu, "error": error + abs(mu - value)}
 
@@ -236,8 +239,8 @@ def paper_run_of(own: Row, accurate: Row) -> dict:
 def end_of(name: str, *rows: Row) -> dict:
     """Return the value of a quantity at the end of a transient.
 
-    The error is the sum of two terms: the difference from a run with half as many rings, and the
-    change over the last tenth of the forward travel.
+    The error estimate is the sum of two terms: the difference from a run with half as many rings,
+    and the change over the last tenth of the forward travel.
     """
     fine, coarse = (np.asarray(row[name], float) for row in rows)
     tail = fine[-max(fine.size // 10, 2) :]
@@ -248,7 +251,7 @@ def end_of(name: str, *rows: Row) -> dict:
 def flat_end_of(*rows: Row) -> dict:
     """Return friction for a flat end, extrapolated from three indenters.
 
-    For an indenter with exponent n, the friction differs from that of a flat end by a power series
+    The difference in friction between an indenter with exponent n and a flat end is a power series
     in 1/n.  The extrapolated value has a third-order error.  Its error estimate is the difference
     from the first-order extrapolation.
     """
@@ -259,11 +262,11 @@ def flat_end_of(*rows: Row) -> dict:
 
 
 def both_of(read: Callable[[Row], tuple[float, float]], fine: Row, coarse: Row) -> dict:
-    """Return a value of a run and its reference.
+    """Return a value of a run and the reference for this value.
 
-    The error is the change of their difference in a run with half as many rings.
+    The error is estimated as the change of value minus reference in a run with half as many rings.
 
-    read: function that returns the value and the reference.
+    read: function that reads the value and the reference from a run.
     """
     if not (fine.get("converged", True) and coarse.get("converged", True)):
         return {"value": np.nan, "error": np.inf}
@@ -282,7 +285,7 @@ def traction_ratio(row: Row) -> tuple[float, float]:
 
 
 def traction_angle(row: Row) -> tuple[float, float]:
-    """Return the largest angle between the tractions and Eq 15 in degrees, and 0."""
+    """Return the largest angle between the tractions and those of Eq 15 in degrees, and 0."""
     across, along, lateral, forward = (
         np.asarray(row[name], float)
         for name in ("lateral_position", "forward_position", "traction_lateral", "traction_forward")
@@ -293,16 +296,18 @@ def traction_angle(row: Row) -> tuple[float, float]:
 
 
 def least_stick(row: Row) -> tuple[float, float]:
-    """Return the smallest stick area in a period and the area of the smallest cell, both divided by
-    the contact area."""
+    """Return the smallest stick area in a period, and the area of the smallest cell.  Both are
+    divided by the contact area."""
     both = np.add(row["stick_right"], row["stick_left"])
     return float(both[1:].min()), min(row["area"]) / np.pi
 
 
 def lead(row: Row) -> tuple[float, float]:
-    """Return the lead of one side when the sticking area is smallest, and 0.
+    """Return by how much the stick area of one side exceeds that of the other when the total stick
+    area is smallest, and 0.
 
-    Each side must lead once.  The smaller of the two leads counts.
+    The difference is divided by the total stick area.  Each side must be larger in one half of the
+    period; the smaller of the two differences is returned.
     """
     right, left = (np.asarray(row[f"stick_{side}"][1:], float) for side in ("right", "left"))
     half = right.size // 2

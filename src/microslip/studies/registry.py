@@ -1,19 +1,19 @@
-"""The studies: cost of accuracy, failures of methods, and check of the paper.
+"""Registry of the studies: cost of accuracy, failures of methods, and check of the paper.
 
-A study is a module with four functions and two texts:
+A study is a module with three functions and two strings:
 
-- requests(settings): pairs of a job and a request.  A job is a tuple. Jobs that begin with a
-  smaller number start earlier;
-- values(settings, answers): values of the variables of the dataset, computed from answers;
-- report(dataset): lines of text that summarise the dataset;
-- TITLE and COMMENT of the dataset.
+- requests(settings): yields pairs of a job and a request.  A job is a tuple.  Jobs whose first
+  number is smaller start earlier;
+- values(settings, answers): returns the values of the dataset's variables, computed from answers;
+- report(dataset): yields lines of text that summarise the dataset;
+- TITLE and COMMENT: attributes of the dataset.
 
-The variables of all datasets are in variables.csv, and their groups in groups.csv.  The column
-`source` is the entry of a row that the values are taken from (see answers.columns).  If it is
-empty, the entry has the name of the variable.
+The variables of all datasets are listed in variables.csv, and the groups in groups.csv.  The column
+`source` is the entry of a row from which the values are taken (see answers.columns).  If `source`
+is empty, the entry has the name of the variable.
 
-The workflow imports the modules at every start, so they import neither the solver nor xarray at the
-top.
+The workflow imports these modules at every start, so they do not import the solver or xarray at
+module level.
 """
 
 from __future__ import annotations
@@ -34,7 +34,7 @@ if TYPE_CHECKING:
 
 
 def pieces(study: str, settings: Settings) -> list[list[dict]]:
-    """Return the jobs of a study, slow ones first.  A job is a list of different requests."""
+    """Return the jobs of a study, slow jobs first.  A job is a list of distinct requests."""
     jobs: dict[tuple, list[dict]] = {}
     requested = set()
     for job, request in _module(study).requests(settings):
@@ -64,7 +64,7 @@ def build(
     values = module.values(settings, answers)
     table = {row["name"]: row for row in rows_of("variables.csv", study)}
     variables = {name: described(table[name], values[name]) for name in table if name in values}
-    # The keys also depend on the sources of the methods.
+    # The keys also depend on the source code of the methods.
     keys = sorted({row["key"] for _, row in answers.rows.values()})
     more = {"results_digest": sha256("\n".join(keys)), "comment": module.COMMENT}
     own = settings.model_dump()

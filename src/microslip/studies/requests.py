@@ -1,18 +1,18 @@
 """Requests of the studies, and the models and resolutions at which methods are compared.
 
-A request is a dict whose numbers are canonical texts, see sweeps.request.  The kinds of requests
-that all studies share are:
+A request is a dict whose numbers are canonical strings (see sweeps.request).  All studies share the
+following kinds of requests:
 
 - trial: a timed run at a point, with a model, a method and a resolution;
 - choice: a timed solve at a tolerance, with automatic selection of the model and resolution;
 - probe: an untimed solve with a given method;
-- point: a solve at a tolerance, also used as the reference for other requests.
+- point: a solve at a tolerance, which also serves as the reference for other requests.
 
-Timed requests contain the name of the CPU.  Times measured on different CPUs therefore have
-different keys and are not drawn in one chart.
+A timed request contains the name of the CPU.  Times measured on different CPUs therefore have
+different keys and are never drawn in the same chart.
 
-Cells, angles and steps are refined together, so that their errors decrease together.  A method's
-file can prescribe the model and the resolution for that method.
+Cells, angles and steps are refined together, so that the errors due to each of them decrease
+together.  The file of a method can prescribe the model and the resolution of the method.
 """
 
 from __future__ import annotations
@@ -28,9 +28,10 @@ if TYPE_CHECKING:
     from microslip.config.settings import StudyPoint
 
 RINGS_TOLERANCE, TOLERANCE = 1e-6, 3e-5
-"""Tolerance of a reference computed with rings (cheap), and with angular points."""
+"""Tolerance of a reference that is computed with rings, which are cheap, and with angular
+points."""
 ROTATIONS = ("bore", "continuous-bore")
-"""Motions with a rotation, to which few models apply."""
+"""Motions with a rotation.  Only a few models apply to them."""
 OF_ROTATIONS = ("rigid", "polar", "cartesian")
 """Models that apply to rotations.  The names are copied from contact.registry, because that module
 is slow to import."""
@@ -77,22 +78,23 @@ LADDERS = {
     ),
     "cartesian": _doubled(8, 1, 16, 4),
 }
-"""Levels of each model, from coarse to fine.  Squares have few levels, because they are by far the
-most expensive."""
+"""Levels of each model, from coarse to fine.  The model with squares has few levels, because it is
+by far the most expensive."""
 OF_OTHER_METHODS = {"radial": 5, "polar": 4, "cartesian": 3}
-"""Number of levels per model, for all methods except the shipped method.  The other methods can be
-slow or use dense matrices."""
+"""Number of levels of each model for methods other than the shipped one, which can be slow or use
+dense matrices."""
 COARSEST_TOLERANCE, TOLERANCE_POWER = 3e-5, 1.5
-"""Tolerance of the periodic state (force divided by mu F_z) at the first level.  It is proportional
-to 1 / steps^TOLERANCE_POWER.  At every level, the tolerance is below the discretisation error (1e-4
-to 1e-6 for rings at nu = 0)."""
+"""Tolerance of the periodic state (force divided by mu F_z) at the first level, and the exponent in
+its dependence 1 / steps^TOLERANCE_POWER.  At every level, the tolerance is below the discretisation
+error (1e-4 to 1e-6 for rings at nu = 0)."""
 
 
 # Models and resolutions
 
 
 def models_of(motion: str, poisson: float) -> list[str]:
-    """Return the names of the models for a motion and a Poisson's ratio, coarsest first."""
+    """Return the names of the models that apply to a motion and a Poisson's ratio, coarsest
+    first."""
     names = OF_ROTATIONS if motion in ROTATIONS else tuple(LADDERS)
     return [name for name in names if name != "radial" or poisson == 0]
 
@@ -103,7 +105,7 @@ def exact_model(motion: str, poisson: float) -> str:
 
 
 def models_for(method: str, motion: str, poisson: float) -> list[str]:
-    """Return the models with which a method is run.
+    """Return the names of the models with which a method is run.
 
     The shipped method is run with all models.  Any other method is run with the model named in its
     file, or else with the model that `model="auto"` selects.  The list is empty if the method does
@@ -135,14 +137,15 @@ def ladder(model: str, method: str, count: int) -> list[tuple[int, Level, float]
 
 
 def of(kind: str, point: AnyPoint, **arguments: Any) -> dict:
-    """Return the request of a kind at a point.  A timed request contains the name of the CPU."""
+    """Return the request of the given kind at a point.  A timed request contains the name of the
+    CPU."""
     place = {name: getattr(point, name) for name in Point._fields}
     timed = {"cpu": cpu_model()} if kind in ("trial", "choice") else {}
     return request_of(kind, **place, **timed, **arguments)
 
 
 def solve(point: AnyPoint, tolerance: float, model: str = "auto", cells: int | None = None) -> dict:
-    """Return the request for a point. A sweep has an equal request for this point.
+    """Return the request for a solve at a point. It equals the request of a sweep for this point.
 
     cells: imposed number of rings or squares.  If None, it follows from the tolerance.
     """
@@ -150,7 +153,8 @@ def solve(point: AnyPoint, tolerance: float, model: str = "auto", cells: int | N
 
 
 def reference(point: AnyPoint) -> dict:
-    """Return the request for the reference of a point, at a tight tolerance."""
+    """Return the request that computes the reference solution at a point, with a tight
+    tolerance."""
     rings = exact_model(point.motion, point.poisson) == "radial"
     return solve(point, RINGS_TOLERANCE if rings else TOLERANCE)
 
@@ -158,7 +162,8 @@ def reference(point: AnyPoint) -> dict:
 def trials(
     point: AnyPoint, methods: Iterable[str], levels: int, repeats: int
 ) -> Iterator[tuple[int, dict]]:
-    """Yield (level number, request) for timed runs of methods, with all of their models and levels.
+    """Yield (level number, request) for the timed runs of methods, for all models and levels of
+    each method.
 
     The number of steps of a steady motion is None.
     """

@@ -1,8 +1,8 @@
-"""Study of the failures of methods: all methods are tested in the same cases.
+"""Study of the failures of methods, in which all methods are tested in the same cases.
 
 A block of the configuration varies one quantity of a base point into a range where methods fail.
-The quantity belongs to the point, to the resolution, or to a method.  A case is a value of this
-quantity.  All probes have the same tolerance.
+This quantity can belong to the point, the resolution or a method.  Each of its values is a case.
+All probes have the same tolerance.
 """
 
 from __future__ import annotations
@@ -26,12 +26,12 @@ if TYPE_CHECKING:
 TRUTH_SHARE = 0.1
 """Tolerance of the references, divided by the tolerance of the probes."""
 MOST_WORK = 5_000_000
-"""Work budget of a probe (number of step solves times number of unknowns).  It is several times the
-work of the shipped method."""
+"""Work budget of a probe, in step solves times unknowns.  It is several times the work that the
+shipped method needs."""
 BLOCKS_PER_JOB = 5
 """Number of blocks in one job."""
 UNSOLVED = "a step was left unsolved"
-"""First words of `reason` if a run reached the iteration limit close to the solution of a step."""
+"""First words of `reason` if a run reached the iteration limit when a step was nearly solved."""
 OUTCOMES = ("not_applicable", "converged", "slow", "wrong", "diverged")
 NOT_APPLICABLE, CONVERGED, SLOW, WRONG, DIVERGED = range(len(OUTCOMES))
 
@@ -43,12 +43,13 @@ COMMENT = "The outcome of a method is judged by the distance from the reference 
 
 
 def cases(study: Stability) -> list[tuple[str, Block, float]]:
-    """Return (name of the block, block, value) of all cases, in the order of the dataset."""
+    """Return the tuple (name of the block, block, value) of each case, in the order of the
+    dataset."""
     return [(name, block, v) for name, block in study.axes.items() for v in block.values]
 
 
 def _place(block: Block, value: float) -> tuple[Point, dict[str, Any]]:
-    """Return the point of a case, and its imposed resolution."""
+    """Return the point of a case and the imposed resolution."""
     names = ("velocity", "amplitude", "poisson", "cells", "steps")
     first = {name: values[0] for name in names if (values := getattr(block, name))}
     at = first | {block.quantity: value}
@@ -57,9 +58,9 @@ def _place(block: Block, value: float) -> tuple[Point, dict[str, Any]]:
 
 
 def probe(study: Stability, method: str, block: Block, value: float) -> dict | None:
-    """Return the request for running a method in a case, or None if the block does not apply.
+    """Return the request that runs a method in a case, or None if the block does not apply to it.
 
-    A block with step lengths applies to methods with this parameter and, for comparison, to the
+    A block that varies `step` applies to methods with this parameter and, for comparison, to the
     shipped method.
     """
     if block.quantity == "step" and method != SHIPPED:
@@ -74,13 +75,13 @@ def probe(study: Stability, method: str, block: Block, value: float) -> dict | N
 
 
 def reference(study: Stability, block: Block, value: float) -> dict:
-    """Return the request for the reference of a case: the shipped method without an imposed
-    resolution."""
+    """Return the request for the reference of a case, which is computed with the shipped method and
+    without an imposed resolution."""
     return forms.solve(_place(block, value)[0], TRUTH_SHARE * study.tolerance)
 
 
 def requests(study: Stability) -> Iterator[tuple[tuple, dict]]:
-    """Yield each request with its job.  A method that is added has jobs of its own."""
+    """Yield each request with its job.  Every method has separate jobs."""
     for name, block, value in cases(study):
         yield (0, name), reference(study, block, value)
     number_of = {name: index for index, name in enumerate(study.axes)}
@@ -98,17 +99,18 @@ def outcome(
 ) -> int:
     """Return the outcome of a probe, an index into OUTCOMES.
 
-    A probe is not applicable if the method was not run.  It is converged if the run converged and
-    differs from the reference by at most the sum of the two error estimates.  It is wrong if the
-    run converged, but differs by more.  It is slow if the run used up its budget and reports this.
-    It is diverged if the run diverged or returned no number.
+    The outcome is "not applicable" if the method was not run.  It is "converged" if the run
+    converged and its result differs from the reference by at most the sum of the two error
+    estimates.  It is "wrong" if the run converged to a result that differs by more.  It is "slow"
+    if the run did not converge within its budget and reports this.  It is "diverged" if the run
+    diverged or did not return a finite number.
 
     Parameters
     ----------
     result : dict or None
         Result of the probe.  If the method was not run, it is None or its entry `applies` is False.
     reference, reference_error : float
-        Reference and its error estimate, dimensionless.
+        Reference value and its error estimate, both dimensionless.
     imposed : bool
         True if the resolution was imposed.  An imposed resolution can be too coarse for the
         tolerance, so every run with a periodic state counts as converged.
@@ -129,7 +131,7 @@ def outcome(
 
 
 def values(study: Stability, answers: Answers) -> dict[str, Any]:
-    """Return the values of the variables."""
+    """Return the values of all variables of the dataset."""
     every, blocks = cases(study), study.axes
     rows: list[Row] = []
     for name, block, value in every:
@@ -159,7 +161,7 @@ def values(study: Stability, answers: Answers) -> dict[str, Any]:
 
 
 def report(dataset: xr.Dataset) -> Iterator[str]:
-    """Yield a line of text for each method: the number of cases with each outcome."""
+    """Yield a line of text for each method with the number of cases for each outcome."""
     for method, row in zip(dataset["method"].values, dataset["outcome"].values, strict=True):
         counts = ((OUTCOMES[i], int((row == i).sum())) for i in range(1, len(OUTCOMES)))
         yield f"{method}: " + ", ".join(f"{count} {name}" for name, count in counts)

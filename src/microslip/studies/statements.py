@@ -1,13 +1,15 @@
-"""The paper's statements and the criteria of their parts.  Statement 10 is by M. Popov (2020).
+"""The paper's statements, and the criteria for judging each part.  Statement 10 is by M. Popov
+(2020).
 
 A part is one aspect of a statement that numbers can confirm or refute.  statements.csv contains the
 statements in plain words, and parts.csv contains a row for each part:
 
 - counts: yes if the verdict on the statement depends on the part;
-- evidence, lines: table of evidence, and condition on its lines; all lines if it is empty;
-- formula: reference of the values, a key of FORMULAS;
+- evidence, lines: table of evidence, and condition that selects lines of it; if this is empty, all
+  lines are used;
+- formula: reference for the values, a key of FORMULAS;
 - margin: how a value is compared with its reference, a key of MARGINS;
-- limit: key of LIMITS; the text of the criterion contains its value.
+- limit: key of LIMITS.  The value of the limit appears in the text of the criterion.
 """
 
 from __future__ import annotations
@@ -32,24 +34,25 @@ LIMITS = {
     "GOOD": 0.02,
     # Largest difference in mu_macro that counts as slight.
     "SLIGHT": 0.05,
-    # Largest distance in mu_macro between a curve and a dashed line over it that counts as equal.
+    # Largest difference in mu_macro between a curve and a dashed line at which they count as equal.
     "AGREES": 0.01,
-    # Relative error up to which a formula is good where friction is small.
+    # Largest relative error at which a formula counts as good where friction is small.
     "RELATIVE": 0.1,
-    # Traction divided by the friction bound above which a point slips.
+    # Ratio of traction to friction bound above which a point counts as slipping.
     "ON_BOUND": 0.999,
-    # Largest angle in degrees between traction and slip: the tolerance of the paper.
+    # Largest angle in degrees between traction and slip, equal to the tolerance of the paper.
     "ALIGNED": 4.0,
-    # Smallest difference of the stick areas of the two halves, divided by the whole stick area.
+    # Smallest difference between the stick areas of the two halves, divided by the total stick
+    # area.
     "ALTERNATES": 0.5,
     # Largest mean force, divided by mu F_z, that counts as zero.
     "VANISHES": 1e-9,
 }
-"""What words such as slight, good or near mean in numbers."""
+"""Numerical meanings of words such as slight, good or near."""
 
 
 class Part(NamedTuple):
-    """One aspect of a statement; the fields are the columns of parts.csv."""
+    """One aspect of a statement.  The fields are the columns of parts.csv."""
 
     claim: int
     part: str
@@ -62,13 +65,14 @@ class Part(NamedTuple):
     text: str
 
     def checks(self, tables: dict[str, pd.DataFrame]) -> pd.DataFrame:
-        """Return the table of evidence with the columns against, margin and outcome.
+        """Return the lines of evidence for this part, with the added columns against, margin and
+        outcome.
 
         tables: tables of evidence by name.
         """
         checks = tables[self.evidence]
         checks = checks.query(self.lines) if self.lines else checks
-        # An error of the value can change the distances from two formulas, so it counts twice.
+        # The error of a value affects the distances from both formulas, so it counts twice.
         errors = 2.0 if self.margin.startswith("nearer than Eq") else 1.0
         return checks.assign(
             limit=self.limit,
@@ -80,7 +84,7 @@ class Part(NamedTuple):
 
 
 Numbers = Callable[["pd.DataFrame"], Any]
-"""Function that computes references or margins from a table of evidence."""
+"""Type of functions that compute references or margins from a table of evidence."""
 
 
 def _of(formula: Callable, *columns: str) -> Numbers:
@@ -99,7 +103,7 @@ FORMULAS = {
     "other": _of(np.asarray, "other"),
     "limit": _of(np.asarray, "limit"),
 }
-"""References of values: closed forms by their equation, and others by name."""
+"""References for values: closed forms by equation number, and other references by name."""
 
 
 def _distance(checks: pd.DataFrame, reference: Any = None) -> Any:
@@ -116,7 +120,8 @@ MARGINS: dict[str, Numbers] = {
     "nearer than Eq 7": lambda c: _distance(c, FORMULAS["Eq 7"](c)) - _distance(c),
     "nearer than Eq 38": lambda c: _distance(c, FORMULAS["Eq 38"](c)) - _distance(c),
 }
-"""Margins of checks by name.  A margin is positive where the part holds."""
+"""Functions that compute the margins of checks, by name.  A positive margin means that the part
+holds."""
 
 
 def _part(row: dict[str, str]) -> Part:

@@ -1,8 +1,9 @@
-"""The static limit of the two oscillating motions, and the paper's formulas for this limit.
+"""Compare the static limit of the two oscillating motions with the paper's formulas for this limit.
 
-The paper's formulas count the whole friction bound inside the stick zone, although the oscillation
-uses a part of it (see microslip.periodic.static_limit).  The paper's own runs do not show the
-difference, because their velocity is too large and their resolution is too coarse.
+Inside the stick zone, the paper's formulas include the whole friction bound, although the
+oscillation uses a part of it (see microslip.periodic.static_limit).  The paper's own runs do not
+show the resulting difference, because their velocity is too large and their resolution is too
+coarse.
 """
 
 from __future__ import annotations
@@ -27,7 +28,7 @@ FORMULAS = {
     "transverse": {"slider": "mu_static_slider", "zone": "mu_static_stick_zone"},
     "bore": {"zone": "mu_static_stick_zone", "zone_printed": "mu_static_stick_zone_printed"},
 }
-"""The paper's formulas for each motion: names in datasets.catalogue."""
+"""Names in datasets.catalogue of the paper's formulas for each motion."""
 CURVE_POINTS = 501
 SHARE_AMPLITUDES = {"transverse": (0.1, 0.25, 0.5, 0.75), "bore": (0.25, 0.5, 1.0, 2.0)}
 """Amplitudes at which the fractions of the friction bound are drawn."""
@@ -35,8 +36,9 @@ RADII = 201
 
 
 def remainder() -> float:
-    """Return the integral of the remaining friction bound for large amplitudes over c^2, where c is
-    the radius of the stick zone: 3/4 (1 - J0(pi)) with the Bessel function J0."""
+    """Return the integral of the remaining friction bound divided by c^2, where c is the radius of
+    the stick zone.  For large amplitudes it is 3/4 (1 - J0(pi)), where J0 is the Bessel
+    function."""
     return 0.75 * (1.0 - scipy.special.j0(np.pi))
 
 
@@ -44,8 +46,8 @@ def asymptote(amplitude: ArrayLike) -> np.ndarray:
     """Return the static limit of the oscillating bore for large amplitudes (small stick zones).
 
     The radius of the stick zone is c = (4/e) exp(-D(1/2) amplitude), and the rotation uses the
-    fraction (2/pi) arcsin(r/c) of the friction bound.  Eq 33 tends to 3/2 c^2.  The result is
-    dimensionless and positive.  amplitude: array of any shape.
+    fraction (2/pi) arcsin(r/c) of the friction bound.  For comparison, Eq 33 tends to 3/2 c^2.  The
+    result is dimensionless and positive. amplitude: array of any shape.
     """
     radius = 4.0 / np.e * np.exp(-hertz.D_half() * np.asarray(amplitude, float))
     return remainder() * radius**2
@@ -54,7 +56,7 @@ def asymptote(amplitude: ArrayLike) -> np.ndarray:
 def used_share(motion: str, radius: np.ndarray, amplitude: np.ndarray) -> np.ndarray:
     """Return the fraction of the friction bound that the oscillation uses at its turning points.
 
-    The fraction is 1 outside the stick radius.  The arguments broadcast.
+    The fraction is 1 outside the stick radius.  The arguments are broadcast.
     """
     if motion == "bore":
         return np.asarray(hertz.lubkin_share(radius, paper.bore_stick_radius(amplitude)))
@@ -66,7 +68,7 @@ def used_share(motion: str, radius: np.ndarray, amplitude: np.ndarray) -> np.nda
 def left_share(motion: str, radius: np.ndarray, amplitude: np.ndarray) -> np.ndarray:
     """Return the fraction of the friction bound that remains for the forward direction.
 
-    It is averaged over the angle.
+    The fraction is averaged over the angle.
     """
     used = used_share(motion, radius, amplitude)
     if motion == "bore":
@@ -78,7 +80,7 @@ def left_share(motion: str, radius: np.ndarray, amplitude: np.ndarray) -> np.nda
 
 
 def values(study: Claims, tables: dict[str, pd.DataFrame]) -> dict[str, Any]:
-    """Return the values of the variables.  tables: tables of evidence."""
+    """Return the values of all variables of the static limits. tables: tables of evidence."""
     radius = np.linspace(0.0, 1.0, RADII)
     entries: dict[str, Any] = {
         "share_radius": radius,
@@ -97,7 +99,8 @@ def values(study: Claims, tables: dict[str, pd.DataFrame]) -> dict[str, Any]:
 
 
 def _curves(motion: str) -> dict:
-    """Return the static limit and the formulas on a fine axis, and their largest differences."""
+    """Return the static limit and the formulas on a fine axis, and the largest differences between
+    them."""
     amplitude = np.linspace(0.0, STATIC_AMPLITUDES[motion], CURVE_POINTS)
     exact = FORMS[motion][STATIC].function(amplitude)
     entries: dict[str, Any] = {"curve_amplitude": amplitude, "curve_limit": exact}
@@ -114,8 +117,8 @@ def _table(motion: str, limit: pd.DataFrame, march: pd.DataFrame, slow: pd.DataF
 
     The difference is split into a part due to the velocity and a part due to the resolution.
 
-    limit, march, slow: static limit, and friction at the smallest velocity of the study and of the
-    paper, with a line for each amplitude.
+    limit: static limit. march, slow: friction at the smallest velocity of the study and of the
+    paper.  Each table has a line for each amplitude.
     """
     limit, march, slow = (table.set_index("amplitude") for table in (limit, march, slow))
     amplitude = limit.index.to_numpy(float)

@@ -1,9 +1,9 @@
-"""Verdicts on statements, from the margins and errors of checks.
+"""Compute verdicts on statements from the margins and errors of checks.
 
-A statement of the paper has parts, and a part is judged by checks.  Each check has a margin with an
-error.  A check holds if its margin is larger than the error.  It fails if the margin is negative
-and its absolute value is larger than the error.  Otherwise, the check is open.  A part holds if
-some checks hold and none fails.  A statement holds if all its parts hold.
+A statement of the paper has parts, and each part is judged by checks.  A check has a margin with an
+error.  It holds if the margin is larger than the error.  It fails if the margin is negative and its
+absolute value is larger than the error.  Otherwise, the check is open.  A part holds if at least
+one check holds and no check fails.  A statement holds if all its parts hold.
 """
 
 from __future__ import annotations
@@ -23,13 +23,13 @@ OPEN, HOLDS, FAILS = range(len(OUTCOMES))
 VERDICTS = ("not_decided", "holds", "holds_in_part", "does_not_hold")
 NOT_DECIDED, WHOLLY, PARTLY, NOT = range(len(VERDICTS))
 WORDS = tuple(name.replace("_", " ") for name in VERDICTS)
-"""Verdicts in words."""
+"""Names of the verdicts in words."""
 
 
 def outcomes(margin: ArrayLike, error: ArrayLike) -> np.ndarray:
     """Return the outcome of each check, an index into OUTCOMES.
 
-    margin, error: arrays of one shape.  The margin is positive if the part holds.
+    margin, error: arrays of the same shape.  A positive margin means that the part holds.
     """
     margin = np.asarray(margin, float)
     decided = np.isfinite(margin) & (np.abs(margin) > np.asarray(error, float))
@@ -45,8 +45,8 @@ def of_part(outcome: Iterable[int]) -> int:
 def of_claim(parts: Iterable[int]) -> int:
     """Return the verdict on a statement from the verdicts on its parts.
 
-    A statement holds in part if one of its parts holds in part, or if some parts hold and some do
-    not.  Otherwise, one undecided part leaves the statement undecided.
+    A statement holds in part if one of its parts holds in part, or if some parts hold and others do
+    not.  Otherwise, the statement is undecided if any part is undecided.
     """
     distinct = set(parts)
     verdict = _verdict(bool({WHOLLY, PARTLY} & distinct), bool({NOT, PARTLY} & distinct))
@@ -58,7 +58,7 @@ def _verdict(holds: bool, fails: bool) -> int:
 
 
 def of_checks(checks: pd.DataFrame) -> dict[str, Any]:
-    """Return the variables of a part that follow from its checks.
+    """Return the variables of a part that are computed from its checks.
 
     checks: table with the columns outcome, margin, run, amplitude and velocity.
     """
@@ -73,9 +73,10 @@ def of_checks(checks: pd.DataFrame) -> dict[str, Any]:
 
 
 def shown_by(checks: pd.DataFrame) -> str:
-    """Return the name of the run that shows the verdict on a part; empty if no check is decided.
+    """Return the name of the run that best shows the verdict on a part, or "" if all checks are
+    open.
 
-    The run belongs to the check that fails most clearly or, if no check fails, to the check that
+    It is the run of the check that fails most clearly or, if no check fails, of the check that
     holds most narrowly.
 
     checks: table with the columns outcome, margin and run.
@@ -110,7 +111,8 @@ def where(checks: pd.DataFrame) -> str:
 
 
 def _stretches(labels: Iterable[tuple[float, object]]) -> Iterable[tuple]:
-    """Yield each label with the range of consecutive values with this label, such as "1 to 3".
+    """Yield the label and the range, such as "1 to 3", of each group of consecutive values with the
+    same label.
 
     labels: pairs of a value and its label.
     """
