@@ -1,8 +1,8 @@
-"""Friction of a vibrated Hertz contact, resolved by boundary elements.
+"""Friction of vibrated contacts, computed by a boundary element method.
 
-``solve`` computes the friction at one point.  ``history`` and ``traction_field`` compute forces and
-tractions in detail.  Importing the package is fast,
-because a module is loaded only when one of its names is first used.
+``solve`` computes the friction for one velocity and amplitude.  ``history`` computes the forces at
+every time step, and ``traction_field`` the tractions in a steady motion.  Importing the package is
+fast, because each module is loaded only when one of its names is first used.
 """
 
 from importlib import import_module as _import_module

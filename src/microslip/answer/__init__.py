@@ -1,1 +1,1 @@
-"""Public functions that make an answer: a number, a path or a period, with error estimates."""
+"""Public functions that return a result (a number, a path or a period) with error estimates."""

@@ -1,10 +1,11 @@
-"""Contacts along a path: forces and tractions at chosen steps of a march.
+"""Forces of a contact along a path.
 
-`history` marches along an oscillation or a steady motion at one resolution.  `response` marches
-along a prescribed path, which need not be periodic, and refines it until the errors of the forces
-are within the tolerance.
+`history` integrates an oscillation or a steady motion in time, at one resolution.  `response`
+integrates along a prescribed path, which need not be periodic, and refines the resolution until the
+errors of the forces are within the tolerance.
 
-`iwan` compares an Iwan model with the response of the full contact, if Poisson's ratio is above 0.
+`iwan` builds an Iwan model.  If Poisson's ratio is above 0, it compares this model with the
+response of the full contact.
 """
 
 from __future__ import annotations
@@ -37,22 +38,24 @@ from microslip.theory.masing import Iwan, with_elements, with_tolerance
 STARTS = ("stress-free", "full-slip", "full-rotation")
 """Names of the initial states."""
 CELLS, ANGLES, STEPS = 32, 16, 256
-"""Default resolution of a history: rings or squares, angles, and steps in a period."""
+"""Default resolution of a history: numbers of rings or squares, of angles, and of steps in a
+period."""
 STEP_TOLERANCE = 1e-7
 """Tolerance of a step in a history or a period, as a force divided by mu F_z."""
 LONGEST_PHASE = 1e12
 """Largest rotation of a steady motion, in u_lim / a.  At larger rotations, successive phases could
 be equal because of rounding."""
 ON_BOUND = 1.0 - 1e-4
-"""Smallest traction of a slipping point, divided by the friction bound."""
+"""A point counts as slipping if its traction is at least this fraction of the friction bound."""
 STEP_SHARE = 0.05
 """Largest sum of the step residuals in a response, divided by the tolerance; see request.RUN_SHARE.
 """
 MOST_VALUES = 2e7
-"""Largest number of tractions in memory at the same time.  Longer paths are marched in pieces."""
+"""Largest number of tractions in memory at the same time.  Longer paths are integrated in
+pieces."""
 PATH_STEPS = LOAD.steps / 2.0
-"""Number of time steps for a path of length u_lim, divided by the level.  For a stroke of u_lim,
-half a period is 2 u_lim long and has as many steps as in LOAD, the ladder for oscillating loads."""
+"""Number of time steps for a path of length u_lim, divided by the level.  It corresponds to LOAD,
+the ladder for oscillating loads, at a stroke of u_lim, where half a period is 2 u_lim long."""
 FORCES = ("force_forward", "force_lateral", "torque")
 """Names of the forces in a History, a Response and a Period."""
 COLUMNS = (
@@ -61,11 +64,11 @@ COLUMNS = (
 )
 """Names of the columns of a Response."""
 ENERGY, RESIDUAL, STICK = 3, 4, 5
-"""Columns of a response march after the three forces."""
+"""Indices of the columns that follow the three forces in the rows of a response."""
 
 
 def tractions_at_start(contact: Contact, start: str) -> np.ndarray:
-    """Tractions of a contact in the initial state `start`, one of STARTS."""
+    """Return the tractions of a contact in the initial state `start`, one of STARTS."""
     if start == "full-rotation":
         return full_slip(contact, contact.lateral_position, -contact.forward_position)
     return float(start == "full-slip") * forward_slip(contact)
@@ -74,7 +77,7 @@ def tractions_at_start(contact: Contact, start: str) -> np.ndarray:
 def refuse_start(name: str, start: object, rotates: bool, other: str = "") -> None:
     """Raise InputError if `start` is not an initial state of the motion.
 
-    name: name of the argument; other: further allowed values.
+    `name` is the name of the argument, and `other` lists further allowed values.
     """
     if not isinstance(start, str) or start not in STARTS:
         raise InputError(name, start, f"allowed is {other}one of {', '.join(STARTS)}")
@@ -86,7 +89,7 @@ def refuse_start(name: str, start: object, rotates: bool, other: str = "") -> No
 
 
 class History(Answer):
-    """Forces along a path, as dimensionless arrays of shape (steps + 1,).
+    """Forces along a path.  All arrays are dimensionless and have the shape (steps + 1,).
 
     Attributes
     ----------
@@ -95,7 +98,7 @@ class History(Answer):
     displacement_forward : np.ndarray
         Forward displacement in u_lim.
     force_forward, force_lateral : np.ndarray
-        Forces on the flat divided by mu F_z, positive in the sphere's direction of motion.
+        Forces on the flat divided by mu F_z; positive in the sphere's direction of motion.
     torque : np.ndarray
         Torque divided by its full-slip value.
     """
@@ -103,7 +106,7 @@ class History(Answer):
     axes = ("phase",)
 
     def __str__(self) -> str:
-        """Number of steps, range of the phase, and forces at the end."""
+        """Return the number of steps, the range of the phase and the final forces as text."""
         first, last = self.phase[0], self.phase[-1]
         lines = [f"{len(self.phase) - 1} steps from phase {first:.6g} to {last:.6g}; at the end:"]
         return "\n".join(lines + [f"{name} = {self.values[name][-1]:.6g}" for name in FORCES])
@@ -181,7 +184,7 @@ def history(
 
 
 def named_forces(problem: Problem, forces: np.ndarray) -> dict[str, np.ndarray]:
-    """Forces by name, with the torque divided by its full-slip value."""
+    """Return the forces by name, with the torque divided by its full-slip value."""
     forward, lateral, torque = forces.T
     return dict(zip(FORCES, (forward, lateral, torque / problem.pressure.torque), strict=True))
 
@@ -190,18 +193,18 @@ def named_forces(problem: Problem, forces: np.ndarray) -> dict[str, np.ndarray]:
 
 
 class Response(Answer):
-    """Dimensionless forces at the rows of a path.
+    """Dimensionless forces of a contact at the rows of a prescribed path.
 
     Attributes
     ----------
     force_forward, force_lateral : np.ndarray, shape (rows,)
-        Forces divided by mu F_z of the reference load, positive in the direction of the
-        displacement that they resist.
+        Forces divided by mu F_z, where F_z is the reference load.  They are positive in the
+        direction of the displacement that they resist.
     torque : np.ndarray, shape (rows,)
         Torque divided by its value at full slip under the reference load.
     force_error : np.ndarray, shape (rows, 3)
-        Estimated errors of the forward force, the lateral force and the torque, with that of the
-        resolution of a pressure on a grid.
+        Estimated errors of the forward force, the lateral force and the torque.  For a pressure on
+        a grid, they include the error due to the resolution of the grid.
     dissipated_energy, dissipated_energy_error : np.ndarray, shape (rows,)
         Energy dissipated by friction since the first row and its estimated error, both divided by
         mu F_z u_lim.
@@ -213,18 +216,18 @@ class Response(Answer):
     converged : bool
         Whether every force error is within the tolerance.
     reason : str
-        Reason why the response is not converged, otherwise empty.
+        Reason why the response has not converged, otherwise empty.
     model : str
         Name of the model.
     cells, angles : int
-        Resolution of the finest march.
+        Numbers of cells and of angles in the finest run.
     """
 
     @property
     def columns(self) -> dict[str, tuple[str, np.ndarray]]:
         """Unit and values of every column, by name.
 
-        The column `force_error` is the larger error of the two force components.
+        The column `force_error` contains the larger of the errors of the two force components.
         """
         errors = self.force_error
         values = {"force_error": errors[:, :2].max(axis=1), "torque_error": errors[:, 2]}
@@ -232,7 +235,7 @@ class Response(Answer):
 
     @property
     def attributes(self) -> dict[str, object]:
-        """Attributes of the dataset."""
+        """Attributes of the dataset made from the response."""
         names = ("model", "tolerance", "reason")
         return {name: getattr(self, name) for name in names} | {"converged": int(self.converged)}
 
@@ -241,7 +244,7 @@ class Response(Answer):
         return import_module("microslip.datasets.of_records").to_xarray(self)
 
     def __str__(self) -> str:
-        """The lines that `microslip response` prints."""
+        """Return the text that `microslip response` prints."""
         return str(import_module("microslip.datasets.of_records").response_text(self))
 
 
@@ -274,8 +277,9 @@ def response(
         Indentation divided by the indentation under the reference load, >= 0.  Give either this or
         `load`.
     state : Response, str or None
-        State in the first row.  A Response stands for the state at its end.  The other states are
-        "full-slip", "full-rotation" and None, which means no tangential tractions.
+        State of the contact in the first row: "full-slip", "full-rotation", or None for no
+        tangential tractions.  If it is a Response, the path continues from the last row of this
+        response.
     pressure : str or Pressure
         Pressure, see `microslip.solve`.  If the load changes, the indenter must be axisymmetric.
     poisson : float
@@ -284,7 +288,8 @@ def response(
         Largest accepted error. It applies to the forces divided by mu F_z, and to the torque
         divided by its value at full slip.
     progress : callable or None
-        Called as `progress(rows, total)` during the marches.
+        Called as `progress(rows, total)` during each run, where `rows` is the number of finished
+        rows.
 
     Returns
     -------
@@ -380,7 +385,7 @@ def _marched(
     tolerance: float,
     progress: Callable[[int, int], None] | None,
 ) -> np.ndarray:
-    """Values at every row of a path, shape (rows, 6).
+    """Integrate along a path, and return the values at every row as an array of shape (rows, 6).
 
     The columns are the forward force, the lateral force, the torque, the dissipated energy, a bound
     on the sum of the residuals since the start, and the stick fraction.
@@ -419,7 +424,7 @@ def _marched(
 
 
 def _pieces(counts: np.ndarray, size: int) -> Iterator[tuple[int, int]]:
-    """First and last row of each piece of a path; `size` is the number of values in a state."""
+    """Yield the first and the last row of each piece of a path, for states of `size` values."""
     ends, first = np.cumsum(counts), 0
     while first < len(counts):
         values_before = ends[first - 1] if first else 0
@@ -430,7 +435,7 @@ def _pieces(counts: np.ndarray, size: int) -> Iterator[tuple[int, int]]:
 
 
 def _stick_fraction(contact: Contact, tractions: np.ndarray, bounds: np.ndarray) -> np.ndarray:
-    """Fraction of the contact area whose tractions are below the friction bound."""
+    """Return the fraction of the contact area whose tractions are below the friction bound."""
     size = np.hypot(tractions[:, 0], tractions[:, 1])
     area = np.where(bounds > 0.0, contact.weight, 0.0)
     sticking = np.where(size < ON_BOUND * bounds, area, 0.0)
@@ -440,13 +445,14 @@ def _stick_fraction(contact: Contact, tractions: np.ndarray, bounds: np.ndarray)
 
 
 TOLERANCE = 1e-3
-"""Default tolerance of the discretisation, and tolerance of the full contact in the comparison."""
+"""Default largest error due to the number of elements.  It is also the tolerance of the full
+contact in the comparison."""
 BEYOND_FULL_SLIP = 1.2
-"""The loop of the comparison turns at plus and minus this displacement, in u_lim.  At nu = 0.5, the
-force is within 2e-4 of full friction there."""
+"""In the comparison, the loop reverses at plus and minus this displacement, in u_lim.  At nu = 0.5,
+the force is within 2e-4 of full friction there."""
 ROWS = 13
-"""Number of rows in the first loading of the comparison, one for every 0.1 u_lim.  A branch of the
-loop has twice as many intervals.  With 49 rows, the difference is up to 7 % larger."""
+"""Number of rows in the initial loading of the comparison, one for every 0.1 u_lim.  A branch of
+the loop has twice as many intervals.  With 49 rows, the computed difference is up to 7 % larger."""
 
 
 def iwan(
@@ -456,10 +462,11 @@ def iwan(
     elements: int | None = None,
     tolerance: float | None = None,
 ) -> Iwan:
-    """Iwan model of a contact that moves along a line: parallel springs with sliders.
+    """Build the Iwan model (parallel springs with sliders) of a contact that moves along a line.
 
     At nu = 0, the model with many elements is exact.  At nu > 0, it is compared with the full
-    contact on a first loading and a loop, and the difference is part of the error.
+    contact along an initial loading and a loop, and the largest difference is included in the
+    error.
 
     Parameters
     ----------
@@ -506,7 +513,8 @@ def iwan(
 def _poisson_error(pressure: Pressure, poisson: float) -> float:
     """Return the largest difference between the full contact and the exact model at nu = 0.
 
-    The path is a first loading and a loop between full slip in both directions.
+    The path consists of an initial loading, followed by a loop that reaches full slip in each
+    direction.
     """
     rise = np.linspace(0.0, BEYOND_FULL_SLIP, ROWS)
     # Half the displacement since a turning point.

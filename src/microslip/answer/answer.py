@@ -1,4 +1,4 @@
-"""Estimates and answers: the quantities that the public functions return, by name."""
+"""Result classes of the public functions, and quantities with error estimates."""
 
 from __future__ import annotations
 
@@ -13,16 +13,16 @@ from microslip.periodic.run import Effort
 from microslip.scene.problem import Problem
 
 CLOSED_FORM = "closed-form"
-"""Model name in results that need no run."""
+"""Model name in results of a closed form, which needs no run."""
 SOURCES = ("resolution", "periodicity", "solver", "model")
-"""Sources of error of an estimate, see refine.py."""
+"""Error sources of an estimate, see refine.py."""
 QUANTITIES = {
     "mu_macro": "friction",
     "velocity": "mean_velocity",
     "mu_torque": "torque",
     "dissipated_energy": "dissipation",
 }
-"""Estimates of a Result, keyed by the names of their values in JSON and datasets."""
+"""Names of the estimates of a Result, keyed by the names of their values in JSON and datasets."""
 ERRORS = {source: f"error_{source}" for source in SOURCES}
 """Names of the error sources in JSON and datasets."""
 EFFORT = {"iterations": "iterations", "work": "work", "updates": "effort", "retried": "retried"}
@@ -51,13 +51,13 @@ FIELDS = (
     *("converged", "periodic", "reason", "cells", "angles", "steps_per_period"),
     *("observed_order", "periods", "exhausted", "solve_time_s"),
 )
-"""Plain values of a Result in JSON and datasets, in their order."""
+"""Names of the values without an error estimate in JSON and datasets, in their order."""
 
 RATIO = (
     "a ratio: mean forward force divided by mu F_z; the coefficient of friction is mu times "
     "mu_macro"
 )
-"""Explanation of mu_macro for users."""
+"""Explanation of mu_macro, printed with a result."""
 OWN_EQUATIONS = (
     "an approximate model: the error estimate covers its discretisation, not the approximation"
 )
@@ -108,18 +108,18 @@ UNKNOWN = Estimate(math.nan, dict.fromkeys(("resolution", "periodicity", "solver
 
 @dataclass(frozen=True, eq=False)
 class Answer:
-    """Quantities of a problem by name.  Every value and every estimate is also an attribute.
+    """Results for a problem, by name.  Every value and every estimate is also an attribute.
 
     Attributes
     ----------
     problem : Problem
         The problem.
     values : mapping of str to object
-        Numbers, texts and arrays by name.
+        Numbers, strings and arrays by name.
     estimates : mapping of str to Estimate
         Quantities with error estimates by name.
     reason : str
-        Reason why the answer is not converged, in one line; otherwise empty.
+        Reason why the result has not converged, in one line; otherwise empty.
     """
 
     problem: Problem
@@ -136,11 +136,11 @@ class Answer:
 
     @property
     def converged(self) -> bool:
-        """Whether the answer is converged; `reason` says why it is not."""
+        """Whether the result has converged.  If it has not, `reason` says why."""
         return bool(self.values.get("converged", not self.reason))
 
     def changed(self, **changes: Any) -> Self:
-        """Copy the answer and replace its reason, values or estimates by name."""
+        """Return a copy in which the given reason, values or estimates are replaced."""
         reason = changes.pop("reason", self.reason)
         estimates = {name: one for name, one in changes.items() if isinstance(one, Estimate)}
         values = {name: one for name, one in changes.items() if name not in estimates}
@@ -152,12 +152,12 @@ class Answer:
         )
 
     def to_dict(self) -> dict[str, Any]:
-        """Convert to a dict of the values by name."""
+        """Convert the values to a dict, with `converged` and `reason`."""
         return {**self.values, "converged": self.converged, "reason": self.reason}
 
 
 def about(problem: Problem) -> dict[str, Any]:
-    """Texts and numbers of a problem by name; parameters that the drive does not have are None."""
+    """Return the parameters of a problem by name.  Drive parameters that do not apply are None."""
     own: dict[str, Any] = {
         "motion": problem.motion.name,
         "pressure": problem.pressure.name,
@@ -174,17 +174,17 @@ def about(problem: Problem) -> dict[str, Any]:
 
 
 class Result(Answer):
-    """Friction at one point, or the velocity under a force, with its error estimate.
+    """Result of `solve`: the friction, or the velocity under a force, with its error estimate.
 
-    All numbers except the time are dimensionless.  A count that does not apply is 0: a closed form
-    needs no marches, and a steady motion has no periods.
+    All numbers except `solve_time_s` are dimensionless.  Counts that do not apply are 0, such as
+    the number of cells of a closed form, or the number of periods of a steady motion.
 
     Attributes
     ----------
     motion, pressure : str
         Names of the motion and the pressure, with their parameters.
     mean_velocity : Estimate
-        Forward velocity, dimensionless as in the paper.  Its error is 0 if the velocity is
+        Mean forward velocity in the paper's dimensionless form.  Its error is 0 if the velocity is
         prescribed.  The velocity is NaN if the contact accelerates without limit.
     velocity, velocity_error : float
         Value and error of `mean_velocity`; the error is None if the velocity is prescribed.
@@ -193,17 +193,18 @@ class Result(Answer):
     poisson : float
         Poisson's ratio.
     force, stiffness, mass, damping : float or None
-        Parameters of the drive, see motions.drive.  None if the drive has no such part.
+        Parameters of the drive, see `microslip.solve`.  None if the drive does not have the
+        parameter.
     model : str
         Name of the contact model, or "closed-form".
     tolerance : float or None
-        Largest accepted error of the result, relative for a velocity above 1.  None means that any
-        error is accepted.
+        Largest accepted error of the result.  For a velocity above 1, it is relative to the
+        velocity.  None means that any error is accepted.
     method : str
-        "shipped", or the name of another method.
+        Name of the numerical method.  The default is "shipped".
     friction : Estimate
-        Mean forward friction force divided by mu F_z; 1 is friction without vibration.  Its error
-        is 0 if the force is prescribed.
+        Mean forward friction force divided by mu F_z; it is 1 without vibration.  Its error is 0 if
+        the force is prescribed.
     mu_macro, mu_macro_error : float
         Value and error of `friction`.
     torque : Estimate or None
@@ -224,7 +225,7 @@ class Result(Answer):
     periodic : bool
         Whether every run found its periodic state.
     reason : str
-        Reason why the result is not converged, in one line; otherwise empty.
+        Reason why the result has not converged, in one line; otherwise empty.
     cells : int
         Number of rings, or of squares across the contact, in the finest run.
     angles : int
@@ -236,7 +237,7 @@ class Result(Answer):
         expected order is 2.  If the observed order is far below 1, the runs are too coarse for the
         error estimate.
     periods : float
-        Number of full periods that the longest run marched to find the periodic state; 2.5 means
+        Number of full periods that the longest run needed to find the periodic state; 2.5 means
         five half periods.
     effort : Effort
         Effort of all runs.
@@ -251,7 +252,7 @@ class Result(Answer):
     def of(
         cls, problem: Problem, estimates: Mapping[str, Estimate], reason: str = "", **values: Any
     ) -> Result:
-        """Build a result.  DEFAULTS contains the values for a closed form."""
+        """Build a Result.  Values that are not given are taken from DEFAULTS."""
         known = {"mean_velocity": Estimate(problem.velocity), **estimates}
         return cls(problem, {**about(problem), **DEFAULTS, **values}, known, reason)
 
@@ -271,7 +272,7 @@ class Result(Answer):
         return self.friction if self.force is None else self.mean_velocity
 
     def __str__(self) -> str:
-        """The lines that `microslip point` prints."""
+        """Return the text that `microslip point` prints."""
 
         def text(one: Estimate) -> str:
             return number_text(one.value, one.error, digits=DIGITS)
@@ -288,8 +289,8 @@ class Result(Answer):
         return "\n".join(lines + [f"NOT CONVERGED: {quantity}: {self.reason}"] * bool(self.reason))
 
     def to_dict(self) -> dict[str, Any]:
-        """Convert to a dict with the names used in JSON and datasets; fields that do not apply are
-        omitted."""
+        """Convert to a dict with the names used in JSON and datasets, omitting fields that do not
+        apply."""
         names = [name for one in QUANTITIES for name in (one, f"{one}_error")]
         flat = {name: getattr(self, name) for name in (*FIELDS, *names)}
         flat |= {name: self.answer.by_source.get(source, 0.0) for source, name in ERRORS.items()}

@@ -1,4 +1,4 @@
-"""Estimates in closed form, which need no run."""
+"""Friction, torque and dissipated energy in closed form, with error estimates."""
 
 from __future__ import annotations
 
@@ -16,8 +16,8 @@ QUADRATURE = 1e-7
 kinks."""
 WHOLE_ROUNDING = 1e-9
 OF_RECORD = 1e-8
-"""Errors of closed forms with a quadrature.  For a sphere, the quadrature is over the motion only;
-for another indenter, it is also over the pressure."""
+"""Errors of closed forms with a quadrature.  The first is for a sphere, where the quadrature is
+over the motion only; the second is for other indenters, where it is also over the pressure."""
 ROUNDING = 1e-12
 """Error of closed forms that need no quadrature."""
 ON_A_SPRING = ("transverse", "bore")
@@ -25,11 +25,12 @@ ON_A_SPRING = ("transverse", "bore")
 the spring does the work of the mean force, a mass does no work, and a dashpot dissipates energy."""
 
 Exact = dict[str, Estimate]
-"""Estimates of a Result by name: friction, and torque (of steady motions) or dissipation."""
+"""Estimates by name, as in a Result: friction, and either torque (steady motions) or
+dissipation."""
 
 
 def no_vibration(problem: Problem) -> Exact | None:
-    """Closed form for any model if the amplitude is 0, otherwise None."""
+    """Return the closed form for amplitude 0, valid for any model, or None at other amplitudes."""
     if not problem.motion.periodic or problem.amplitude != 0.0:
         return None
     work = _work(problem)
@@ -37,12 +38,13 @@ def no_vibration(problem: Problem) -> Exact | None:
 
 
 def closed_form(problem: Problem, tolerance: float) -> Exact | None:
-    """Estimates of a closed form, or None if no closed form applies.
+    """Return the estimates of a closed form, or None if no closed form applies.
 
     Closed forms exist in four cases.  The first is the steady state of a motion without
     oscillation, where every point slips in the direction of its rigid velocity.  The second is the
     limit of vanishing velocity, and the third is motion along one line at nu = 0.  The fourth is
-    fast sliding, if the bounds in theory/exact.py differ by less than the tolerance.
+    fast sliding, if the midpoint of the bounds in theory/exact.py is accurate to within the
+    tolerance.
 
     Parameters
     ----------
@@ -71,10 +73,10 @@ def closed_form(problem: Problem, tolerance: float) -> Exact | None:
 
 
 def _fast_sliding(problem: Problem, tolerance: float) -> Exact | None:
-    """Midpoint of the bounds for fast sliding, or None if they differ by more than the tolerance.
+    """Return the midpoint of the bounds for fast sliding, or None if it is not accurate enough.
 
-    Per radian, the dissipated energy is between the drift d and d (1 + drop / (4 - 2 drop)), see
-    theory/exact.py.  `drop` is the largest value of 1 - mu.
+    The dissipated energy per radian of phase lies between d and d (1 + drop / (4 - 2 drop)), where
+    d is the drift; see theory/exact.py.  `drop` is the largest value of 1 - mu.
     """
     motion = problem.motion
     largest_drop = LARGEST_DROPS.get(motion.name)
@@ -90,7 +92,7 @@ def _fast_sliding(problem: Problem, tolerance: float) -> Exact | None:
 
 
 def _steady_bore(problem: Problem) -> Exact | None:
-    """Steady bore motion from Eqs 17 and 18, or from Eqs 21 and 22 for a sphere."""
+    """Evaluate Eqs 17 and 18 for a steady bore motion, or Eqs 21 and 22 for a sphere."""
     velocity, error = problem.velocity, ROUNDING
     if problem.pressure == HERTZ:
         both = paper.bore_forward(velocity), paper.bore_torque(velocity)
@@ -105,7 +107,7 @@ def _steady_bore(problem: Problem) -> Exact | None:
 
 
 def _static(problem: Problem, of_sphere: Callable) -> Exact | None:
-    """Static limit, or None if there is no closed form for the pressure."""
+    """Return the static limit, or None if there is no closed form for the pressure."""
     motion, pressure, amplitude = problem.motion, problem.pressure, problem.size
     sphere = pressure == HERTZ or (pressure.hertzian and not motion.rotates)
     if not (sphere or pressure.is_indenter):
@@ -129,5 +131,5 @@ def _exact(mu: float, mu_error: float, energy: float, energy_error: float) -> Ex
 
 
 def _work(problem: Problem) -> float:
-    """Work of full friction on the drift of a period."""
+    """Return the work that full friction does over the drift of one period."""
     return 2.0 * math.pi * problem.mean_load * problem.drift

@@ -1,12 +1,13 @@
-"""Contact under a constant force: it stays at rest, moves at a mean velocity, or runs away.
+"""Response of a contact to a constant force: rest, a mean velocity, or unlimited acceleration.
 
 Friction never decreases with the velocity (theory/exact.py).  So the contact comes to rest under
-every force that allows a state of rest.  A larger force moves the contact faster.
+every force for which a state of rest exists.  Under larger forces, the velocity increases with the
+force.
 
 A vibrated contact under a force below the static limit comes to rest (shakedown).  Period by
 period, the slip zones relax and transfer their load to the stick zone, until no point slips forward
-any more.  Its displacement depends on the history.  Here, the force is applied first, to a contact
-without tangential load.  Then the vibration starts at its mean position.
+any more.  The displacement of the contact depends on the history.  Here, the force is first applied
+to a contact without tangential load.  Then the vibration starts at its mean position.
 """
 
 from __future__ import annotations
@@ -39,7 +40,8 @@ from microslip.scene.problem import Force, Problem
 
 FIRST_DRIFT, FACTOR = 0.1, 4.0
 SLOWEST, FASTEST = 1e-6, 1e6
-"""Search for the velocity: first drift per radian of phase, factor between two runs, and bounds."""
+"""Parameters of the search for the velocity: first drift per radian of phase, factor between the
+drifts of two runs, and bounds."""
 FLATTEST = 1e-6
 """Smallest accepted rise of friction between two runs, divided by the relative increase in
 velocity."""
@@ -115,7 +117,7 @@ def under_force(request: Request) -> Result:
 
 
 def _under(force: float, request: Request) -> Request:
-    """Copy a request and replace its force."""
+    """Return a copy of the request with another force."""
     assert isinstance(request.problem.drive, Force)
     return request.at(drive=replace(request.problem.drive, force=force))
 
@@ -135,13 +137,13 @@ def _without_runs(
 
 
 def _unknown(request: Request, reason: str) -> Result:
-    """Result without any estimate, for a point that failed because of `reason`."""
+    """Build the Result of a point that failed because of `reason`, without estimates."""
     effort = {"model": request.model, "effort": request.budget.taken}
     return _without_runs(request, UNBOUNDED, UNKNOWN, reason, **effort)
 
 
 def _steady_velocity(problem: Problem, force: float) -> float:
-    """Velocity of a steady rotation under a force from 0 to 1, from Eqs 17 and 21."""
+    """Solve Eq 17 or 21 for the velocity of a steady rotation under a force from 0 to 1."""
     from scipy.optimize import brentq  # imported here because it loads slowly
 
     def imbalance(velocity: float) -> float:
@@ -202,7 +204,8 @@ def _moving(request: Request, moving_force: float) -> Result:
         velocity = answer.estimates["velocity"]
         if answer.reason or scale <= max(1.0, abs(velocity.value)):
             break
-        scale = SCALE_SHARE * abs(velocity.value)  # a small mass can be far slower than estimated
+        # a body of small mass can be far slower than estimated
+        scale = SCALE_SHARE * abs(velocity.value)
     if not request.problem.propels:  # a negative value is within the error
         velocity = replace(velocity, value=max(velocity.value, 0.0))
     if answer.reason and not velocity.error < abs(velocity.value):
@@ -219,8 +222,8 @@ def _moving(request: Request, moving_force: float) -> Result:
 def _velocity_near(request: Request) -> tuple[float, float]:
     """Estimate the velocity under the force, and the rise of the friction with the velocity.
 
-    Coarse runs at prescribed velocities bracket the velocity.  A run under the force then improves
-    the estimate, unless its velocity is too low to be resolved.
+    Coarse runs at prescribed velocities bracket the velocity.  A further run, at the prescribed
+    force, then improves the estimate, unless its velocity is too low to be resolved.
     """
     # imported here because they load compiled code
     from microslip.periodic.run import Settings
@@ -259,24 +262,24 @@ def _velocity_near(request: Request) -> tuple[float, float]:
 REST_TOLERANCE = 1e-2
 """Default tolerance of the displacement, in u_lim."""
 REST_SHARE = 0.2
-"""Tolerance of a shakedown run divided by the tolerance of a periodic state.  The step residuals
-accumulate over all periods.  Near the static limit, a run takes several hundred periods
+"""Ratio of the tolerance of a shakedown run to that of a search for a periodic state.  The step
+residuals accumulate over all periods.  Near the static limit, a run takes several hundred periods
 (tests/answer/test_shakedown.py)."""
 PLANNED_VELOCITY = 0.1
 """Velocity for which the time steps are chosen; for velocity 0, the ladder has no time steps."""
 SHARED = ("model", "tolerance", "cells", "angles", "steps_per_period", "periods", "solve_time_s")
-"""Values that a Shakedown has in common with a Result."""
+"""Names of the values that a Shakedown has in common with a Result."""
 
 
 class Shakedown(Answer):
-    """Dimensionless displacement of a contact until it comes to rest.
+    """Displacement of a contact under a force until it comes to rest, in dimensionless form.
 
     Attributes
     ----------
     motion, pressure, model : str
         Names of the motion, the pressure distribution and the contact model.
     amplitude, poisson, force, tolerance : float
-        Arguments of the request.
+        Arguments of `shakedown`.
     threshold, threshold_error : float
         Static limit divided by mu times the mean normal load, and its estimated error.  Under this
         or a larger force, the contact does not come to rest.
@@ -291,16 +294,17 @@ class Shakedown(Answer):
     converged : bool
         Whether the contact certainly comes to rest and the error is within the tolerance.
     reason : str
-        Reason why the result is not converged, otherwise empty.
+        Reason why the result has not converged, otherwise empty.
     error_resolution, error_periodicity, error_solver, error_model : float
-        Parts of the error by source.  The part `error_periodicity` bounds the displacement after
-        the last period.  The part `error_model` is due to the resolution of a file.
+        Contributions to the error of the displacement, by source.  `error_periodicity` bounds the
+        displacement after the last period.  `error_model` is due to the resolution of an input
+        file.
     cells, angles, steps_per_period : int
         Numbers of cells, of angles and of steps per period in the finest run.
     periods : float
         Number of periods in the longest run.
     work : int
-        Work of all runs together, as step solves times unknowns.
+        Work of all runs together: number of step solves times number of unknowns.
     solve_time_s : float
         Wall-clock time in seconds.
     """
@@ -389,7 +393,7 @@ def shakedown(
 
 
 def _threshold(request: Request) -> tuple[Estimate, str]:
-    """Compute the static limit, and a message if the contact runs away (otherwise "")."""
+    """Return the static limit, and the reason why the contact runs away ("" if it does not)."""
     problem = request.problem
     away = limits.runs_away(problem)
     if not limits.oscillates(problem):

@@ -1,9 +1,9 @@
 """Levels of resolution of a problem: cells, angles and time steps refined together.
 
-The level n is the number of cells; angles and steps are proportional to it.  So the error has a
-single leading term C / n^2, which follows from the three levels n/4, n/2 and n.  LEVELS are two
-interleaved series of doublings.  So each level costs little more than the previous one, and a level
-can reuse the runs at half and at a quarter of it.
+Level n has n cells, and its numbers of angles and steps are proportional to n.  So the error has a
+single leading term C / n^2, which is estimated from runs at the levels n/4, n/2 and n.  LEVELS
+interleaves two series, each of which doubles from one level to the next.  So the cost grows
+moderately from level to level, and level n can reuse the runs at n/2 and n/4.
 
 The first level depends on the tolerance and on the motion.  The mesh and the path also adapt to the
 problem.  Rings are graded towards the slip front (discretise.focus_strength).  The number of time
@@ -38,12 +38,13 @@ LOOSEST = 1e-2
 FEWEST = 4
 """Smallest number of angles and of steps."""
 MOST_MASS_STEPS = 8192
-"""Largest number of steps in half a period for a mass.  Runs with 24 rings then take seconds."""
+"""Largest number of steps in half a period for a body with mass.  Runs with 24 rings and this
+number of steps take seconds."""
 FREQUENCY_ERROR = (3.0 * np.sqrt(2.0) - 4.0) / 6.0
-"""Relative change of the frequency of an undamped oscillation by the integrator path.SDIRK2,
-divided by the square of the step in radians.  The step multiplies the amplitude by R(i s) with R(z)
-= (1 + (1 - 2 g) z) / (1 - g z)^2 and g = 1 - sqrt(1/2), which differs from exp(z) by (3 g^2 - 2 g^3
-- 1/6) z^3."""
+"""Relative error of the integrator path.SDIRK2 in the frequency of an undamped oscillation, divided
+by the square of the step s in radians.  A step multiplies the amplitude by R(i s), where R(z) =
+(1 + (1 - 2 g) z) / (1 - g z)^2 and g = 1 - sqrt(1/2).  R(z) differs from exp(z) by
+(3 g^2 - 2 g^3 - 1/6) z^3."""
 COARSEST = Resolution(cells=8, angles=4, steps=4)
 """Resolution at which the stiffness of the contact is computed for a body with mass."""
 
@@ -63,8 +64,8 @@ class Ladder:
         Number of rings, or of squares across the contact, divided by the level; 0 if it is not
         refined.
     imposed : float
-        Largest level whose resolution is at most the imposed one, along every axis; 0 if no
-        resolution is imposed.  If one is imposed, the level `start` has this resolution.
+        Largest level at which no axis is finer than the imposed resolution; 0 if no resolution is
+        imposed.  An imposed resolution is the resolution of the level `start`.
     """
 
     start: int
@@ -74,7 +75,7 @@ class Ladder:
     imposed: float = 0.0
 
     def resolution(self, level: int) -> Resolution:
-        """Resolution at a level."""
+        """Return the resolution at a level."""
         angles = 2 * math.ceil(0.5 * self.angles * level)  # an even number
         # levels must stay different if the imposed number of steps is below FEWEST
         fewest = 1 if self.imposed and self.steps else FEWEST
@@ -85,7 +86,7 @@ class Ladder:
         )
 
     def levels(self, tolerance: float) -> tuple[int, ...]:
-        """Levels to try at a tolerance, in this order, each as the finest level.
+        """Return the levels to try at a tolerance, in this order, each as the finest level.
 
         The last of these levels is one level above the first level for SMALLEST_TOLERANCE.
         """
@@ -96,7 +97,7 @@ class Ladder:
 
     @property
     def accuracy(self) -> float:
-        """Tolerance that an imposed resolution suits.
+        """Tolerance for which an imposed resolution is suitable.
 
         It is the tolerance at which `imposed` would be the first level.  Below the level `start`,
         it follows from the second order of the method.
@@ -105,7 +106,7 @@ class Ladder:
         return LOOSEST * coarser ** (ORDER if coarser > 1.0 else 1.0 / math.log10(RATIO))
 
     def _first(self, tolerance: float) -> int:
-        """Index in LEVELS of the first level at a tolerance."""
+        """Return the index in LEVELS of the first level at a tolerance."""
         least = self.start * RATIO ** math.log10(LOOSEST / min(tolerance, LOOSEST))
         # rounding of the power must not skip a level
         enough = (k for k, n in enumerate(LEVELS) if n > least or math.isclose(n, least))
@@ -141,15 +142,15 @@ WHOLE_DISC = ROTATION._replace(start=LOOP.start)
 """Rotations combined with a lateral motion.  Their slip fronts differ between the halves of a
 period."""
 SQUARES = WHOLE_DISC
-"""Cells along both axes of a contact.  They are not graded towards the slip front."""
+"""Contacts resolved by squares, which are not graded towards the slip front."""
 LOAD = Kind(start=24, steps=4)
 """Oscillating normal loads, under which the edge of the contact moves across the rings."""
 STATIC = Kind(start=32, steps=0)
 """Static limits, computed at turning points.  There, slip fronts cut through the cells."""
 ANGLES_OF_ROTATION, ANGLES_OF_TRANSLATION = 0.5, 0.125
-"""Number of angles on half the disc, divided by the level.  A rotation has its centre in the
-contact.  In a translation, the tractions depend on the angle only weakly, and only at nu > 0.
-Calibrated by `benchmarks/angles.py`."""
+"""Number of angles on half the disc, divided by the level.  A rotation needs more angles, because
+the centre of rotation is in the contact.  In a translation, the tractions depend on the angle only
+weakly, and only at nu > 0.  Calibrated by `benchmarks/angles.py`."""
 
 
 def ladder_for(
@@ -225,13 +226,13 @@ def _imposing(ladder: Ladder, tolerance: float, cells: int | None, steps: int | 
 
 
 def with_mass(ladder: Ladder, problem: Problem, model: str, tolerance: float) -> tuple[Ladder, str]:
-    """Shorten the steps of a ladder until they resolve the oscillation of a mass on the contact and
-    on its spring.
+    """Shorten the steps of a ladder until they resolve the natural oscillation of the mass.
 
-    The natural frequency divided by the vibration frequency is sqrt(stiffness / mass), with the sum
-    of the stiffnesses of the contact (1.5 for a sphere at nu = 0) and of the spring.  Time steps
-    change this frequency.  If they move a resonance, runs can agree with each other and still be
-    wrong.  Therefore the steps change it by at most the tolerance.
+    The natural frequency divided by the vibration frequency is sqrt(stiffness / mass).  Here, the
+    stiffness is the sum of the stiffnesses of the contact (1.5 for a sphere at nu = 0) and the
+    spring.  Time integration changes this frequency.  If it moves a resonance, runs can agree with
+    each other and still be wrong.  Therefore the steps are so short that the relative change of the
+    frequency is at most the tolerance.
 
     Parameters
     ----------

@@ -1,6 +1,6 @@
-"""Limits of the arguments, contradictions between them, and choice of the contact model.
+"""Checks of the arguments of a request, and choice of the contact model.
 
-Every request is checked here.  An error message names the argument, its value and what is allowed.
+An error message names the argument, its value and the allowed values.
 """
 
 from __future__ import annotations
@@ -30,7 +30,7 @@ from microslip.scene.problem import Drive, Force, Problem, Spring
 
 
 class Limit(NamedTuple):
-    """Range of a number.
+    """Range of allowed values of a number.
 
     Attributes
     ----------
@@ -64,14 +64,14 @@ LIMITS = {
     "travel": Limit(0.0, 1e6),
     "elements": Limit(1, 10_000, "whole"),
 }
-"""Limits of the arguments by name.  A function with other limits gives them to `within`.  Numbers
-have the units of `microslip.solve`; the travel is in u_lim."""
+"""Limits of the arguments by name.  A function that needs other limits passes them to `within`.
+The units are those of `microslip.solve`; the travel is in u_lim."""
 RETURNED = 1e-12
 """A forward oscillation below this fraction of the amplitude is treated as a rounding error."""
 CLOSEST_FORCE = 0.9999
-"""Force divided by mu times the mean normal load.  From this force up to 1, no velocity is
-computed.  With a transverse oscillation, runs converged up to 0.9998, where the contact already
-advances by 200 amplitudes per period."""
+"""Forces from this value up to 1, divided by mu times the mean normal load, are refused.  With a
+transverse oscillation, runs converged up to 0.9998, where the contact already advances by 200
+amplitudes per period."""
 CLOSEST_STEADY_FORCE = 1.0 - 1e-7
 """Largest force on a steady rotation, divided by mu times the mean normal load.  The rounding error
 of the friction, 1.1e-16, causes a relative error of 1.1e-16 / (2 (1 - force)) in the velocity.  At
@@ -81,9 +81,9 @@ STEPLESS = ("rigid", "dahl")
 
 
 def within(name: str, value: object, **changes: Any) -> Any:
-    """Convert an argument to a number within its limits.  Raises InputError for anything else.
+    """Convert an argument to a number within its limits, or raise InputError.
 
-    changes: fields of the Limit that replace those in LIMITS.
+    `changes` replaces fields of the Limit in LIMITS.
     """
     low, high, kind = LIMITS[name]._replace(**changes)
     if kind == "real":
@@ -103,7 +103,7 @@ def problem_of(
     poisson: float = 0.0,
     drive: Mapping[str, float | None] | None = None,
 ) -> Problem:
-    """Check the arguments for a contact, and parse texts.
+    """Check the arguments that describe a contact, and build the Problem.
 
     Parameters
     ----------
@@ -179,20 +179,20 @@ def _drive_of(
 
 
 def oscillates_forward(problem: Problem) -> bool:
-    """Whether the oscillation has a forward component."""
+    """Return whether the oscillation has a forward component."""
     forward = problem.oscillation(LOOP)[0]
     return float(np.ptp(forward)) > RETURNED * max(problem.size, 1.0)
 
 
 def oscillates(problem: Problem) -> bool:
-    """Whether the motion or the normal load oscillates."""
+    """Return whether the motion or the normal load oscillates."""
     parts = problem.oscillation(LOOP)
     moves = max(float(np.ptp(part)) for part in parts) > RETURNED * max(problem.size, 1.0)
     return moves or (problem.depth is not None and problem.size > 0.0)
 
 
 def without_forward_motion(problem: Problem) -> Problem:
-    """The problem without the oscillation along the direction of the force.
+    """Return the problem without the oscillation along the direction of the force.
 
     Under a constant force, the forward force on a contact without mass is constant.  Then the body
     follows the forward oscillation, which therefore has no effect.
@@ -201,9 +201,9 @@ def without_forward_motion(problem: Problem) -> Problem:
 
 
 def is_even(problem: Problem) -> bool:
-    """Whether the oscillation alone exerts no forward force at any time.
+    """Return whether the oscillation alone exerts no forward force at any time.
 
-    In this case, the threshold of motion equals the static limit.
+    If so, the force threshold of motion equals the static limit.
     """
     motion, pressure = problem.motion, problem.pressure
     if oscillates_forward(problem) or not motion.half_disc:
@@ -214,7 +214,7 @@ def is_even(problem: Problem) -> bool:
 
 
 def least_load(problem: Problem) -> float:
-    """Smallest normal load in a period, divided by the mean normal load."""
+    """Return the smallest normal load in a period, divided by the mean normal load."""
     if not problem.motion.periodic or problem.depth is None:
         return 1.0
     loads = problem.pressure.total(np.asarray(problem.depth(LOOP), dtype=float))
@@ -222,7 +222,7 @@ def least_load(problem: Problem) -> float:
 
 
 def runs_away(problem: Problem) -> str:
-    """Reason why a contact under a force has no mean velocity; empty if it has a mean velocity."""
+    """Return the reason why a contact under a force has no mean velocity, or "" if it has one."""
     drive, force = problem.drive, problem.force
     if drive is None or force is None:
         return ""
@@ -246,8 +246,8 @@ def choose_model(problem: Problem, model: str = "auto") -> str:
     Rings are chosen if the traction depends only on the radius (translation at nu = 0).  Angular
     modes are chosen for other motions of a round contact, and squares in all other cases.  Squares
     are also chosen for the static limit of a contact without symmetry, because its stick zone is
-    not round.  The slider and the rigid contact are never chosen.  Bounding their model error would
-    need a run of the rings, which already gives the result.
+    not round.  The slider and the rigid contact are never chosen.  To bound their model error, a
+    run on rings would be needed, which already gives the result.
 
     Parameters
     ----------
@@ -285,7 +285,7 @@ def choose_model(problem: Problem, model: str = "auto") -> str:
 
 
 def method_refusal(problem: Problem, model: str, method: str) -> str:
-    """Reason why a method does not apply to a model and a motion; empty if it applies."""
+    """Return why a method does not apply to a model and a motion, or "" if it applies."""
     motion = problem.motion
     if method == SHIPPED:
         return ""

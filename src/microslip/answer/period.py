@@ -1,4 +1,4 @@
-"""Tractions on the whole disc: one period of the periodic state, and steady motions."""
+"""Tractions on the whole disc, over a period of the periodic state or in a steady motion."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ PERIOD_TOLERANCE = 3e-5
 """Largest distance from the periodic state, as a force divided by mu F_z.  It is far below the
 discretisation error, 2e-3."""
 STEADY_TOLERANCE = 1e-6
-"""Tolerance of the state in a traction field, as a force divided by mu F_z."""
+"""Tolerance of the steady state in a traction field, as a force divided by mu F_z."""
 MOST_VALUES = 1e8
 """Largest number of values (points times steps) in a field."""
 MIRRORED_FORCES = np.array([1.0, -1.0, -1.0])
@@ -32,7 +32,7 @@ MIRRORED_FORCES = np.array([1.0, -1.0, -1.0])
 
 
 class NoPeriodicState(SolverError, ValueError):
-    """Raised if the march failed and there are no tractions.  The message contains the reason."""
+    """Raised if no tractions could be computed.  The message contains the reason."""
 
 
 class Period(Answer):
@@ -55,7 +55,7 @@ class Period(Answer):
         Friction bound, in units of mu F_z / a^2.  If the normal load oscillates, its shape is
         (steps + 1, points), and it is 0 at points out of contact.
     area : np.ndarray, shape (points,)
-        Areas of the points, in units of a^2; their sum is pi.
+        Area that each point represents, in units of a^2; the sum of the areas is pi.
     traction_forward, traction_lateral : np.ndarray, shape (steps + 1, points)
         Tractions on the flat in units of mu F_z / a^2, positive in the sphere's direction of
         motion.
@@ -72,13 +72,13 @@ class Period(Answer):
     converged : bool
         Whether the state is periodic and every step is solved, at this resolution.
     reason : str
-        Reason why the period is not converged, otherwise empty.
+        Reason why the period has not converged, otherwise empty.
     """
 
     axes = ("phase", "point")
 
     def __str__(self) -> str:
-        """Mean friction, dissipated energy and resolution."""
+        """Return the mean friction, the dissipated energy and the resolution as text."""
         lines = [
             f"mu_macro = {self.mu_macro:.6g}",
             f"dissipated_energy = {self.dissipated_energy:.6g} mu F_z u_lim",
@@ -103,14 +103,14 @@ def period(
     Parameters
     ----------
     motion, velocity, amplitude, pressure, poisson
-        See `microslip.solve`.  The motion oscillates, velocity and amplitude are above 0, and the
-        pressure depends on the radius only.
+        See `microslip.solve`.  The motion must oscillate, the velocity and the amplitude must be
+        above 0, and the pressure must depend on the radius only.
     cells : int
-        Number of rings, an even number.
+        Even number of rings.
     angles : int
-        Number of points on half a ring, an even number.
+        Even number of points on half a ring.
     steps : int
-        Number of steps in a period, an even number.
+        Even number of steps in a period.
 
     Returns
     -------
@@ -122,7 +122,7 @@ def period(
     InputError
         If an argument is invalid.  The message names the argument.
     microslip.answer.period.NoPeriodicState
-        If the march failed.
+        If the time integration failed.
     """
     problem = limits.problem_of(motion, velocity, amplitude, pressure=pressure, poisson=poisson)
     if not problem.motion.periodic:
@@ -183,7 +183,9 @@ def period(
 
 
 def patches(motion: str, velocity: float, amplitude: float, **settings: object) -> dict:
-    """Compute stick and slip over one period of the periodic state, for figures and checks.
+    """Compute stick areas and tractions over one period of the periodic state.
+
+    The result is used by figures and checks.
 
     Parameters
     ----------
@@ -200,8 +202,8 @@ def patches(motion: str, velocity: float, amplitude: float, **settings: object) 
         - least_stick: smallest sum of `stick_right` and `stick_left` over the period.
         - forward_position, lateral_position, area: positions of the points in units of a and their
           areas in units of a^2; the sum of the areas is pi.
-        - moment_phase: phases of four moments.  At the first one, the stick area is smallest in
-          a stroke.  The second is the middle of the stroke.  The others are half a period later.
+        - moment_phase: phases of four moments: the moment of the smallest stick area in a stroke,
+          the middle of this stroke, and both moments half a period later.
         - moment_share, shape (moments, points): traction divided by the friction bound at these
           moments; 1 at points that slip.
 
@@ -238,7 +240,7 @@ def traction_field(
     poisson: float = 0.0,
     cells: int | None = None,
 ) -> dict:
-    """Compute the steady tractions of the continuous bore on the whole disc, by the polar model.
+    """Compute the steady tractions of the continuous bore on the whole disc with the polar model.
 
     Parameters
     ----------
@@ -291,12 +293,12 @@ def traction_field(
 
 
 def _work(traction: np.ndarray, slip: np.ndarray) -> np.ndarray:
-    """Work per area of a traction on a slip over the period, shape (points,); see Period."""
+    """Compute the work per area that a traction does on a slip over the period, for every point."""
     return 0.5 * np.sum((traction[1:] + traction[:-1]) * slip[1:], axis=0)
 
 
 def _points(contact: PolarContact) -> dict[str, np.ndarray]:
-    """Positions and areas of the points on the whole disc, shape (points,) each."""
+    """Return the positions and the areas of the points on the whole disc, by name."""
     forward, lateral = contact.forward_position.ravel(), contact.lateral_position.ravel()
     area = np.broadcast_to(contact.weight, contact.forward_position.shape).ravel()
     if not contact.whole:  # the weight of a point on the half disc includes its mirror image
@@ -307,11 +309,11 @@ def _points(contact: PolarContact) -> dict[str, np.ndarray]:
 
 
 def _whole_disc(contact: PolarContact, field: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Forward and lateral components of a field (n, 2, M, N) on the whole disc. Each has the shape
-    (n, points).
+    """Extend a field of shape (n, 2, M, N) to the whole disc.
 
-    For a rotation, the other half is the mirror image across the lateral axis.  For a translation,
-    it is the first half rotated by 180 degrees.
+    Returns the forward and the lateral component as arrays of shape (n, points).  For a rotation,
+    the other half of the disc is the mirror image across the lateral axis.  For a translation, it
+    is the first half rotated by 180 degrees.
     """
     flat = field.reshape(len(field), 2, -1)
     if not contact.whole:

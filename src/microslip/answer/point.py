@@ -1,4 +1,4 @@
-"""solve(): friction, or velocity under a force, at one point, with its error estimate."""
+"""Friction at one point, or velocity under a force, with its error estimate."""
 
 from __future__ import annotations
 
@@ -67,19 +67,20 @@ def solve(
     model : str
         "auto" or a name in contact.registry.MODELS.
     tolerance : float or None
-        Absolute tolerance of mu_macro.  Under a force, it is the tolerance of the velocity,
-        relative for a velocity above 1.  If cells and steps are imposed, the tolerance can be None,
-        and any error is then accepted.
+        Absolute tolerance of mu_macro.  Under a prescribed force, it is the tolerance of the
+        velocity, and relative if the velocity is above 1.  If cells and steps are imposed, the
+        tolerance can be None, and any error is then accepted.
     cells, steps : int or None
         Imposed numbers of cells and of steps per full period.  By default, they are chosen
         according to the tolerance.
     method : str
-        "shipped", or another name in periodic.methods.names() for a comparison.
+        Numerical method: "shipped", or another name in periodic.methods.names() for a comparison.
     most_work : float or None
         Limit on the work of all runs together.  The work of a run is its number of step solves
         times its number of unknowns.  Defaults to MOST_WORK.
     time_limit : float or None
-        Limit on the wall-clock time in seconds, checked between marches.  None means no limit.
+        Limit on the wall-clock time in seconds, checked after each time integration.  None means no
+        limit.
     progress : callable or None
         Called before every run, with the run's Resolution.
 
@@ -123,9 +124,10 @@ def solve(
 
 
 def warm_up() -> None:
-    """Compile the solver for round contacts; Numba stores the compiled code.
+    """Compile the solver for round contacts, so that Numba caches the compiled code.
 
-    The first compilation takes a while.  The kernels of squares are compiled at their first use.
+    The first compilation takes a while.  The kernels for contacts resolved by squares are compiled
+    at their first use.
     """
     for motion in ("transverse", "bore"):
         solve(motion, 0.5, 0.5, tolerance=1e-2)
@@ -135,7 +137,7 @@ def warm_up() -> None:
 
 
 def applies(motion: str, poisson: float, model: str, method: str, pressure: str = "hertz") -> str:
-    """Reason why a model or a method does not apply to a motion; empty if both apply."""
+    """Return why a model or a method does not apply to a motion, or "" if both apply."""
     kind = motion_named(motion)
     amplitude = 1.0 if kind.periodic else None
     problem = Problem(kind, 1.0, amplitude, poisson, pressure_named(pressure))
@@ -155,7 +157,9 @@ def run_trial(
     pressure: str = "hertz",
     **sizes: int,
 ) -> dict:
-    """Run a model with a method at one resolution.  The result does not depend on the machine.
+    """Run a model with a numerical method at one resolution.
+
+    The result does not depend on the machine.
 
     Parameters
     ----------

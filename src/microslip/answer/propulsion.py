@@ -36,23 +36,25 @@ one."""
 class Propulsion(Answer):
     """Stall force and no-load velocity of a self-propelled motion.
 
-    Both are negative if the motion propels the body backward, and 0 if it propels nothing.
+    Both are negative if the motion propels the body backward, and 0 if it does not propel the body.
 
     Attributes
     ----------
     stall_force, stall_force_error : float
         Load that stops the body, divided by mu times the mean normal load, and its error estimate.
     no_load_velocity, no_load_velocity_error : float
-        Velocity without a load, in the unit of the velocity of the motion, and its error estimate.
+        Velocity without a load, in the unit of the velocity in `microslip.solve`, and its error
+        estimate.
     converged : bool
         Whether the errors of all forces are within the tolerance.
     reason : str
-        Reason why the result is not converged or why the motion propels nothing, otherwise empty.
+        Reason why the result has not converged, or why the motion does not propel the body;
+        otherwise empty.
     """
 
 
 class _Failure(Exception):
-    """A velocity at which friction was not computed to within the tolerance."""
+    """Raised if the friction at a velocity was not computed to within the tolerance."""
 
 
 def propulsion(
@@ -139,11 +141,11 @@ def _at_rest(ahead: Result, back: Result) -> Propulsion:
 
 
 def _root(friction: Callable[[float], Result], first: float) -> tuple[float, float]:
-    """Velocity at which friction vanishes, and its error estimate.
+    """Find the velocity at which friction vanishes, with its error estimate.
 
-    The root is between two velocities at which friction exceeds its error in size, with opposite
-    signs.  A root of Brent's method is within the error; steps away from it, doubled each time,
-    lead to the two velocities.
+    Brent's method finds a velocity at which the friction is 0 to within its error.  From there,
+    steps of doubling length on either side lead to two velocities that bracket the root: the
+    friction has opposite signs, and a magnitude larger than its error.
 
     Parameters
     ----------
@@ -154,7 +156,7 @@ def _root(friction: Callable[[float], Result], first: float) -> tuple[float, flo
     """
     from scipy.optimize import brentq  # imported here because it loads slowly
 
-    def certain(velocity: float) -> float:  # 0 within the error
+    def certain(velocity: float) -> float:  # 0 if within the error
         one = friction(velocity)
         return one.mu_macro if abs(one.mu_macro) > one.mu_macro_error else 0.0
 

@@ -1,28 +1,31 @@
-"""Refinement of a problem until its estimated error is within the tolerance.
+"""Refinement of the solution of a problem until its estimated error is within the tolerance.
 
 The error estimate has four sources:
 
 - resolution: Richardson extrapolation of the runs at n/4, n/2 and n.  At an imposed resolution, the
-  value is that of the finest run, and its distance from the extrapolated value is added;
-- periodicity, solver: the value is a combination sum c_i f_i of runs.  Their distances d_i from the
-  periodic state and the residuals r_i of their steps contribute sum |c_i| (d_i + r_i);
+  value is that of the finest run, and its difference from the extrapolated value is added to the
+  error;
+- periodicity, solver: the value is a linear combination sum c_i f_i of the values of the runs.  The
+  distances d_i of the runs from the periodic state and the residuals r_i of their steps contribute
+  sum |c_i| (d_i + r_i);
 - model: a pressure on a grid, or a motion given by samples, can be interpolated in several ways.
   The finest run is repeated for each interpolation; refinement does not reduce the differences.
 
 The methods are of second order, f(n) = f + C / n^2 + ..., and the difference D of the last two
-levels gives the correction D / 3.  If the differences decrease with another order p, the levels
-beyond the last one add up to D / (2^p - 1), and the extrapolated value is wrong by
+levels gives the correction D / 3.  If the differences decrease with another order p, those beyond
+the last level add up to D / (2^p - 1), and the extrapolated value is wrong by
 D (1 / (2^p - 1) - 1 / 3).  The error estimate is this error for the observed order, times a safety
-factor.  It is at least the correction and at most D, both times the safety factor.
+factor.  It is at least the correction and at most D, each times the safety factor.
 
 Two levels can agree by chance.  Therefore D is at least a quarter of the difference of the first
-two levels, which second order leads to expect.  This is the grid convergence index of Roache (J.
-Fluids Eng. 116, 1994) with both pairs of levels.  Two cases show that the last two levels agree by
-chance: the differences change sign, or the observed order is far above 2.  Then the last level is
-not better than the one before, and D is the difference of the first two levels.
+two levels, the value expected for second order.  This is the grid convergence index of Roache (J.
+Fluids Eng. 116, 1994), applied to both pairs of levels.  In two cases, the last two levels are
+taken to agree by chance: the differences change sign, or the observed order is far above 2.  Then
+the last level need not be better than the one before, and D is the difference of the first two
+levels.
 
 If the differences increase, n/4 is too coarse for the leading term, and a slightly finer level
-probably is, too.  The next n is then one whose coarser levels are already known.
+probably is, too.  The next n is then one whose coarser levels have already been computed.
 """
 
 from __future__ import annotations
@@ -43,8 +46,8 @@ SAFETY = 1.5
 """Safety factor on the correction.  Calibrated by
 `benchmarks/error_estimates.py --seed 3 --safety FACTOR`."""
 CHANCE_ORDER = 2 * ORDER
-"""Observed order above which the last two levels count as agreeing by chance.  From here on, D
-increases linearly as the last difference decreases, up to the first difference if the last two
+"""Observed order above which the last two levels count as agreeing by chance.  Above this order, D
+increases linearly as the last difference decreases, and equals the first difference if the last two
 levels are equal.  `benchmarks/attacks.py` searches for points that this rule does not cover."""
 WEIGHTS = 0.0, -1.0 / (2**ORDER - 1), 2**ORDER / (2**ORDER - 1)
 """Weights of the levels n/4, n/2 and n in the extrapolated value."""
@@ -55,14 +58,14 @@ SMALLEST_SHARE = 0.8
 """Smallest error estimate for the resolution, divided by the tolerance (at an imposed resolution,
 by Ladder.accuracy).  It is above 0 because three levels can agree by chance.  Calibrated by
 benchmarks/error_estimates.py at 0.7, and increased because benchmarks/attacks.py found errors of up
-to 0.75 times the tolerance where they agree."""
+to 0.75 times the tolerance where the levels agree."""
 LARGEST_REST = 0.5
-"""Finer runs are started only if the sum of the other errors is at most this fraction of the
-tolerance."""
+"""Finer runs are started only if the errors from sources other than the resolution sum to at most
+this fraction of the tolerance."""
 
 
 class Extrapolation(NamedTuple):
-    """Limit of a sequence of levels.  Arrays are extrapolated element by element.
+    """Extrapolated limit of a sequence of levels.  Arrays are extrapolated element by element.
 
     Attributes
     ----------
@@ -81,7 +84,7 @@ class Extrapolation(NamedTuple):
 
 
 def extrapolate(values: Sequence[Any] | np.ndarray) -> Extrapolation:
-    """Richardson extrapolation of the values at levels n/4, n/2 and n."""
+    """Apply Richardson extrapolation to the values at the levels n/4, n/2 and n."""
     coarse, middle, fine = values
     first, second = middle - coarse, fine - middle
     before, last = np.abs(first), np.abs(second)
@@ -133,8 +136,8 @@ def refine(
     Answer
         Estimates of all values of the runs, and the following values: the finest run `finest`, its
         resolution, the observed order, the number of periods in the longest run, the effort of all
-        runs, whether every run is `periodic`, and whether the resolution is `imposed`.  The answer
-        is not converged if a run did not converge, if the finest level is not fine enough, or if a
+        runs, whether every run is `periodic`, and whether the resolution is `imposed`.  The Answer
+        has not converged if a run did not converge, if the finest level is not fine enough, or if a
         run raised run.Spent.  In the last case, the estimates are those before that run, or
         unknown.
     """
@@ -180,7 +183,7 @@ def refine(
 
 
 def _values(ladder: Ladder, finest: Resolution) -> dict[str, Any]:
-    """Values of an answer that follow from the finest resolution."""
+    """Return the values of an Answer that follow from the finest resolution."""
     return {
         "cells": finest.cells,
         "angles": finest.angles,
@@ -197,11 +200,11 @@ def _estimates(
     energy_unit: float,
     drive_work: float,
 ) -> tuple[dict[str, Estimate], float]:
-    """Estimates of all values, and the observed order of convergence of the requested one.
+    """Return estimates of all values, and the observed order of convergence of the requested value.
 
-    runs: at n/4, n/2 and n, and those of other interpolations at n.  goal: largest accepted
-    resolution error of the value `name`.  The other arguments have the same meaning as for
-    `refine`.
+    `runs` contains the runs at n/4, n/2 and n, followed by runs with other interpolations at n.
+    `goal` is the largest accepted resolution error of the value `name`.  The other arguments have
+    the same meaning as for `refine`.
     """
     three, others, imposed = runs[:3], runs[3:], ladder.imposed > 0.0
     base = (0.0, 0.0, 1.0) if imposed else np.abs(WEIGHTS)
@@ -221,8 +224,8 @@ def _estimates(
         least, unit = SMALLEST_SHARE * accuracy, 1.0
         if one == "dissipation":
             # the energy of a small cycle (Mindlin) is proportional to the third power of the force,
-            # and its upper bound to the force: an error of the force changes the energy by their
-            # geometric mean
+            # and its upper bound is proportional to the force: the effect of a force error is
+            # estimated by the geometric mean of the energy and this bound
             unit, dissipated = energy_unit, abs(finest)
             scale = max(dissipated, (dissipated * energy_unit) ** 0.5)
             # for a velocity above 1, the tolerance is already proportional to the velocity
@@ -238,6 +241,5 @@ def _estimates(
 
 
 def _weighted(weights: Iterable[float], errors: Iterable[float]) -> float:
-    """Weighted sum of errors.  Terms with weight 0 are omitted, because their error can be
-    infinite."""
+    """Return a weighted sum of errors, without terms of weight 0, whose error can be infinite."""
     return float(sum(w * e for w, e in zip(weights, errors, strict=True) if w))

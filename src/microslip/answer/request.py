@@ -1,4 +1,4 @@
-"""Requests, and the runs that compute their results.
+"""Requests for results, and the runs that compute these results.
 
 A run that does not converge is repeated.  The slower the forward motion, the longer its transients.
 In long transients, even small errors of the steps accumulate to a wrong state, and the search needs
@@ -37,8 +37,8 @@ MOST_WORK_OF_OTHERS = 2e8
 """Default limits on the work (step solves times unknowns) by model.  They are more than ten times
 the work of the slowest points in the paper's range at a tolerance of 1e-4."""
 RUN_SHARE = 0.05
-"""Largest distance of a run from its periodic state, divided by the tolerance.  Multiplied by the
-weights of the runs, it contributes at most a twelfth of the tolerance."""
+"""Largest distance of a run from its periodic state, divided by the tolerance.  With the weights of
+the runs, these distances contribute at most a twelfth of the tolerance."""
 FACTOR, SMALLEST_FACTOR = 4.0, 1.15
 """Ratio of successive velocities in a second attempt.  After a failure, the ratio is replaced by
 its square root, down to SMALLEST_FACTOR."""
@@ -90,11 +90,11 @@ class Request:
         return TOLERANCE if self.tolerance is None else self.tolerance
 
     def at(self, **changes: Any) -> Request:
-        """The request for a problem with other fields."""
+        """Return a copy of the request in which the given fields of the problem are replaced."""
         return replace(self, problem=replace(self.problem, **changes))
 
     def result(self, estimates: dict[str, Estimate], reason: str = "", **values: Any) -> Result:
-        """Build the Result.  Missing values are those of a result that needs no run."""
+        """Build the Result.  Values that are not given are those of a result that needs no run."""
         own: dict[str, Any] = {
             "model": CLOSED_FORM if self.chosen else self.model,
             "tolerance": self.tolerance,
@@ -112,7 +112,7 @@ def request_of(
     time_limit: float | None = None,
     **settings: Any,
 ) -> Request:
-    """Build the Request for a problem.  The time limit counts from this call.
+    """Build the Request for a problem.  The result's `solve_time_s` counts from this call.
 
     Parameters
     ----------
@@ -146,8 +146,10 @@ def request_of(
 
 
 def answer_of(request: Request) -> Result:
-    """Friction at a velocity of at least 0, or through a spring: a closed form if there is one,
-    otherwise runs of a model."""
+    """Compute the friction at a velocity of at least 0, prescribed directly or through a spring.
+
+    Uses a closed form if there is one, otherwise runs of a model.
+    """
     problem, drive, reason = request.problem, request.problem.drive, ""
     moves = problem.motion.periodic and problem.velocity > 0.0
     if drive is not None and not (moves and limits.oscillates(problem)):
@@ -167,9 +169,9 @@ def answer_of(request: Request) -> Result:
 
 
 def ladder_of(request: Request, tolerance: float) -> Ladder:
-    """Ladder for the problem of a request.
+    """Return the ladder for the problem of a request.
 
-    Raises InputError if a resolution would have to be chosen without a tolerance of the request.
+    Raises InputError if a resolution must be chosen but the request has no tolerance.
     """
     from microslip.answer.ladder import ladder_for  # imported here because it loads compiled code
 
@@ -203,16 +205,16 @@ def runs(
     name : str
         Name of the value in run.Run.values.
     ladder : Ladder or None
-        Resolutions.  None means the values of the problem.
+        Resolutions.  By default, they are chosen for the problem.
     share : float
-        Tolerance of a run, divided by the tolerance.
+        Tolerance of a single run divided by `tolerance`.
     slope : float
         Under a force: rise of the friction with the velocity, see run.Settings.
 
     Returns
     -------
     Answer
-        The answer of refine.refine.  It is not converged if the budget of the request is exceeded.
+        The Answer of refine.refine.  It has not converged if the budget of the request is exceeded.
     """
     # imported here because they load compiled code
     from microslip.answer.ladder import with_mass
@@ -263,25 +265,24 @@ def runs(
 def second_attempt(
     first: Run, run_at: Callable[[float, Run | None], Run], velocity: float, fastest: float
 ) -> Run:
-    """Run at a velocity after a run that did not converge.
+    """Repeat a run that did not converge, by continuation from a higher velocity.
 
     Parameters
     ----------
     first : run.Run
         The run that did not converge.
     run_at : callable
-        `run_at(velocity, guess)` returns a run.Run with steps that are solved to a smaller
-        tolerance.
+        `run_at(velocity, guess)` returns a run.Run whose steps are solved to a smaller tolerance.
     velocity : float
         Dimensionless velocity.
     fastest : float
-        Largest velocity of the continuation, except for the first multiple of `velocity`.
+        Largest velocity of the continuation.  `FACTOR * velocity` is always allowed.
 
     Returns
     -------
     run.Run
         The run, with the effort of all attempts and `effort.retried` equal to 1.  If all attempts
-        fail, it is the first one, whose reason is the most informative.
+        fail, it is the first run, whose reason is the most informative.
     """
     attempts, at = [first, run_at(velocity, None)], velocity
     while not attempts[-1].converged and FACTOR * at <= max(fastest, FACTOR * velocity):
@@ -314,13 +315,13 @@ def result_of_runs(
     request : Request
         The request.
     answer : Answer
-        The answer of `runs`.
+        The Answer of `runs`.
     largest : float or None
         Largest accepted error, or None if any error is accepted.
     name : str
         Name of the requested value.
     **more : Estimate
-        Estimates of the Result that replace those of the answer.
+        Estimates of the Result that replace those of the Answer.
     """
     problem, requested, reason = request.problem, answer.estimates[name], answer.reason
     error = requested.error
