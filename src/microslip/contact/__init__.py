@@ -1,1 +1,1 @@
-"""Discretised contacts: elastic operators, Coulomb's law, and the march in time."""
+"""Discretised contacts: elastic operators, Coulomb's law and time integration."""

@@ -1,15 +1,16 @@
-"""Interface of the models: a discretised contact, Coulomb's law at its points, and a march.
+"""The interface of the models: a discretised contact with Coulomb's law and a time integration.
 
 The unknowns of a Coulomb step are tractions q with |q| <= g.  The slip is s = b - A q, where A is
 the influence operator and b is the displacement imposed by the rigid motion and the history.  Slip
-occurs only where |q| = g, in the direction of q.  This is the optimality condition of a convex
-problem, and is equivalent to the fixed point
+occurs only where |q| = g, in the direction of q.  This condition is the optimality condition of a
+convex problem, and is equivalent to the fixed point
 
-    q = P_g(q + s / d) for any d > 0; P_g projects onto the disc |q| <= g.
+    q = P_g(q + s / d) for any d > 0, where P_g is the projection onto the disc |q| <= g.
 
 All quantities are dimensionless.
 
-The time integration is compiled for rings, see march.py.  Here, it is in Python, for steps that
+The time integration of a contact along a path is called a march.  For contacts on rings, it is
+compiled (see march.py).  The march in this module is in Python, for contacts whose single steps
 take long to solve.
 """
 
@@ -26,39 +27,43 @@ from microslip.foundation.errors import SolverError
 
 
 def project(q: np.ndarray, bound: np.ndarray) -> np.ndarray:
-    """Project tractions q (2, ...) onto |q| <= bound; bound broadcasts to the shape of q[0]."""
+    """Project tractions, an array q of shape (2, ...), onto |q| <= bound.
+
+    The bound broadcasts to the shape of q[0].
+    """
     return q * np.minimum(1.0, bound / np.maximum(np.hypot(q[0], q[1]), 1e-300))
 
 
 def coulomb_residual(
     q: np.ndarray, slip: np.ndarray, bound: np.ndarray, weight: np.ndarray, scale: np.ndarray
 ) -> float:
-    """Residual of Coulomb's law, Sum weight |P_g(q + slip/scale) - q|, as a force divided by mu
-    F_z.
+    """Compute the residual of Coulomb's law, Sum weight |P_g(q + slip/scale) - q|.
+
+    The residual is a force divided by mu F_z.
 
     Parameters
     ----------
     q, slip : np.ndarray, shape (2, ...)
         Forward and lateral components of tractions and slip.
     bound, weight, scale : np.ndarray
-        Friction bound, area of a point, and diagonal of the influence operator; they broadcast to
-        the shape of q[0].
+        Friction bound, area of each point, and diagonal of the influence operator.  Each array
+        broadcasts to the shape of q[0].
     """
     change = project(q + slip / scale, bound) - q
     return float(np.sum(weight * np.hypot(change[0], change[1])))
 
 
 FORWARD, LATERAL, TORQUE = range(3)
-"""Columns of the forces of a march."""
+"""Column indices of March.forces."""
 
 MIRROR = np.array([1.0, -1.0])[:, None, None]
-"""Signs of forward and lateral tractions under the reflection lateral -> -lateral, shape (2, 1,
-1)."""
+"""Signs of forward and lateral tractions under the reflection lateral -> -lateral, as an array of
+shape (2, 1, 1)."""
 
 
 @dataclass(frozen=True, eq=False)
 class March:
-    """The result of one march along a path.
+    """The result of the time integration of a contact along a path.
 
     Attributes
     ----------
@@ -68,15 +73,15 @@ class March:
         Forward force, lateral force and torque at each phase.  Forces are divided by mu F_z, and
         the torque by mu F_z a.
     residual : float
-        Sum of the residual forces of the step solver at all stages, divided by mu F_z.
+        Sum over all stages of the residual force of the step solver, divided by mu F_z.
     iterations, solves : int
         Number of iterations of the step solver, and number of stages.
     fields : np.ndarray or None, shape (1 + steps stages, shape of state)
-        Unknown of the step solver at the start and after every stage.  A march along the same path
-        from a similar state can use it as its initial guess.
+        Unknown of the step solver at the start and after every stage.  It can serve as the initial
+        guess of a march along the same path from a similar state.
     body : np.ndarray, shape (steps + 1, 2)
-        Displacement x of a driven body relative to the path, and its derivative x' with respect to
-        the phase.  The array is empty for models without drives.
+        Displacement x of a driven body relative to the path, and the derivative x' with respect to
+        the phase.  The array is empty for models that do not support drives.
     """
 
     state: np.ndarray
@@ -95,8 +100,8 @@ class Body:
     Attributes
     ----------
     stiffness, damping, mass : float
-        Stiffness k, damping c and mass m in units of mu F_z and u_lim, with the phase as time. All
-        are 0 for a massless body driven by a constant force.
+        Stiffness k, damping c and mass m in units of mu F_z and u_lim, with the phase as time.  All
+        three are 0 for a massless body driven by a constant force.
     load : float
         Constant force divided by mu F_z.
     """
@@ -108,13 +113,14 @@ class Body:
 
     @property
     def remembers(self) -> bool:
-        """Whether x and x' are part of the state. Otherwise x is computed from the tractions."""
+        """Whether x and x' are part of the state.  Otherwise, x is computed from the tractions."""
         return self.mass > 0.0 or self.damping > 0.0
 
     def along(self, path: Path, start: np.ndarray | None) -> tuple[np.ndarray, np.ndarray]:
         """Return the arguments `drive` and `lengths` of march.march for a path.
 
-        start: x and x' at the start of the path, shape (2,); None for zeros.
+        start: values of x and x' at the start of the path, as an array of shape (2,); None for
+        zeros.
         """
         share = 1.0 / (1.0 + path.carry[-1].sum())  # gamma: the last row of a_ij sums to 1
         place, rate = (0.0, 0.0) if start is None else start
@@ -123,7 +129,7 @@ class Body:
 
 
 class StepFailure(SolverError):
-    """Raised if the tractions of a march are not finite, or if a step cannot be solved.
+    """Raised if the tractions are not finite, or if a time step cannot be solved.
 
     The error message is stored as the reason in the result.
     """
@@ -132,8 +138,8 @@ class StepFailure(SolverError):
 class Contact(Protocol):
     """A discretised contact under a pressure.
 
-    A contact whose normal load can change also has `at_indentation` (see RingContact), `bounds` and
-    `bounds_along`.
+    A contact whose normal load can change also has the methods `at_indentation` (see RingContact),
+    `bounds` and `bounds_along`.
 
     Attributes
     ----------
@@ -142,21 +148,22 @@ class Contact(Protocol):
     bound, weight : np.ndarray
         Friction bound and area of each point; both arrays broadcast to the shape of state[0].
     compliance : np.ndarray
-        Displacement of each point under a unit traction on the same point; broadcasts to the shape
-        of state[0].
+        Displacement of each point under a unit traction on the same point.  It broadcasts to the
+        shape of state[0].
     forward_position, lateral_position : np.ndarray
-        Coordinates of the points divided by a, with the shape of state[0].
+        Coordinates of the points divided by a, as arrays with the shape of state[0].
     stiffness : float
         Force for a uniform displacement u_lim without slip, divided by mu F_z, or an upper bound on
-        this value.
+        this ratio.
     sticks : bool
-        Whether points can stick, so that the static limit of friction is not 0.
+        Whether points can stick.  If not, the static limit of friction is 0.
     grading : float or None
-        Grading of the steps towards the turning points; None to use the grading of the problem.
+        Grading of the time steps towards the turning points; None to use the grading of the
+        problem.
     edges : np.ndarray or None, shape (cells + 1,)
-        Radii between the rings; None for contacts without rings.
+        Radii of the edges of the rings; None for contacts without rings.
     radius : float
-        If the normal load changes: largest contact radius divided by the reference radius.  In this
+        Largest contact radius divided by the reference radius, if the normal load changes.  In this
         case, `bound` is the friction bound at the start of a period.
     """
 
@@ -171,26 +178,31 @@ class Contact(Protocol):
     grading: float | None = None
     edges: np.ndarray | None = None
     bounds: Any = None
-    """bounds(depths): friction bounds at the depths (n,), one row for each depth."""
+    """bounds(depths): friction bounds at an array of depths, with one row for each depth."""
     bounds_along: Any = None
-    """bounds_along(path): friction bounds at the start and at every stage of a path, one row for
-    each of these times."""
+    """bounds_along(path): friction bounds at the start and at every stage of a path, with one row
+    for each of these times."""
 
     def displacement(self, state: np.ndarray) -> np.ndarray:
-        """Elastic displacement A q of each point under tractions q, with the shape of the state."""
+        """Return the elastic displacement A q of each point under tractions q.
+
+        The result is an array of the same shape as the state.
+        """
 
     def energy(self, change: np.ndarray) -> float:
-        """Twice the elastic energy of tractions, <q, A q>."""
+        """Return twice the elastic energy of tractions, <q, A q>."""
         return float(np.vdot(self.weight * change, self.displacement(change)))
 
     def prolong(self, state: np.ndarray) -> np.ndarray | None:
-        """Interpolate tractions from a coarser mesh to the points of this contact.  Returns None if
-        this is not possible."""
+        """Interpolate tractions from a coarser mesh to the points of this contact.
+
+        Returns None if this is not possible.
+        """
         return None
 
     def mirrored(self, state: np.ndarray) -> np.ndarray:
-        """Return the mirror image of a state under lateral -> -lateral.  This negates lateral
-        tractions."""
+        """Return the mirror image of a state under lateral -> -lateral, with lateral tractions
+        negated."""
 
     def march(
         self,
@@ -208,21 +220,26 @@ class Contact(Protocol):
         state : np.ndarray
             Tractions at the start of the path.
         tolerance : float
-            Largest allowed residual of a stage, as a force divided by mu F_z.
+            Largest allowed residual at each stage, as a force divided by mu F_z.
         previous : March or None
-            Earlier march along the same path from a similar state.  It provides initial guesses.
+            Result of an earlier march along the same path from a similar state, which provides the
+            initial guesses.
         """
 
 
 def energy_norm(contact: Contact, change: np.ndarray) -> float:
-    """Upper bound on the change of force due to a change of tractions, divided by mu F_z.  It
-    follows from the elastic energy: |dF| <= sqrt(stiffness <dq, A dq>)."""
+    """Return an upper bound on the change of force due to a change of tractions, divided by mu F_z.
+
+    The bound follows from the elastic energy: |dF| <= sqrt(stiffness <dq, A dq>).
+    """
     return math.sqrt(contact.stiffness * max(contact.energy(change), 0.0))
 
 
 def full_slip(contact: Contact, forward: np.ndarray, lateral: np.ndarray) -> np.ndarray:
-    """Tractions equal to the friction bound in the direction of a vector field; 0 where the field
-    is 0."""
+    """Return tractions of the magnitude of the friction bound, in the direction of a vector field.
+
+    The tractions are 0 where the field is 0.
+    """
     size = np.hypot(forward, lateral)
     with np.errstate(invalid="ignore", divide="ignore"):
         unit = np.where(size > 0, np.stack([forward, lateral]) / size, 0.0)
@@ -230,23 +247,29 @@ def full_slip(contact: Contact, forward: np.ndarray, lateral: np.ndarray) -> np.
 
 
 def rigid_displacement(contact: Contact, place: np.ndarray) -> np.ndarray:
-    """Displacement of each point, shape (2, ...), in a rigid motion; place: forward displacement,
-    lateral displacement and angle."""
+    """Return the displacement of each point in a rigid motion, as an array of shape (2, ...).
+
+    place: forward displacement, lateral displacement and angle.
+    """
     forward, lateral, angle = place
     ahead = forward + angle * contact.lateral_position
     return np.stack([ahead, lateral - angle * contact.forward_position])
 
 
 def forward_slip(contact: Contact) -> np.ndarray:
-    """Forward tractions equal to the friction bound.  This is the state after forward sliding."""
+    """Return forward tractions equal to the friction bound, which are the state after forward
+    sliding."""
     out = np.zeros((2, *contact.forward_position.shape))
     out[FORWARD] = contact.bound
     return out
 
 
 def forces(contact: Contact, state: np.ndarray) -> np.ndarray:
-    """Forward force and lateral force (in mu F_z) and torque (in mu F_z a) due to tractions, shape
-    (3,)."""
+    """Return the forces and the torque due to tractions, as an array of shape (3,).
+
+    The components are the forward force and the lateral force in mu F_z, and the torque in mu F_z
+    a.
+    """
     forward, lateral = loads = contact.weight * state
     torque = np.vdot(contact.lateral_position, forward) - np.vdot(contact.forward_position, lateral)
     return np.array([*loads.sum(axis=(1, 2)), torque])
@@ -267,11 +290,12 @@ def march_by_steps(
     body: Body | None = None,
     start: np.ndarray | None = None,
 ) -> March:
-    """March along a path; for the other arguments, see contact.Contact and RingContact.march.
+    """Integrate a contact along a path, step by step.
 
-    The `solver` has two methods that return a Step from a guess of the tractions:
-    solve(b, guess) for the imposed displacement b, and, if there is a driven body,
-    balance(b, guess, stiffness, load), whose step fulfils stiffness d + forward force = load.
+    The `solver` has two methods that return a Step, starting from a guess of the tractions:
+    solve(b, guess) for the imposed displacement b, and, if there is a driven body, balance(b,
+    guess, stiffness, load), whose result fulfils stiffness d + forward force = load.  For the other
+    arguments, see contact.Contact and RingContact.march.
     """
     stages, total, end = len(path.carry), len(path.motion) - 1, path.end
     guess = None if previous is None else previous.fields

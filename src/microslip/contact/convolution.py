@@ -1,29 +1,32 @@
-"""Compiled code of equal rectangular cells: convolution and Coulomb steps.
+"""Compiled code for contacts of equal rectangular cells: convolution and Coulomb steps.
 
-The convolution gives the surface displacement under tractions.
+The convolution gives the surface displacement due to tractions.
 
 Along an axis with n cells, the cell j has the coordinate x = j - (n - 1) / 2.  A field is a sum of
-cosines and sines of 2 pi k x / (2 n - 1), k = 0 .. n - 1.  This period is long enough that the
-convolution does not wrap around.  The influence of forward on forward, and of lateral on lateral
-tractions, is even along both axes: it multiplies each wave by a number.  The influence of forward
-on lateral tractions is odd along both axes: it multiplies the wave and exchanges cosine and sine.
+cosines and sines of 2 pi k x / (2 n - 1) for k = 0 .. n - 1.  This period is long enough that the
+convolution does not wrap around.  The influence of forward tractions on forward displacements, and
+of lateral tractions on lateral displacements, is even along both axes: it multiplies each wave by a
+number.  The influence of the tractions in one direction on the displacements in the other is odd
+along both axes: it multiplies the wave by a number and exchanges cosine and sine.
 
-If a symmetry gives the field behind the forward coordinate 0, only the cells ahead of it are
-resolved.  Each wave along the lateral axis is then either even or odd along the forward axis:
+If a symmetry determines the field at negative forward coordinates, only the cells with positive
+forward coordinates are resolved.  Each wave along the lateral axis is then either even or odd along
+the forward axis:
 
 - TURN, for translations: a half turn leaves a field unchanged, so that the parities along both axes
   are equal.  A quarter of the cells is sufficient if fields are even along both axes.
-- MIRROR, for rotations: forward parts are even along the forward axis, and lateral parts are odd.
+- MIRROR, for rotations: forward components are even along the forward axis, and lateral components
+  are odd.
 
-The waves are evaluated by products of matrices, which is faster than Fourier transforms up to about
-64 cells along a side.
+The waves are evaluated by matrix products, which are faster than fast Fourier transforms for up to
+about 64 cells along a side.
 
-A spectral projected gradient method solves the Coulomb steps, since squares have no cheap
-resolvent. The unknowns are tractions q with |q| <= g.  The slip b - A q occurs only where |q| = g,
-in the direction of q.  Gradient steps have Barzilai-Borwein lengths without a line search, because
-rounding errors of the energy are much larger than those of the tractions.  If the residual does not
-decrease for a number of iterations, shorter steps that always lower the energy are used until the
-residual decreases.
+The Coulomb steps are solved by a spectral projected gradient method, because no cheap resolvent is
+available for equal cells.  The unknowns are tractions q with |q| <= g.  The slip b - A q occurs
+only where |q| = g, in the direction of q.  Gradient steps have Barzilai-Borwein lengths without a
+line search, because rounding errors of the energy are much larger than those of the tractions.  If
+the residual does not decrease for a number of iterations, shorter steps are used until it
+decreases; these steps lower the energy in every iteration.
 """
 
 from __future__ import annotations
@@ -39,28 +42,31 @@ from microslip.foundation.compiled import kernel
 from microslip.theory.hertz import G_STAR
 
 TURN, MIRROR = "half turn", "mirror image"
-"""Symmetries of a field."""
+"""Possible symmetries of a field."""
 
 
 class Convolution(NamedTuple):
     """Matrices of the convolution on R x C resolved cells.
 
-    The lateral axis has P parities (1 if only positive coordinates are resolved, else 2) and W
-    waves of each parity, the last of which are padding.  The forward axis has F waves: n, or 2 n if
-    both parities occur.
+    Along the lateral axis, there are W waves for each of P parities, where P is 1 if only positive
+    coordinates are resolved, else 2; the last waves are padding.  Along the forward axis, there are
+    F waves, where F is n, or 2 n if both parities occur.
 
     Attributes
     ----------
     columns, columns_back : np.ndarray, shapes (C, P W) and (P W, C)
-        Waves along the lateral axis; the second array is padded along its last axis.
+        Waves along the lateral axis.  The second array is padded along its last axis.
     rows, rows_back : np.ndarray, shapes (2, P, F, R) and (2, P, R, F)
         Waves along the forward axis, for each component and each lateral parity.
     direct : np.ndarray, shape (2, F, W)
-        Factor of each wave of the same component.
+        Factor by which a wave of tractions is multiplied to obtain the displacements in the same
+        direction.
     cross : np.ndarray, shape (P, F, W)
-        Factor of the forward wave for the lateral wave with the other parities, and vice versa.
+        Factor by which a wave of forward tractions is multiplied to obtain the lateral
+        displacements, which have the opposite parities, and vice versa.
     shift : int
-        Distance of two waves with the same frequency and different parities along the forward axis.
+        Difference of the indices of two forward waves with the same frequency and different
+        parities.
     """
 
     columns: np.ndarray
@@ -86,24 +92,25 @@ def square_convolution(
     Parameters
     ----------
     cells : int
-        Number of cells along a side; even if `images` is 2 or 4.
+        Number of cells along a side; it must be even if `images` is 2 or 4.
     poisson, modulus : float
         Poisson's ratio, and G* in working units.
     images : int
-        Number of cells for each resolved cell.  If it is 4, fields at nu = 0 are even along both
-        axes, and only cells with positive coordinates are resolved.  If it is 2, fields have the
-        symmetry, and only cells with a positive forward coordinate are resolved.
+        Number of cells of the whole rectangle for each resolved cell.  With 4 (nu = 0 only), fields
+        are even along both axes, and only cells with positive coordinates are resolved.  With 2,
+        fields have the symmetry given by `symmetry`, and only cells with a positive forward
+        coordinate are resolved.
     symmetry : str
         Symmetry of the fields if `images` is 2: TURN or MIRROR.
     half_widths : tuple of float
-        Half of the forward and the lateral width of the rectangle.
+        Half the forward width and half the lateral width of the rectangle.
 
     Returns
     -------
     convolution : Convolution
         Matrices of the compiled convolution.
     scale : float
-        Displacement of a cell under a unit traction on the same cell, in u_lim.
+        Displacement of a cell due to a unit traction on the same cell, in u_lim.
     largest : float
         Upper bound on the eigenvalues of the convolution, in u_lim per unit of traction.
     """
@@ -112,7 +119,7 @@ def square_convolution(
     angles = 2.0 * np.pi / period * np.outer(waves, waves - 0.5 * (cells - 1))
     every = np.stack([np.cos(angles), np.sin(angles)])
     ahead = every[..., cells // 2 :]
-    # waves along the lateral axis: parities, waves and cells
+    # waves along the lateral axis, with the axes parities, waves and cells
     lateral = every if images < 4 else ahead[:1]
     wide = np.zeros((lateral.shape[2], len(lateral), width))
     wide[..., :cells] = np.moveaxis(lateral, 2, 0)
@@ -132,7 +139,7 @@ def square_convolution(
     share = np.where(waves > 0, 2.0, 1.0) / period
     factors = np.zeros((3, cells, width))
     factors[..., :cells] = images * share[:, None] * share * spectrum
-    # the sign is 1 if the parities of a forward wave along both axes are equal
+    # the sign is 1 if a wave of forward tractions has equal parities along both axes
     cross = np.stack([factors[2], factors[2] if symmetry == TURN else -factors[2]])[: len(lateral)]
     if images == 1:
         cross = np.stack([[factors[2], -factors[2]], [-factors[2], factors[2]]])
@@ -156,13 +163,13 @@ def influence(
     modulus: float = G_STAR,
     half_widths: tuple[float, float] = (1.0, 1.0),
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Compute the influence coefficients for the traction and for its complex conjugate, (P, P)
-    each.
+    """Compute the influence coefficients for the traction and for its complex conjugate.
 
-    The complex traction is lateral + i forward.  The kernels of influence.py are integrated over a
-    cell in closed form, and evaluated at the centres of cells.  Units are u_lim per unit of
-    traction.  The first axis is the forward offset, and the second axis is the lateral offset.
-    Negative offsets are wrapped around.
+    The result is two arrays of shape (P, P), where P is `padded`, in u_lim per unit of traction.
+    Their first axis is the forward offset between two cells, and their second axis is the lateral
+    offset.  Negative offsets are wrapped around.  The complex traction is lateral + i forward.  The
+    kernels of influence.py are integrated over a cell in closed form, and evaluated at the centres
+    of cells.
     """
     forward, lateral = (2.0 * half_width / cells for half_width in half_widths)
     offsets = np.fft.fftfreq(padded, 1.0 / padded)
@@ -183,7 +190,7 @@ def influence(
 
 
 def workspace(operator: Convolution) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Scratch arrays of `convolve`, for use by one thread."""
+    """Create the scratch arrays of `convolve`, for use by a single thread."""
     components, parities, waves, rows = operator.rows.shape
     width = operator.direct.shape[2]
     return (
@@ -195,8 +202,11 @@ def workspace(operator: Convolution) -> tuple[np.ndarray, np.ndarray, np.ndarray
 
 @kernel
 def convolve(operator: Convolution, scratch: tuple, q: np.ndarray, out: np.ndarray) -> None:
-    """Fill `out` with A q.  `q` and `out` contain forward and lateral parts of the resolved cells,
-    (2, rows, columns); scratch: arrays from `workspace`."""
+    """Fill `out` with A q.
+
+    q, out: forward and lateral components on the resolved cells, as arrays of shape (2, rows,
+    columns).  scratch: arrays from `workspace`.
+    """
     lateral, spectrum, image = scratch
     _, parities, waves, _ = operator.rows.shape
     of_parity = lateral.reshape(parities * lateral.shape[0], -1)
@@ -225,8 +235,8 @@ def convolve(operator: Convolution, scratch: tuple, q: np.ndarray, out: np.ndarr
 MOST_ITERATIONS = 5000
 """Largest number of iterations of a step."""
 PATIENCE = 60
-"""Number of iterations in which Barzilai-Borwein steps must halve the residual, calibrated by
-benchmarks/splitting.py."""
+"""Number of iterations in which Barzilai-Borwein steps must halve the residual.  The value is
+calibrated by benchmarks/splitting.py."""
 SHORT_STEP_BELOW = 0.3
 """Ratio of the two Barzilai-Borwein lengths below which the shorter one is used; usual values are
 0.1 to 0.5 (Zhou, Gao and Dai 2006)."""
@@ -247,13 +257,14 @@ def descend(
     convolution : Convolution
         The operator A.
     cell : tuple of float
-        Area of a cell, displacement of a cell under a unit traction on the same cell, and upper
+        Area of a cell, displacement of a cell due to a unit traction on the same cell, and upper
         bound on the eigenvalues of A.
     fields : tuple of np.ndarray, shapes (rows, columns) and (2, rows, columns)
-        Friction bound; imposed displacement b; tractions, which are the initial guess on entry and
-        within the bound on return; slip, which is filled.
+        Four arrays: the friction bound; the imposed displacement b; the tractions, which contain
+        the initial guess on entry and the solution, within the bound, on return; and the slip,
+        which is an output.
     scratch : tuple of np.ndarray
-        Arrays of convolution.workspace, and an array of shape (4, rows, columns).
+        Arrays from `workspace`, and an array of shape (4, rows, columns).
     control : tuple
         Length of the first gradient step; largest allowed residual, as a force divided by mu F_z;
         patience, see PATIENCE.
@@ -263,7 +274,7 @@ def descend(
     iterations : int
         Number of iterations; -1 after an interrupt.
     residual, length : float
-        Residual of coulomb.coulomb_residual, and length of the last gradient step.
+        Residual as defined by contact.coulomb_residual, and length of the last gradient step.
     """
     weight, scale, largest = cell
     bound, b, q, slip = fields
@@ -271,7 +282,7 @@ def descend(
     room, values = scratch
     trial, elastic = values[:2], values[2:]
     rows, columns = bound.shape
-    sums = np.empty((3, columns))  # one for each column, so that the compiler can vectorise
+    sums = np.empty((3, columns))  # one sum for each column, so that the compiler can vectorise
     for i in range(rows):
         for j in range(columns):
             f = shrink(q[0, i, j], q[1, i, j], bound[i, j])

@@ -1,18 +1,19 @@
 """Influence coefficients of the elastic half-space under in-plane traction.
 
-The surface displacement u = u_x + i u_y under a traction q = q_x + i q_y is, in working units with
-the contact radius 1 and the reduced shear modulus G*,
+In working units, with the contact radius 1 and the reduced shear modulus G*, a traction q = q_x + i
+q_y causes the surface displacement u = u_x + i u_y:
 
     u(z) = 1/(pi G*) Integral [ q(z') / |z-z'| + kappa e^{2 i alpha} conj(q(z')) / |z-z'| ] dA'
 
-with kappa = nu / (2 - nu) and the angle alpha of z - z'.  On circles, both kernels decompose into
-angular modes.  With q = Sum_m q_m(r) e^{i m theta}
+Here kappa = nu / (2 - nu), and alpha is the angle of z - z'.  On circles, both kernels decompose
+into angular modes.  With q = Sum_m q_m(r) e^{i m theta},
 
     u_m(r) = 2/G* Integral [ G_m(r, r') q_m(r') + kappa C_m(r, r') conj(q_{2-m}(r')) ] r' dr'
     G_m(r, r') = Integral_0^inf J_m(k r) J_m(k r') dk            (a toroidal Legendre function)
     C_m(r, r') = Integral_0^inf J_m(k r) J_{m-2}(k r') dk
 
-This module computes G_m and C_m for all modes at once, and averages them over pairs of rings.
+This module computes the kernels G_m and C_m for all modes at once, and averages them over pairs of
+rings.
 """
 
 from __future__ import annotations
@@ -26,29 +27,30 @@ from microslip.foundation.compiled import kernel
 from microslip.theory.hertz import G_STAR
 
 EPSILON = float(np.finfo(float).eps)
-"""Distance from 1 to the next number."""
+"""Distance from 1 to the next larger floating-point number."""
 ACCURACY = 1e-10
-"""Relative accuracy of the kernels, much better than the accuracy of their averages over rings."""
+"""Relative accuracy of the kernels, which is much better than that of the averages over rings."""
 MOST_GROWTH = np.log(ACCURACY / EPSILON)
 """Logarithm of the largest growth of rounding errors in an upward recurrence."""
 HALF_PRECISION = np.sqrt(EPSILON)
-"""Relative difference of two numbers whose arithmetic and geometric means are equal to rounding."""
+"""Relative difference of two numbers whose arithmetic and geometric means are equal except for
+rounding."""
 DECAY = -np.log(ACCURACY)
-"""Logarithm of the decay after which a downward recurrence does not depend on its start value."""
+"""Logarithm of the decay after which a downward recurrence no longer depends on its start value."""
 MOST_MODES = 1 + int(np.ceil(0.5 * DECAY))
-"""Largest ratio of modes_for(r, s, n) to n + 2."""
+"""Largest possible ratio of modes_for(r, s, n) to n + 2."""
 OUTER_POINTS = 8
 INNER_POINTS = 12
 CLUSTER_POWER = 4
-"""Numbers of Gauss points for the outer (averaging) and the inner (singular) ring integral.  The
-exponent clusters the inner points where the rings are closest, because the kernels have a
+"""Numbers of Gauss points for the outer (averaging) and the inner (singular) ring integral, and the
+exponent that clusters the inner points where the rings are closest, because the kernels have a
 logarithmic singularity there."""
 APART_POINTS = 5
 """Number of Gauss points on each ring of a pair whose distance is at least the width of a ring."""
 
 
 class Averaging(NamedTuple):
-    """Quadrature of kernels over pairs of rings; every rule is (nodes, weights) on [0, 1].
+    """Quadrature of kernels over pairs of rings.  Every rule is a pair (nodes, weights) on [0, 1].
 
     Attributes
     ----------
@@ -57,8 +59,8 @@ class Averaging(NamedTuple):
     coupled : bool
         Whether the modes m and 2 - m are coupled (nu > 0).
     outer, inner : tuple of np.ndarray
-        Quadrature rules for the narrower ring, and for the other ring.  The latter starts at the
-        point of closest approach.
+        Quadrature rules for the narrower ring, and for the wider ring.  The nodes of the latter are
+        measured from the point of closest approach.
     apart : tuple of np.ndarray
         Quadrature rule for both rings if their distance is at least the width of a ring.
     """
@@ -72,11 +74,13 @@ class Averaging(NamedTuple):
 
 @kernel
 def elliptic_integrals(kc: np.ndarray, big_k: np.ndarray, big_e: np.ndarray) -> None:
-    """Fill K and E, the complete elliptic integrals for the complementary moduli kc, shape (n,).
+    """Fill `big_k` and `big_e` with the complete elliptic integrals K and E.
 
-    They are computed by the arithmetic-geometric mean, which converges quadratically, and most
-    slowly for the smallest modulus.  The number of steps for this modulus is used for all, so that
-    the compiler can use vector instructions.
+    kc: complementary moduli, as an array of shape (n,).
+
+    The integrals are computed by the arithmetic-geometric mean.  It converges quadratically, and
+    most slowly for the smallest modulus.  All moduli use the number of steps that this modulus
+    needs, so that the compiler can use vector instructions.
     """
     large, small, steps = 1.0, kc.min(), 0
     while large - small > HALF_PRECISION * large:
@@ -100,13 +104,13 @@ def elliptic_integrals(kc: np.ndarray, big_k: np.ndarray, big_e: np.ndarray) -> 
 def toroidal_kernels(
     r: float, s: float, integrals: tuple[float, float], n: int, out: np.ndarray
 ) -> None:
-    """Fill out[m] = G_m(r, s) = Integral J_m(k r) J_m(k s) dk for m = 0 .. n - 1.
+    """Compute out[m] = G_m(r, s) = Integral J_m(k r) J_m(k s) dk for m = 0 .. n - 1.
 
-    The radii r and s must be positive and different.  `integrals` are K and E for the complementary
-    modulus |r - s| / (r + s).  G_m is Q_{m-1/2}(chi) / (pi sqrt(r s)) with chi = (r^2 + s^2) /
-    (2 r s).  Q is the decaying solution of a three-term recurrence in m.  An upward recurrence
-    loses accuracy if m times the decay rate is large.  In this case, ratios are computed by a
-    downward recurrence (Miller's method).
+    The radii r and s must be positive and different.  The argument `integrals` contains K and E for
+    the complementary modulus |r - s| / (r + s).  G_m is Q_{m-1/2}(chi) / (pi sqrt(r s)) with chi =
+    (r^2 + s^2) / (2 r s).  Q is the decaying solution of a three-term recurrence in m.  An upward
+    recurrence loses accuracy if m times the decay rate is large.  In this case, the ratios of
+    consecutive values are computed by a downward recurrence (Miller's method).
     """
     big_k, big_e = integrals
     out[0] = 2.0 * big_k / (np.pi * (r + s))
@@ -134,21 +138,23 @@ def toroidal_kernels(
 
 @kernel
 def modes_for(r: float, s: float, n: int) -> int:
-    """Number of values G_m(r, s) for `n` values C_m: n + 2 if the upward recurrence is stable,
-    otherwise more, but at most MOST_MODES (n + 2)."""
+    """Return the number of values G_m(r, s) from which `n` values C_m can be computed.
+
+    It is n + 2 if the upward recurrence is stable, otherwise more, but at most MOST_MODES (n + 2).
+    """
     growth = np.log(s / r)
     return n + 2 if (n + 1) * growth < 2.0 else n + 3 + int(DECAY / growth)
 
 
 @kernel
 def coupling_kernels(r: float, s: float, toroidal: np.ndarray, n: int, out: np.ndarray) -> None:
-    """Fill out[j] = C_{j+1}(r, s) = Integral J_{j+1}(k r) J_{j-1}(k s) dk for j = 0 .. n - 1.
+    """Compute out[j] = C_{j+1}(r, s) = Integral J_{j+1}(k r) J_{j-1}(k s) dk for j = 0 .. n - 1.
 
-    `toroidal` contains at least `modes_for(r, s, n)` values G_m(r, s).
-    Multiplication of e^{2 i alpha}/|z-z'| by conj(z - z') gives the recurrence r C_m - s C_{m-1} =
-    r G_{m-2} - s G_{m-1}, with C_1 = -G_1.  The upward recurrence is stable if s < r or if (s/r)^m
-    is of order one.  Otherwise the recurrence runs downward from an index at which C is negligible.
-    Modes below 1 follow from C_{2-m}(r, s) = C_m(s, r).
+    `toroidal` contains at least `modes_for(r, s, n)` values G_m(r, s).  Multiplying e^{2 i
+    alpha}/|z-z'| by conj(z - z') gives the recurrence r C_m - s C_{m-1} = r G_{m-2} - s G_{m-1},
+    with C_1 = -G_1.  The upward recurrence is stable if s < r or if (s/r)^m is of order one.
+    Otherwise the recurrence runs downward from an index at which C is negligible.  Modes below 1
+    follow from C_{2-m}(r, s) = C_m(s, r).
     """
     out[0] = -toroidal[1]
     top = modes_for(r, s, n)
@@ -169,10 +175,11 @@ def coupling_kernels(r: float, s: float, toroidal: np.ndarray, n: int, out: np.n
 
 @kernel
 def _points_of_pair(averaging: Averaging, i: int, j: int, points: np.ndarray) -> int:
-    """Fill `points` with radii on ring i (outer rule), radii on ring j (inner rule), and weights,
-    and return the number of points.
+    """Fill `points` with quadrature points of a pair of rings, and return the number of points.
 
-    Weights contain the shape of the traction on each ring, normalised to Integral shape r dr = 1.
+    A point consists of a radius on ring i (outer rule), a radius on ring j (inner rule), and a
+    weight.  The weights include the traction profile s(r) of each ring, normalised so that the
+    integral of s(r) r dr is 1.
     """
     psi = averaging.psi
     a0, a1 = psi[i], psi[i + 1]
@@ -211,15 +218,16 @@ def _add_pair(
     """Average the kernels over ring i (outer rule) and ring j (inner rule).
 
     Ring i must be the narrower one, because only the points of the inner rule are clustered where
-    the rings are closest.  Adds the averages of G_m to near[:, i, j], and the averages of C_{m+1}
-    to far[:, i, j] and far[:, j, i].  `points` is memory for the points of the quadrature.
+    the rings are closest.  The averages of G_m are added to near[:, i, j], and the averages of
+    C_{m+1} to far[:, i, j] and far[:, j, i].  `points` is a scratch array for the quadrature
+    points.
     """
     count = _points_of_pair(averaging, i, j, points)
     radii, others, weights = points[0, :count], points[1, :count], points[2, :count]
     moduli, big_k, big_e = points[3, :count], points[4, :count], points[5, :count]
     for q in range(count):
         apart = abs(radii[q] - others[q]) / (radii[q] + others[q])
-        moduli[q] = max(apart, EPSILON)  # near the edge, radii may be equal to rounding
+        moduli[q] = max(apart, EPSILON)  # near the edge, radii may be equal after rounding
     elliptic_integrals(moduli, big_k, big_e)
     n, coupled = len(near), averaging.coupled
     torus, pair = np.empty(MOST_MODES * (n + 2)), np.empty(n)
@@ -241,13 +249,14 @@ def _add_pair(
 
 @kernel
 def _weight(r: float) -> float:
-    """Shape of the Hertz friction bound times r dr/dpsi, at r = sin psi."""
+    """Return the profile of the Hertz friction bound times r dr/dpsi, at r = sin psi."""
     return r * (1.0 - r) * (1.0 + r)
 
 
 @kernel
 def _all_pairs(averaging: Averaging, near: np.ndarray, far: np.ndarray) -> None:
-    """Fill the arrays `near` and `far`, (n_modes, rings, rings), which must be zero on entry."""
+    """Fill the arrays `near` and `far` of shape (n_modes, rings, rings), which must be zero on
+    entry."""
     width = averaging.psi[1:] - averaging.psi[:-1]
     points = np.empty((6, 2 * len(averaging.outer[0]) * len(averaging.inner[0])))
     for one in range(len(width)):
@@ -260,7 +269,7 @@ def _all_pairs(averaging: Averaging, near: np.ndarray, far: np.ndarray) -> None:
 
 @lru_cache
 def _unit_gauss(n: int, power: int) -> tuple[np.ndarray, np.ndarray]:
-    """Gauss-Legendre rule on [0, 1], clustered at 0 by t -> t^power."""
+    """Return a Gauss-Legendre rule on [0, 1], clustered at 0 by t -> t^power."""
     x, w = np.polynomial.legendre.leggauss(n)
     t, w = 0.5 * (x + 1.0), 0.5 * w
     return t**power, w * power * t ** (power - 1)
@@ -268,7 +277,7 @@ def _unit_gauss(n: int, power: int) -> tuple[np.ndarray, np.ndarray]:
 
 @lru_cache
 def _smooth_ends_gauss(n: int) -> tuple[np.ndarray, np.ndarray]:
-    """Gauss-Legendre rule on [0, 1], clustered at both ends (t -> 3 t^2 - 2 t^3)."""
+    """Return a Gauss-Legendre rule on [0, 1], clustered at both ends by t -> 3 t^2 - 2 t^3."""
     x, w = np.polynomial.legendre.leggauss(n)
     t, w = 0.5 * (x + 1.0), 0.5 * w
     return t * t * (3.0 - 2.0 * t), w * 6.0 * t * (1.0 - t)
@@ -277,17 +286,17 @@ def _smooth_ends_gauss(n: int) -> tuple[np.ndarray, np.ndarray]:
 def ring_influence(
     psi: np.ndarray, n_modes: int, coupled: bool, modulus: float = G_STAR
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Influence matrices of angular modes on rings of a half-space.
+    """Compute the influence matrices of angular modes on rings of a half-space.
 
-    Tractions on a ring have the shape of the Hertz friction bound.  Averages are Galerkin averages,
-    so the matrices near[m] are symmetric after weighting with the ring areas.
+    Within a ring, tractions are proportional to the Hertz friction bound.  Averages are Galerkin
+    averages, so that the matrices near[m] are symmetric when weighted with the ring areas.
 
     Parameters
     ----------
     psi : np.ndarray, shape (n + 1,)
-        Edges of the rings as angles, with r = sin(psi), increasing up to pi/2.
+        Edges of the rings as angles, with r = sin(psi); they increase up to pi/2.
     n_modes : int
-        Number of modes, which are numbered 0 to n_modes - 1.
+        Number of modes.  Modes are numbered from 0 to n_modes - 1.
     coupled : bool
         Whether to compute `far`, which is zero otherwise.
     modulus : float
@@ -297,10 +306,11 @@ def ring_influence(
     -------
     near : np.ndarray, shape (n_modes, n, n)
         near[m] maps mean ring tractions (force per area) of mode m to mean ring displacements of
-        mode m; modes m and -m have the same matrix.
+        mode m.  Modes m and -m have the same matrix.
     far : np.ndarray, shape (n_modes, n, n)
-        kappa * far[j] maps conjugate tractions of mode 1 - j to displacements of mode 1 + j; its
-        transpose maps conjugate tractions of mode 1 + j to displacements of mode 1 - j.
+        kappa * far[j] maps conjugate tractions of mode 1 - j to displacements of mode 1 + j.  The
+        transpose of this matrix maps conjugate tractions of mode 1 + j to displacements of mode 1 -
+        j.
     """
     psi = np.ascontiguousarray(psi, dtype=float)
     n = len(psi) - 1

@@ -1,4 +1,4 @@
-"""Time integration of a contact on rings along a path (the march), in compiled code.
+"""Compiled time integration of a contact on rings along a path, called the march.
 
 With the rigid displacement w and z = A q - w, stage i of a step is a Coulomb step (splitting.py)
 for tractions q_i and slips r_i,
@@ -7,14 +7,14 @@ for tractions q_i and slips r_i,
 
 The last stage is the end of the step, after which z = b - r - w.
 
-A body of mass m with a dashpot c, driven by a constant force or a spring k, obeys
+A body of mass m with a dashpot c, which is driven by a constant force or through a spring k, obeys
 
     m x'' + c x' + k x + f = load,    f: forward force of the contact,
 
 in working units.  x is the displacement of the contact relative to its path, and primes are
 derivatives with respect to the phase.  The far end of the spring follows the path.  The integrator
 of the contact also integrates the motion of the body.  Let d = g x' be the increment of x in a
-stage, where g is the implicit part of the stage.  Then each stage adds the equation
+stage, where g is the length of the implicit part of the stage.  Then each stage adds the equation
 
     stiffness d + f(q) = load,    stiffness = k + c / g + m / g^2,
 
@@ -30,15 +30,15 @@ from microslip.contact.splitting import LEVELS, respond, solve_step
 from microslip.foundation.compiled import kernel
 
 STIFFNESS, DAMPING, MASS, LOAD, PLACE, RATE = range(6)
-"""Indices of the numbers of a drive: k, c, m, load, and x and x' at the start of the path.  The
-last two are ignored if both m and c are 0."""
+"""Indices of the parameters of a drive: k, c, m, load, and the values of x and x' at the start of
+the path.  The last two are ignored if both m and c are 0."""
 
 
 @kernel
 def add_displacement(
     factor: float, motion: np.ndarray, positions: np.ndarray, out: np.ndarray
 ) -> None:
-    """Add a factor times a rigid displacement (forward, lateral, angle) to a field."""
+    """Add a factor times a rigid displacement (forward, lateral, angle) to the field `out`."""
     forward, lateral, angle = factor * motion[0], factor * motion[1], factor * motion[2]
     for i in range(out.shape[1]):
         out[0, i] += forward + angle * positions[1, i]
@@ -55,14 +55,15 @@ def add(out: np.ndarray, factor: float, values: np.ndarray) -> None:
 
 @kernel
 def move_forward(factor: float, out: np.ndarray) -> None:
-    """Add a uniform forward displacement to a field."""
+    """Add a uniform forward displacement, `factor`, to the field `out`."""
     for i in range(out.shape[1]):
         out[0, i] += factor
 
 
 @kernel
 def combine(out: np.ndarray, first: np.ndarray, factor: float, second: np.ndarray) -> None:
-    """Set out = first + factor (first - second) for fields; with the factor 0, this is a copy."""
+    """Set the field `out` to first + factor (first - second).  With the factor 0, `first` is
+    copied."""
     for c in range(2):
         for i in range(out.shape[1]):
             out[c, i] = first[c, i] + factor * (first[c, i] - second[c, i])
@@ -72,7 +73,7 @@ def combine(out: np.ndarray, first: np.ndarray, factor: float, second: np.ndarra
 def pack(
     field: np.ndarray, kept: float, first: np.ndarray, factor: float, second: np.ndarray
 ) -> None:
-    """Set field = kept field + first + factor second, where `first` and `second` are states."""
+    """Set `field` to kept field + first + factor second, where `first` and `second` are states."""
     rows, cells = first.shape[1], first.shape[2]
     width = field.shape[1] // rows
     for c in range(2):
@@ -85,7 +86,7 @@ def pack(
 
 @kernel
 def unpack(state: np.ndarray, field: np.ndarray) -> None:
-    """Copy the points of a field to a state."""
+    """Copy a field to a state, without the padding."""
     rows, cells = state.shape[1], state.shape[2]
     width = field.shape[1] // rows
     for c in range(2):
@@ -96,7 +97,7 @@ def unpack(state: np.ndarray, field: np.ndarray) -> None:
 
 @kernel
 def strain_energy(operators: tuple, weight: np.ndarray, state: np.ndarray) -> float:
-    """Return twice the elastic energy <q, A q> of tractions (2, rows, cells)."""
+    """Return twice the elastic energy <q, A q> of tractions of shape (2, rows, cells)."""
     sectors, number, rows = operators[0].shape
     size = len(weight)
     waves = np.empty((2, sectors * number, 2 * size // (sectors * rows)))
@@ -111,7 +112,7 @@ def strain_energy(operators: tuple, weight: np.ndarray, state: np.ndarray) -> fl
 
 @kernel
 def sum_forces(weight: np.ndarray, positions: np.ndarray, q: np.ndarray, out: np.ndarray) -> None:
-    """Fill `out`, shape (3,), with the forward force, the lateral force and the torque."""
+    """Fill `out`, of shape (3,), with the forward force, the lateral force and the torque."""
     ahead, aside, torque = 0.0, 0.0, 0.0
     for i in range(q.shape[1]):
         forward, lateral = weight[i] * q[0, i], weight[i] * q[1, i]
@@ -130,36 +131,38 @@ def march(
     start: tuple,
     tolerance: float,
 ) -> tuple:
-    """March along a path.
+    """Integrate a contact along a path.
 
     Parameters
     ----------
     operators, points : tuple
-        See splitting.solve_step; the positions of the points have shape (2, points).
+        See splitting.solve_step.  The positions of the points have the shape (2, points).
     loading : tuple
-        Motion (1 + steps stages, 3) at the start and at every stage; friction bound, (1 + steps
-        stages or 1, points); factors a_ij / gamma, (stages, stages); time of the last stage divided
-        by the length of the step.  If it is below 1, the end of the step is extrapolated.
+        Four values: the rigid displacement at the start and at every stage, of shape (1 + steps
+        stages, 3); the friction bound, of shape (1 + steps stages or 1, points); the factors a_ij /
+        gamma, of shape (stages, stages); and the time of the last stage divided by the length of
+        the step.  If this ratio is below 1, the state at the end of the step is extrapolated.
     drive : tuple
-        Numbers of the drive, (6,), and g of each step in radians, (steps,), which is empty if the
-        contact follows the path.
+        Parameters of the drive, of shape (6,), and the length g for each step in radians, of shape
+        (steps,).  The latter is empty if the contact follows the path.
     start : tuple
-        Tractions at the start of the path, (2, rows, cells), and `history` of a march from a
-        similar state, or an array of shape (0, 2, rows, cells).
+        Tractions at the start of the path, of shape (2, rows, cells), and the `history` of a march
+        from a similar state, or an array of shape (0, 2, rows, cells).
     tolerance : float
-        Largest allowed residual of a stage, as a force divided by mu F_z.
+        Largest allowed residual at each stage, as a force divided by mu F_z.
 
     Returns
     -------
     state : np.ndarray, shape (2, rows, cells)
         Tractions at the end of the path.
     history : np.ndarray, shape (1 + steps stages, 2, rows, cells)
-        Unknown of the step solver at the start and after every stage.  Its projection on the bound
-        is the traction.
+        Unknown of the step solver at the start and after every stage.  The tractions are its
+        projection onto the friction bound.
     forces, body : np.ndarray, shapes (1 + steps, 3) and (1 + steps, 2)
-        Forces at the start and after every step, and x and x' of the body (0 without a drive).
+        Forces at the start and after every step, and the values of x and x' of the body (0 without
+        a drive).
     residual : float
-        Sum of the residual forces of all stages, divided by mu F_z.
+        Sum over all stages of the residual force, divided by mu F_z.
     iterations : int
         Number of iterations of the step solver; -1 after an interrupt.
     """
@@ -205,7 +208,7 @@ def march(
         if len(guess) > 0:
             if at == 1:
                 pack(y, 0.0, guess[1], 0.0, guess[1])
-            else:  # add the other march's change between stages
+            else:  # add the change between stages in the other march
                 pack(y, 1.0, guess[at], -1.0, guess[at - 1])
         elif k > 1:
             last, earlier = history[at - stages], history[at - 2 * stages]

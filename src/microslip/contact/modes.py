@@ -1,7 +1,7 @@
-"""Contact of rings with angular modes, for rotations at any nu and for translations at nu > 0.
+"""Contact on rings with angular modes, for rotations at any nu and for translations at nu > 0.
 
-Points are on rings at the angles theta_j = (j + 1/2) pi / M from the lateral axis.  Only one half
-of the disc is resolved; the other half follows from symmetry:
+The points are on rings at the angles theta_j = (j + 1/2) pi / M from the lateral axis.  Only one
+half of the disc is resolved; the other half follows from symmetry:
 
 - for rotations, a reflection across the lateral axis (forward traction even, lateral traction odd);
 - for translations, the point symmetry traction(-z) = traction(z), so that all modes are even.
@@ -9,10 +9,11 @@ of the disc is resolved; the other half follows from symmetry:
 A motion that combines a rotation and a translation has neither symmetry, so the whole disc is
 resolved.
 
-Coulomb's law holds at the points.  The influence operator is block-diagonal in the angular modes.
+Coulomb's law applies at the points.  The influence operator is block-diagonal in the angular modes.
 At nu = 0, the forward tractions of a mode cause only forward displacements, and the lateral
-tractions cause only lateral displacements.  Both have the same ring matrix.  At nu > 0, the complex
-waves e^{i m theta} of forward - i lateral are coupled in pairs m and 2 - m (see influence.py).
+tractions cause only lateral displacements.  The ring matrix is the same for both.  At nu > 0, the
+complex waves e^{i m theta} of forward - i lateral are coupled in pairs m and 2 - m (see
+influence.py).
 """
 
 from __future__ import annotations
@@ -30,30 +31,33 @@ from microslip.scene.hertz import HERTZ
 from microslip.scene.pressure import Pressure
 
 FEWEST_PROLONGED = 16
-"""Smallest number of rings at which, for rotations, tractions from a coarser mesh are a better
+"""Smallest number of rings for which, in rotations, tractions from a coarser mesh are a better
 initial guess than the static limit."""
 SHARED_MODES = (9, 17, 33)
-"""Possible numbers of modes with averaged kernels.  Runs at 4, 6 and 8 angles share the same
-averages."""
+"""Possible numbers of modes for which averages of the kernels are computed.  As a result, runs with
+4, 6 and 8 angles share the same averages."""
 Wave = tuple[int, int]
-"""Number m of a wave and its part (0 or 1), see `_pairs`."""
+"""Number m of a wave, and its part (0 or 1); see `_pairs`."""
 
 WHOLE, ROTATION, TRANSLATION = "whole disc", "mirror image", "half turn"
-"""Symmetry by which the tractions on half of the disc determine those on the other half.  WHOLE
-means that there is no such symmetry."""
+"""Symmetry by which the tractions on one half of the disc determine the tractions on the other
+half.  WHOLE means that there is no such symmetry."""
 
 
 def _single_waves(
     theta: np.ndarray, angles: int, symmetry: str
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Waves at nu = 0: their numbers m, and their forward and lateral values, (waves, points).
+    """Return the waves at nu = 0 as three arrays.
+
+    The first array contains the number m of each wave.  The others contain the forward and the
+    lateral values of the waves at the points, and have the shape (waves, points).
 
     For a rotation, forward tractions are cosines and lateral tractions are sines.  For a
     translation, both are cosines and sines with even numbers m.
     """
     numbers = np.arange(angles + 1)
     cosines, sines = np.cos(np.outer(numbers, theta)), np.sin(np.outer(numbers, theta))
-    cosines[angles] = 0.0  # its exact value at the points
+    cosines[angles] = 0.0  # the exact value at the points
     if symmetry == ROTATION:
         return numbers, cosines, sines
     step = 2 if symmetry == TRANSLATION else 1
@@ -63,10 +67,11 @@ def _single_waves(
 
 
 def _pairs(angles: int, symmetry: str) -> tuple[list[tuple[Wave, Wave]], list[tuple[Wave, Wave]]]:
-    """Pairs of waves at nu > 0: first the coupled pairs, then the pairs without coupling.
+    """Return the pairs of waves at nu > 0: the coupled pairs, and the pairs without coupling.
 
-    A wave is (m, part): part 0 is e^{i m theta}, and part 1 is i e^{i m theta}.  The shortest waves
-    of a whole disc or of a rotation are not coupled, because their cosine is 0 at all points.
+    A wave is described by (m, part): part 0 is e^{i m theta}, and part 1 is i e^{i m theta}.  For a
+    whole disc and for rotations, the shortest waves are not coupled, because their cosine is 0 at
+    all points.
     """
     step = 2 if symmetry == TRANSLATION else 1
     parts = (0,) if symmetry == ROTATION else (0, 1)
@@ -89,7 +94,8 @@ def _coupled_matrices(
     ratio: np.ndarray,
     kappa: float,
 ) -> np.ndarray:
-    """Matrices (pairs, 2, n, 2, n) of coupled pairs and of pairs without coupling."""
+    """Return the matrices of coupled pairs and of pairs without coupling, of shape (pairs, 2, n, 2,
+    n)."""
     near, far = influence
     n = near.shape[1]
     out = np.zeros((len(pairs) + len(single), 2, n, 2, n))
@@ -107,7 +113,8 @@ def _coupled_matrices(
 
 
 def _modes_to_average(angles: int) -> int:
-    """Number of modes with averaged kernels, at least angles + 1; see SHARED_MODES."""
+    """Return the number of modes for which kernels are averaged, at least angles + 1; see
+    SHARED_MODES."""
     return next((most for most in SHARED_MODES if angles < most), angles + 1)
 
 
@@ -115,7 +122,7 @@ def _modes_to_average(angles: int) -> int:
 def _shared_influence(
     psi: tuple[float, ...], n_modes: int, coupled: bool, modulus: float
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Influence matrices of modes on rings with the edges `psi`, see ring_influence."""
+    """Return the influence matrices of modes on rings with the edges `psi`; see ring_influence."""
     return ring_influence(np.array(psi), n_modes, coupled, modulus=modulus)
 
 
@@ -129,7 +136,7 @@ def influence_modes(
     rings : rings.Rings
         Mesh of n rings.
     angles : int
-        Number of points on half of each ring.
+        Number of points on one half of each ring.
     symmetry : str
         WHOLE, ROTATION or TRANSLATION.
     poisson, modulus : float
@@ -153,7 +160,7 @@ def influence_modes(
         to_points, matrices = np.stack([forward.T, lateral.T]), near[numbers]
     else:
         pairs, single = _pairs(angles, symmetry)
-        ratio = rings.area[:, None] / rings.area[None, :]  # weights of the transpose
+        ratio = rings.area[:, None] / rings.area[None, :]  # weights for the transpose
         matrices = _coupled_matrices(pairs, single, influence, ratio, kappa)
         matrices = matrices.reshape(len(matrices), 2 * len(ratio), -1)
         waves = [wave for pair in (*pairs, *single) for wave in pair]
@@ -167,14 +174,15 @@ def influence_modes(
 
 
 class PolarContact(RingContact):
-    """Contact of points on rings and at angles (see contact.Contact); states have the shape
-    (2, angles, cells).
+    """Contact with points on rings and at angles; see contact.Contact.
+
+    States have the shape (2, angles, cells).
 
     Parameters
     ----------
     cells, angles : int
-        Number of rings, and number of points of each ring on half the disc.  The latter must be
-        even.
+        Number of rings, and number of points of each ring on one half of the disc.  The latter
+        number must be even.
     rotates : bool
         True for a rotation, which has mirror symmetry; False for a translation.
     poisson : float
@@ -184,7 +192,7 @@ class PolarContact(RingContact):
     pressure : pressure.Pressure
         Pressure that depends on the radius alone.
     whole : bool
-        Whether the whole disc is resolved; states then have shape (2, 2 angles, cells).
+        Whether the whole disc is resolved.  States then have the shape (2, 2 angles, cells).
 
     Raises
     ------
@@ -228,18 +236,17 @@ class PolarContact(RingContact):
             self.resultants[LATERAL if rotates else TORQUE] = 0.0
 
     def prolong(self, state: np.ndarray) -> np.ndarray | None:
-        """Interpolate tractions (2, angles, cells) from a coarser mesh to the points of this
-        contact.
+        """Interpolate tractions from a coarser mesh to the points of this contact.
 
-        Returns None for whole discs, changing loads and, for rotations, fewer than FEWEST_PROLONGED
-        rings.
+        The tractions have the shape (2, angles, cells).  Returns None for whole discs, for changing
+        loads, and for rotations with fewer than FEWEST_PROLONGED rings.
         """
         few = self.rotates and len(self.bound) < FEWEST_PROLONGED
         on_rings = None if few or self.whole else super().prolong(state)
         if on_rings is None:
             return None
-        # extend the angles beyond the lateral axis, across which forward tractions are even, and
-        # lateral tractions odd for a rotation and even for a translation
+        # extend the angles beyond the lateral axis, across which forward tractions are even;
+        # lateral tractions are odd for a rotation and even for a translation
         beyond, count = on_rings[:, [0, -1]] * (MIRROR if self.rotates else 1.0), state.shape[1]
         fields = np.concatenate([beyond[:, :1], on_rings, beyond[:, 1:]], axis=1)
         angles = (np.arange(-1, count + 1) + 0.5) / count
@@ -247,5 +254,5 @@ class PolarContact(RingContact):
 
 
 polar_contact = lru_cache(maxsize=32)(PolarContact)
-"""Function that returns a PolarContact.  Calls with equal arguments return the same object, which
+"""Function that creates a PolarContact.  Calls with equal arguments return the same object, which
 must not be modified."""

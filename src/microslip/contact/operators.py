@@ -1,18 +1,18 @@
 """Elastic operators of contacts on rings, in compiled code.
 
-A field has the shape (2, points): forward and lateral components at the points of a contact.  The
-points lie on rings and at angles; the rings are the fast index.  Each angle has `width` points, of
-which those beyond the last ring have area 0 and friction bound 0.
+A field is an array of shape (2, points) with the forward and lateral components at the points of a
+contact.  The points are ordered by angle, then by ring.  Each angle has `width` points; the points
+beyond the last ring are padding, with area 0 and friction bound 0.
 
-An operator acts in three steps: values at the angles become amplitudes of angular waves, a matrix
-acts on the rings of each wave, and the waves become values at the angles again.  At nu = 0, forward
-and lateral tractions are two independent sectors with the same matrices.  At nu > 0, there is one
-sector, in which a matrix couples two neighbouring waves.  A contact of rings alone has one angle
-and one wave.
+An operator acts in three steps: it transforms the values at the angles to amplitudes of angular
+waves, multiplies the ring values of each wave by a matrix, and transforms back.  At nu = 0, forward
+and lateral tractions are decoupled, and form two sectors with the same matrices.  At nu > 0, there
+is one sector, in which each matrix couples two neighbouring waves.  A contact of rings without
+angular points has one angle and one wave.
 
-The compiler turns operations on tuples of four numbers into vector instructions, if indices are
-unsigned.  Kernels are compiled without fastmath, which would allow the compiler to reorder and fuse
-operations, so that the last bits of a result would depend on the kernels compiled earlier.
+The compiler turns operations on tuples of four numbers into vector instructions if indices are
+unsigned.  Kernels are compiled without fastmath.  With it, the compiler could reorder and fuse
+operations, and the last bits of a result would depend on which kernels were compiled before.
 """
 
 from __future__ import annotations
@@ -26,18 +26,18 @@ from numba.extending import intrinsic
 from microslip.foundation.compiled import kernel
 
 LANES = 8
-"""Number of neighbouring values that are accumulated at once: two vectors of four."""
+"""Number of neighbouring values that are accumulated at once, as two vectors of four."""
 ZERO = (0.0, 0.0, 0.0, 0.0)
 
 
 def padded(count: int) -> int:
-    """Smallest multiple of LANES that is at least `count`."""
+    """Return the smallest multiple of LANES that is at least `count`."""
     return -(-count // LANES) * LANES
 
 
 @intrinsic
 def fused(typing: Any, a: Any, b: Any, c: Any) -> Any:
-    """Return a b + c for floats, with a single rounding."""
+    """Return a b + c for floats, rounded once."""
     if (a, b, c) != (types.float64,) * 3:
         return None
 
@@ -49,14 +49,14 @@ def fused(typing: Any, a: Any, b: Any, c: Any) -> Any:
 
 @kernel(inline="always")
 def four(values: np.ndarray, first: int) -> tuple:
-    """Return four numbers of a row, starting at the index `first` >= 0."""
+    """Return four values of a row, starting at the index `first` >= 0."""
     i = np.uint64(first)
     return values[i], values[i + np.uint64(1)], values[i + np.uint64(2)], values[i + np.uint64(3)]
 
 
 @kernel(inline="always")
 def put(values: np.ndarray, first: int, a: tuple, b: tuple) -> None:
-    """Store eight numbers in a row, starting at the index `first` >= 0."""
+    """Store eight values in a row, starting at the index `first` >= 0."""
     i = np.uint64(first)
     values[i], values[i + np.uint64(1)], values[i + np.uint64(2)], values[i + np.uint64(3)] = a
     i = np.uint64(first + 4)
@@ -65,7 +65,7 @@ def put(values: np.ndarray, first: int, a: tuple, b: tuple) -> None:
 
 @kernel(inline="always")
 def plus(a: tuple, b: tuple) -> tuple:
-    """a + b."""
+    """Return a + b for two tuples."""
     return a[0] + b[0], a[1] + b[1], a[2] + b[2], a[3] + b[3]
 
 
@@ -82,8 +82,8 @@ def plus_multiple(total: tuple, numbers: tuple, factor: float) -> tuple:
 
 @kernel(inline="always")
 def shrink(forward: float, lateral: float, bound: float) -> float:
-    """Factor between 0 and 1 that projects the traction (forward, lateral) onto the disc |q| <=
-    bound."""
+    """Return the factor between 0 and 1 that projects the traction (forward, lateral) onto the disc
+    |q| <= bound."""
     size = np.sqrt(forward * forward + lateral * lateral)
     # without a branch, so that the compiler can vectorise it
     return min(1.0, bound / max(size, 1e-300))
@@ -100,8 +100,8 @@ def transform(
     """Multiply rows of `source` by a matrix, and store the results in rows of `target`.
 
     Row k of the argument is source[taken[0] + taken[1] k], and row k of the result is
-    target[filled[0] + filled[1] k].  Four rows are computed at a time, and the last rows can be
-    computed twice.
+    target[filled[0] + filled[1] k].  Rows are computed in groups of four; the last group can
+    overlap the previous one.
     """
     (begin, stride), (at, step) = taken, filled
     rows, columns = matrix.shape
@@ -127,7 +127,8 @@ def transform(
 
 @kernel
 def multiply_two(matrix: np.ndarray, pair: np.ndarray, image: np.ndarray) -> None:
-    """Multiply two vectors, (2, n), by the transpose of a matrix of even size."""
+    """Multiply two vectors, given as an array of shape (2, n), by the transpose of a matrix of even
+    size."""
     x, y, first, second = pair[0], pair[1], image[0], image[1]
     for i in range(0, len(x), LANES):
         a = b = c = d = e = f = g = h = ZERO
@@ -168,16 +169,16 @@ def multiply(
     Parameters
     ----------
     operators : tuple of np.ndarray
-        to_waves (sectors, waves, rows) and to_points (sectors, rows, waves): matrices between
-        values at the angles and amplitudes of the waves.  The third array, (operators, matrices,
-        columns, columns), contains the transposed matrix of each wave (nu = 0) or of each pair of
-        waves (nu > 0).
+        Three arrays.  `to_waves`, of shape (sectors, waves, rows), transforms values at the angles
+        to amplitudes of the waves, and `to_points`, of shape (sectors, rows, waves), transforms
+        back.  The third array, of shape (operators, matrices, columns, columns), contains the
+        transposed matrix of each wave (nu = 0) or of each pair of waves (nu > 0).
     number : int
-        Number of the operator.
+        Index of the operator in the third array.
     field, image : np.ndarray, shape (2, points)
-        Argument and result.
+        Argument and result of the operator.
     waves : np.ndarray, shape (2, waves sectors, width)
-        Scratch array for the amplitudes and their images.
+        Scratch array for the amplitudes before and after the multiplication.
     """
     to_waves, to_points, every = operators
     matrices = every[number]

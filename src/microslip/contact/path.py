@@ -1,16 +1,16 @@
 """Paths in time: phases, stages of the integrator, and the rigid displacement at each stage.
 
 With the elastic displacement A q, the rigid displacement w and z = A q - w, the contact obeys dz =
--(slip), where Coulomb's law connects slip and traction.  This is a rate-independent differential
-inclusion.  It is integrated by stiffly accurate diagonally implicit Runge-Kutta methods, in which
-every stage is one Coulomb step,
+-(slip), where Coulomb's law relates slip and traction.  This equation is a rate-independent
+differential inclusion.  It is integrated by stiffly accurate diagonally implicit Runge-Kutta
+methods, in which every stage is one Coulomb step,
 
     A q_i + r_i = b_i,     b_i = z + w(t + c_i h) - Sum_{j<i} (a_ij / gamma) r_j,
 
 with r_i = gamma h (slip rate).  The last stage is the end of the step, so that tractions at the end
 of a step are within the friction bound.  Backward Euler has a single stage.  In a theta method, the
-single stage is before the end of the step.  The state is extrapolated to the end, where tractions
-can exceed the bound.
+single stage is before the end of the step.  The state is extrapolated to the end of the step, where
+tractions can exceed the bound.
 """
 
 from __future__ import annotations
@@ -35,14 +35,14 @@ class Integrator:
     Attributes
     ----------
     name : str
-        Name for tables and messages.
+        Name of the method in tables and messages.
     order : int
         Order of convergence.
     times : tuple of float
-        Times c of the stages, as fractions of the step.
+        Times c_i of the stages, as fractions of the step.
     carried : tuple of tuple of float
-        Factors a_ij / gamma for the slips of earlier stages, (stages, stages); zero on and above
-        the diagonal.
+        Factors a_ij / gamma for the slips of earlier stages, as a matrix of shape (stages, stages)
+        with zeros on and above the diagonal.
     end : float
         Time of the last stage divided by the length of the step.  If it is below 1 (methods with a
         single stage), the state at the end of the step is extrapolated, and its tractions can
@@ -58,15 +58,15 @@ class Integrator:
 
 EULER = Integrator("euler", 1, (1.0,), ((0.0,),))
 SDIRK2 = Integrator("sdirk2", 2, (_GAMMA, 1.0), ((0.0, 0.0), ((1.0 - _GAMMA) / _GAMMA, 0.0)))
-"""Default integrator: L-stable, second order, with two stages.  It is far more accurate than
-backward Euler for the same work."""
+"""Default integrator: L-stable, of second order, with two stages.  For the same work, it is far
+more accurate than backward Euler."""
 
 
 def theta_method(theta: float) -> Integrator:
-    """Return the integrator with one stage, at the fraction `theta` of the step.
+    """Return the integrator whose single stage is at the fraction `theta` of the step.
 
-    theta is between 0.5 (midpoint rule, second order) and 1 (backward Euler); the order is 1 for
-    every theta above 0.5.  Raises ValueError for another theta.
+    theta is between 0.5 (midpoint rule, second order) and 1 (backward Euler).  The order is 1 for
+    every theta above 0.5.  Raises ValueError if theta is outside this range.
     """
     if not 0.5 <= theta <= 1.0:
         raise ValueError(f"theta = {theta}: allowed is a number from 0.5 to 1")
@@ -75,7 +75,7 @@ def theta_method(theta: float) -> Integrator:
 
 LONG_STROKE = 16.0
 """Stroke in u_lim above which the number of steps is constant.  For motion along a line, the steps
-are then graded towards the turning points."""
+of longer strokes are graded towards the turning points."""
 STRONGEST_GRADING = 0.8
 """Largest grading of the steps."""
 GRADED_DRIFT = 0.02
@@ -85,8 +85,9 @@ GRADED_STROKE = 2.0
 
 
 def turning_point_grading(drift: float, stroke: float) -> float:
-    """Grading g of the steps, 0 to 0.8: a step at a turning point is (1 - g) times as long as the
-    mean step.
+    """Return the grading g of the steps, from 0 to 0.8.
+
+    A step at a turning point is (1 - g) times as long as the mean step.
 
     If drift and stroke are small, most forward slip of a half period occurs near the turning
     points.  If the stroke is long, the whole contact slides soon after a turning point.
@@ -104,13 +105,14 @@ def turning_point_grading(drift: float, stroke: float) -> float:
 
 
 def turning_point_width(drift: float, stroke: float) -> float:
-    """Half-width, in phase, of the zone of equal steps at a turning point.
+    """Return the half-width, in phase, of the zone of equal steps at a turning point.
 
     Outside the zone, steps are proportional to the distance from the turning point.  For short
     strokes, the width is infinite, and only the grading applies.  The slip reverses within the
-    phase max(1, drift) / stroke, in which the velocity of the oscillation is below u_lim per radian
-    or below the drift.  For strokes above LONG_STROKE, the term LONG_STROKE**2 / stroke shrinks the
-    zone gradually.  At the stroke LONG_STROKE, the longest step is twice the shortest.
+    phase max(1, drift) / stroke, while the velocity of the oscillation is below u_lim per radian or
+    below the drift.  For strokes above LONG_STROKE, the zone shrinks gradually, due to the term
+    LONG_STROKE**2 / stroke.  At the stroke LONG_STROKE, the longest step is twice as long as the
+    shortest.
     """
     if stroke <= LONG_STROKE:
         return math.inf
@@ -124,15 +126,15 @@ class Path:
     Attributes
     ----------
     phase : np.ndarray, shape (steps + 1,)
-        Phase omega t at the ends of the steps.
+        Phase omega t at the start of the path and at the end of every step.
     positions : np.ndarray, shape (steps + 1, 3)
-        Displacement at every phase: forward, lateral, angle.
+        Forward displacement, lateral displacement and angle at every phase.
     stages : np.ndarray, shape (steps, stages, 3)
-        Displacement at every stage: forward, lateral, angle.
+        Forward displacement, lateral displacement and angle at every stage.
     carry : np.ndarray, shape (stages, stages)
-        Factors for the slips of earlier stages, see Integrator.carried.
+        Factors for the slips of earlier stages; see Integrator.carried.
     end : float
-        Time of the last stage divided by the length of the step, see Integrator.
+        Time of the last stage divided by the length of the step; see Integrator.
     depth : np.ndarray or None, shape (1 + steps * stages,)
         Indentation depth divided by the reference depth, at the start and at every stage; None if
         the depth is constant.
@@ -151,22 +153,24 @@ class Path:
 
     @property
     def solves(self) -> int:
-        """Number of stages of a march."""
+        """Number of stages along the whole path."""
         return self.stages.shape[0] * self.stages.shape[1]
 
     @cached_property
     def motion(self) -> np.ndarray:
-        """Displacement at the start and at every stage, (1 + steps stages, 3)."""
+        """Displacement at the start and at every stage, as an array of shape (1 + steps stages,
+        3)."""
         return np.concatenate([self.positions[:1], self.stages.reshape(-1, 3)])
 
     @cached_property
     def weights(self) -> np.ndarray:
-        """Weights of the phases in a time average by the trapezoidal rule, shape (steps + 1,)."""
+        """Weights of the phases in a time average by the trapezoidal rule, of shape (steps +
+        1,)."""
         halves = 0.5 * np.diff(self.phase) / (self.phase[-1] - self.phase[0])
         return np.append(halves, 0.0) + np.append(0.0, halves)
 
     def mean(self, values: np.ndarray) -> np.ndarray:
-        """Time average of values at the phases (first axis)."""
+        """Return the time average of values at the phases (first axis)."""
         return self.weights @ values
 
 
@@ -181,48 +185,49 @@ def make_path(
     Parameters
     ----------
     displacement : callable
-        displacement(phase) -> (forward, lateral, angle).
+        displacement(phase) returns (forward, lateral, angle).
     phase : array_like, shape (steps + 1,)
         Increasing phases.
     integrator : Integrator
         Method that determines the stages.
     depth : callable or None
-        depth(phase) -> indentation depth divided by the reference depth; None if the depth is
-        constant.
+        depth(phase) returns the indentation depth divided by the reference depth; None if the depth
+        is constant.
     """
     phase = np.asarray(phase, dtype=float)
     times = phase[:-1, None] + np.asarray(integrator.times) * np.diff(phase)[:, None]
     stages = np.stack(displacement(times), axis=-1)
     positions = np.stack(displacement(phase), axis=-1)
-    # on the chord of the step, so that the extrapolation ends at the position of the next phase
+    # on the chord of the step, so that the extrapolation leads to the position at the next phase
     stages[:, -1] = positions[:-1] + integrator.end * np.diff(positions, axis=0)
     if integrator.end == 1.0:
         stages[:, -1] = positions[1:]
     depths = None
     if depth is not None:
         if integrator.end == 1.0:
-            times[:, -1] = phase[1:]  # exact to the last bit, because the next march starts there
+            times[:, -1] = phase[1:]  # exact to the last bit, because the next march starts here
         depths = depth(np.concatenate([phase[:1], times.ravel()]))
     return Path(phase, positions, stages, np.array(integrator.carried), integrator.end, depths)
 
 
 def half_period_phases(steps: int, grading: float = 0.0) -> np.ndarray:
-    """Phases from the turning point -pi/2 to the next one, graded towards both, (steps + 1,)."""
+    """Return steps + 1 phases from the turning point -pi/2 to the next one, graded towards both."""
     return phases_between(HALF_PERIOD, steps, grading)
 
 
 def phases_between(
     turns: Sequence[float], steps: int, grading: float = 0.0, width: float = math.inf
 ) -> np.ndarray:
-    """Phases from the first turning point to the last, ((len(turns) - 1) steps + 1,).
+    """Return phases from the first turning point to the last one.
 
-    There are `steps` steps between neighbouring turning points, graded towards them.  For grading
-    and width, see turning_point_grading and turning_point_width.
+    There are `steps` steps between neighbouring turning points, graded towards both, and hence
+    (len(turns) - 1) steps + 1 phases.  For `grading` and `width`, see turning_point_grading and
+    turning_point_width.
     """
     t = np.linspace(-np.pi / 2, np.pi / 2, steps + 1)
     t = t + 0.5 * grading * np.sin(2 * t)
     if width < math.inf:
-        away = 1.0 - np.abs(t) / (np.pi / 2)  # distance from the nearer end, 0 to 1
+        away = 1.0 - np.abs(t) / (np.pi / 2)  # distance from the nearer turning point, 0 to 1
         away = width * np.sinh(away * np.arcsinh(np.pi / 2 / width))
         t = np.sign(t) * (np.pi / 2 - away)
     parts = [np.array(turns[:1])]

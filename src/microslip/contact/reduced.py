@@ -1,30 +1,30 @@
 """Models that neglect elasticity, partial slip or the interaction of points.
 
 rigid: every point slips in the direction of its rigid velocity at every instant.  For a
-translation, it is the rigid slider of Eq 6.  For a rotation, it is the quasi-steady contact of Eqs
-21, 22 and 29.  The model has no memory, so a march only evaluates the forces at each phase.
+translation, this model is the rigid slider of Eq 6; for a rotation, it is the quasi-steady contact
+of Eqs 21, 22 and 29.  The model has no memory, so that only the forces at each phase are evaluated.
 
-slider: one friction element behind an isotropic spring (Benad et al. 2019).  Like the whole
+slider: one friction element in series with an isotropic spring (Benad et al. 2019).  Like the whole
 contact, the element slides once the displacement exceeds u_lim, so the dimensionless groups are the
-same.  The model has no partial slip.  It is accurate and cheap well above the static limit; near
-this limit, its friction is that of Eq 7.
+same.  The model neglects partial slip.  It is cheap, and accurate at velocities well above the
+static limit.  Near this limit, its friction is given by Eq 7.
 
 dahl: the Dahl model in two directions (Tsai and Tseng 2005),
 
     dF/dt = k (dw/dt - |dw/dt| F),        |F| <= 1,
 
 where k is the stiffness of the contact without slip.  The model has the stiffness and the friction
-bound of the contact, but it never sticks.  So any vibration reduces the friction to 0 as the
-velocity tends to 0.  Along a straight segment of the path, the equation has a closed-form solution,
-which is linear in the initial force.
+bound of the contact, but it never sticks.  Therefore, under any vibration its friction tends to 0
+as the velocity tends to 0.  Along a straight segment of the path, the equation has a closed-form
+solution, which is linear in the initial force.
 
-mdr: the method of dimensionality reduction, a row of independent springs with friction.  It is
-exact for tangential loading of an axisymmetric indenter in one direction (Cattaneo and Mindlin).
-For slip in two directions, it is an approximation, because the springs do not interact.  Springs at
--a < x < a have the stiffness G* and the friction bound G* (1 - h(x)) per unit length.  Here h(x) is
-the depth for the contact radius x divided by the reference depth.  So the spring at x begins to
-slide at the displacement (1 - h) u_lim, which is (1 - x^2) u_lim for a sphere.  At d times the
-reference depth, it begins to slide at (d - h) u_lim if d > h.
+mdr: the method of dimensionality reduction, which replaces the contact by a row of independent
+springs with friction.  The model is exact for tangential loading of an axisymmetric indenter in one
+direction (Cattaneo and Mindlin).  For slip in two directions, it is an approximation, because the
+springs do not interact.  Springs at -a < x < a have the stiffness G* and the friction bound G* (1 -
+h(x)) per unit length.  Here h(x) is the depth for the contact radius x divided by the reference
+depth.  So the spring at x begins to slide at the displacement (1 - h) u_lim, which is (1 - x^2)
+u_lim for a sphere.  At d times the reference depth, it begins to slide at (d - h) u_lim if d > h.
 """
 
 from __future__ import annotations
@@ -39,13 +39,13 @@ from microslip.scene.hertz import HERTZ
 from microslip.scene.pressure import Pressure
 
 GRADING = 0.98
-"""Grading of the steps towards the turning points.  At a turning point, the direction of slip
+"""Grading of the time steps towards the turning points.  At a turning point, the direction of slip
 reverses within a phase of about v/y."""
 
 
 class RigidContact(contact.Contact):
-    """Rigid contact with points on rings and at angles on half the disc, or with a single point for
-    a translation (see contact.contact)."""
+    """Rigid contact with points on rings and at angles on one half of the disc, or with a single
+    point for a translation; see contact.Contact."""
 
     sticks = False
     grading = GRADING
@@ -65,12 +65,12 @@ class RigidContact(contact.Contact):
         self.compliance = np.ones_like(self.bound)
 
     def displacement(self, state: np.ndarray) -> np.ndarray:
-        """Elastic displacement of each point, which is 0."""
+        """Return the elastic displacement of each point, which is 0."""
         return np.zeros_like(state)
 
     def mirrored(self, state: np.ndarray) -> np.ndarray:
-        """Return the mirror image of a state under lateral -> -lateral.  This negates lateral
-        tractions."""
+        """Return the mirror image of a state under lateral -> -lateral, with lateral tractions
+        negated."""
         return state[:, ::-1, :] * contact.MIRROR
 
     def march(
@@ -88,12 +88,12 @@ class RigidContact(contact.Contact):
             q = contact.full_slip(self, *contact.rigid_displacement(self, rate))
             forces[k] = contact.forces(self, q)
         if self.angles > 1:
-            forces[:, contact.LATERAL] = 0.0  # the other half of the disc cancels it
+            forces[:, contact.LATERAL] = 0.0  # cancelled by the other half of the disc
         return contact.March(q, forces, 0.0, 0, path.steps + 1)
 
 
 class DahlContact(contact.Contact):
-    """A single bristle (see contact.contact.Contact); states have shape (2, 1, 1)."""
+    """A single bristle; see contact.Contact.  States have the shape (2, 1, 1)."""
 
     sticks = False  # the static limit of friction is 0
     angles = 1
@@ -105,7 +105,7 @@ class DahlContact(contact.Contact):
         self.forward_position = self.lateral_position = np.zeros((1, 1))
 
     def displacement(self, state: np.ndarray) -> np.ndarray:
-        """Deflection of the bristle, shape (2, 1, 1)."""
+        """Return the deflection of the bristle, of shape (2, 1, 1)."""
         return state / self.stiffness
 
     def mirrored(self, state: np.ndarray) -> np.ndarray:
@@ -139,10 +139,11 @@ class DahlContact(contact.Contact):
 
 
 def load_on_springs(pressure: Pressure, edges: np.ndarray, depth: np.ndarray) -> np.ndarray:
-    """Load of the springs within |x| < edges in the method of dimensionality reduction, (k, n + 1).
+    """Return the load of the springs within |x| < edges in the method of dimensionality reduction.
 
-    The spring at x carries G* (d - h(x)) per length at the depth d, where h(x) is the depth for the
-    contact radius x.  The integral of x h' is the load of a contact of this radius.
+    At each of k depths d, the spring at x carries G* (d - h(x)) per unit length, where h(x) is the
+    depth for the contact radius x.  The integral of x h' is the load of a contact of this radius.
+    The result has the shape (k, n + 1).
     """
     inside = np.minimum(edges, pressure.radius(depth)[:, None])
     compression = depth[:, None] - pressure.depth(inside)
@@ -155,8 +156,8 @@ def mdr_contact(
     """Create a contact of `cells` springs on 0 < x < 1 and their mirror images, graded towards
     `focus`.
 
-    `bound` is a force per unit length.  The weight of a spring is its length plus the length of its
-    mirror image.
+    The attribute `bound` of the contact is a force per unit length.  The weight of a spring is the
+    length of the spring and its mirror image.
     """
     edges = np.sin(make_rings(cells, focus).psi)
     length = np.diff(edges)

@@ -1,4 +1,4 @@
-"""Registry of models: which motions each model resolves, and whether it is exact.
+"""Registry of models, with the motions that each model resolves and the cases in which it is exact.
 
 | model     | transverse, nu = 0 | transverse, nu > 0 | bore (oscillating, continuous)     |
 |-----------|--------------------|--------------------|------------------------------------|
@@ -10,12 +10,12 @@
 | polar     | exact              | exact              | exact (rings x angular modes)      |
 | cartesian | exact              | exact              | exact (squares, any outline)       |
 
-The models mdr, radial and polar allow the normal load to change.  For motion along one line at nu =
+The models mdr, radial and polar support a changing normal load.  For motion along one line at nu =
 0, mdr is exact.
 
 An exact model converges to the solution of the contact problem as cells and steps are refined.  An
-approximate model neglects elasticity, partial slip or the interaction of points, whatever its
-resolution.
+approximate model neglects elasticity, partial slip or the interaction of points, which no
+refinement corrects.
 
 Every model has the interface `contact.Contact`.  To add a model, add a file to this folder
 and an entry to `MODELS`.  A model is imported when its first contact is built, because compiled
@@ -37,18 +37,18 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Model:
-    """How a model is built and where it applies.
+    """Functions that build a model and state where it applies.
 
     Attributes
     ----------
     build : callable
-        build(problem, cells, angles, focus) -> Contact.
+        build(problem, cells, angles, focus) returns a Contact.
     refuses : callable
-        refuses(problem) -> reason why the model does not apply, or "".
+        refuses(problem) returns the reason why the model does not apply, or "" if it applies.
     exact : callable
-        exact(problem) -> whether the model converges to the solution of the contact problem.
+        exact(problem) returns whether the model converges to the solution of the contact problem.
     axes : callable
-        axes(problem) -> names of the mesh axes that can be refined: "cells", "angles".
+        axes(problem) returns the names of the mesh axes that can be refined: "cells", "angles".
     drivable : bool
         Whether the contact can be driven by a force or a spring, and whether a body can rest on
         several such contacts.
@@ -62,7 +62,8 @@ class Model:
 
 
 def _refusal(model: str, problem: Problem) -> str:
-    """Reason why a model of the package does not apply to a problem, or ""."""
+    """Return the reason why a model of the package does not apply to a problem, or "" if it
+    applies."""
     motion, pressure = problem.motion, problem.pressure
     rigid_turn = "it has no extension that could rotate" if motion.rotates else ""
     if rigid_turn and model in ("slider", "dahl"):
@@ -105,7 +106,7 @@ def _build(
         from microslip.contact.convolution import MIRROR, TURN
         from microslip.contact.squares import CartesianContact
 
-        # symmetry of the tractions, if the pressure has the same one
+        # symmetry of the tractions if the pressure has the same symmetry
         symmetry = "" if whole else MIRROR if motion.rotates else TURN
         return CartesianContact(cells, problem.poisson, pressure, symmetry)
     from microslip.contact import reduced

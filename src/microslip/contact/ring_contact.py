@@ -1,4 +1,4 @@
-"""Contacts of points on rings, whose march is compiled (march.py)."""
+"""Contacts with points on rings.  Their time integration is compiled (march.py)."""
 
 from __future__ import annotations
 
@@ -22,33 +22,35 @@ from microslip.scene.pressure import Pressure
 
 
 def load_on_rings(pressure: Pressure, edges: np.ndarray, depth: np.ndarray) -> np.ndarray:
-    """Load within each radius of `edges` (n + 1,) at each depth (k,), shape (k, n + 1).
+    """Return the load within each of n + 1 radii, `edges`, at each of k depths.
 
-    The depth is the indentation divided by its value in the reference state, in which the contact
-    radius is a and the load is F_z.
+    A depth is the indentation divided by its value in the reference state, in which the contact
+    radius is a and the load is F_z.  The result has the shape (k, n + 1).
     """
     return pressure.load(edges, pressure.radius(depth)[:, None])
 
 
 def interpolate(x: np.ndarray, nodes: np.ndarray, values: np.ndarray) -> np.ndarray:
-    """Interpolate linearly along the last axis, from values at the nodes to the points x.  Values
-    are constant beyond the nodes."""
+    """Interpolate values at nodes linearly to the points x, along the last axis.
+
+    Beyond the outermost nodes, the values are constant.
+    """
     after = np.clip(np.searchsorted(nodes, x), 1, len(nodes) - 1)
     share = np.clip((x - nodes[after - 1]) / np.diff(nodes)[after - 1], 0.0, 1.0)
     return values[..., after - 1] * (1.0 - share) + values[..., after] * share
 
 
 class Growth(NamedTuple):
-    """Scaling of rings or springs from the reference contact to a contact of another size.
+    """Scaling of rings or springs from the reference contact to a contact of a different size.
 
     Attributes
     ----------
     pressure : pressure.Pressure
         Pressure of an axisymmetric indenter.
     edges : np.ndarray, shape (n + 1,)
-        Edges of the rings or springs in the reference contact, 0 to 1.
+        Edges of the rings or springs in the reference contact, from 0 to 1.
     load_within : callable
-        load_within(pressure, edges, depth) -> load within each edge, (k, n + 1).
+        load_within(pressure, edges, depth) returns the load within each edge, of shape (k, n + 1).
     influence_power, weight_power : int
         Powers of the contact radius to which influence and weights are proportional.
     """
@@ -61,7 +63,8 @@ class Growth(NamedTuple):
 
 
 class RingContact(Contact):
-    """Points on rings and at angles (see contact.Contact); states have shape (2, rows, cells).
+    """Contact with points on rings and at angles; see contact.Contact.  States have the shape (2,
+    rows, cells).
 
     Parameters
     ----------
@@ -75,10 +78,11 @@ class RingContact(Contact):
     stiffness : float
         See contact.Contact.
     waves : tuple of np.ndarray
-        to_waves, to_points and matrices (matrices, columns, columns) of the operator A, see
-        operators.multiply.  The matrices are not transposed, and their columns are not padded.
+        The arrays to_waves, to_points and matrices of the operator A; see operators.multiply.  The
+        third array has the shape (matrices, columns, columns); in contrast to operators.multiply,
+        the matrices are not transposed, and their columns are not padded.
     growth : Growth or None
-        Scaling of the contact with the depth; None if the normal load is constant.
+        Scaling of the contact with the indentation depth; None if the normal load is constant.
     rings : Rings or None
         Mesh of the rings; None for springs.
     """
@@ -115,7 +119,7 @@ class RingContact(Contact):
 
     @cached_property
     def operators(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """The operator A and its resolvents, see march.march."""
+        """The operator A and its resolvents; see march.march."""
         to_waves, to_points, matrices = self._waves
         cells, columns = len(self.bound), matrices.shape[-1]
         penalty = np.tile(best_penalty(self.compliance, cells), columns // cells)
@@ -130,7 +134,7 @@ class RingContact(Contact):
 
     @cached_property
     def points(self) -> tuple[np.ndarray, np.ndarray, float, float, np.ndarray]:
-        """Properties of the points, see march.march."""
+        """Properties of the points; see march.march."""
         weight = self.pack(np.broadcast_to(self.weight, self.shape[1:]))
         penalty = best_penalty(self.compliance, len(self.bound))
         penalty = self.pack(np.broadcast_to(penalty, self.shape[1:]), 1.0)
@@ -138,9 +142,11 @@ class RingContact(Contact):
         return weight, penalty, float(weight.sum()), float(np.count_nonzero(weight)), positions
 
     def pack(self, values: np.ndarray, fill: float = 0.0) -> np.ndarray:
-        """Convert values (..., rows, cells) to fields (..., points) of compiled code.
+        """Convert values of shape (..., rows, cells) to fields of shape (..., points) for compiled
+        code.
 
-        Each row of a field has operators.padded(cells) points; the additional points get `fill`.
+        Each row of a field has operators.padded(cells) points; the additional points are set to
+        `fill`.
         """
         *shape, rows, cells = values.shape
         out = np.full((*shape, rows, padded(cells)), fill)
@@ -148,12 +154,12 @@ class RingContact(Contact):
         return out.reshape(*shape, rows * out.shape[-1])
 
     def unpack(self, fields: np.ndarray) -> np.ndarray:
-        """Undo `pack`."""
+        """Convert fields of compiled code back to values; this method is the inverse of `pack`."""
         _, rows, cells = self.shape
         return fields.reshape(*fields.shape[:-1], rows, -1)[..., :cells]
 
     def displacement(self, state: np.ndarray) -> np.ndarray:
-        """Elastic displacement A q of each point under tractions q, with the shape of the state."""
+        """Return the elastic displacement A q of each point under tractions q."""
         field, to_waves = self.pack(state), self.operators[0]
         image = np.empty_like(field)
         sectors, waves, rows = to_waves.shape
@@ -162,8 +168,11 @@ class RingContact(Contact):
         return self.unpack(image)
 
     def prolong(self, state: np.ndarray) -> np.ndarray | None:
-        """Interpolate tractions from a coarser mesh to the rings of this contact, as fractions of
-        the friction bound.  Returns None for springs and for changing loads."""
+        """Interpolate tractions from a coarser mesh to the rings of this contact.
+
+        The interpolated quantity is the traction as a fraction of the friction bound.  Returns None
+        for springs and for changing loads.
+        """
         if self.rings is None or self._joins is not None:
             return None
         coarse = self.rings.with_count(state.shape[2])
@@ -185,10 +194,10 @@ class RingContact(Contact):
         body: Body | None = None,
         start: np.ndarray | None = None,
     ) -> March:
-        """March along a path; see contact.Contact.
+        """Integrate the contact along a path; see contact.Contact.
 
-        body: driven body on the contact; None if the contact follows the path. start: x and x' of
-        the body at the start of the path, shape (2,); None for zeros.
+        body: driven body on the contact; None if the contact follows the path.  start: values of x
+        and x' of the body at the start of the path, as an array of shape (2,); None for zeros.
         """
         state = np.ascontiguousarray(state, dtype=float)
         drive = NO_DRIVE if body is None else body.along(path, start)
@@ -208,12 +217,14 @@ class RingContact(Contact):
         return March(end, forces, residual, iterations, len(history) - 1, history, moves)
 
     def energy(self, change: np.ndarray) -> float:
-        """Twice the elastic energy of tractions, <q, A q>."""
+        """Return twice the elastic energy of tractions, <q, A q>."""
         return strain_energy(self.operators, self.points[0], np.ascontiguousarray(change))
 
     def _loading(self, path: Path) -> tuple[np.ndarray, np.ndarray]:
-        """Motion and friction bounds of a path, for compiled code.  Those of the last path are
-        stored."""
+        """Return the motion and the friction bounds of a path for compiled code.
+
+        The values for the most recent path are cached.
+        """
         last = vars(self).get("_last")
         if last is None or last[0] is not path:
             bounds = self.bound[None] if path.depth is None else self.bounds_along(path)
@@ -228,7 +239,7 @@ class RingContact(Contact):
         Parameters
         ----------
         deepest : float
-            Largest depth (see load_on_rings), above 0.
+            Largest depth in the period (see load_on_rings), above 0.
         start : float
             Depth at the start of the period, for which `bound` is computed.
         """
@@ -250,25 +261,25 @@ class RingContact(Contact):
         return out
 
     def _effective_radii(self) -> np.ndarray:
-        """Effective radii, (cells + 1,).  Without slip, a contact whose radius is entry k has the
-        same stiffness as the first k rings.
+        """Effective radii, as an array of shape (cells + 1,).
 
-        An effective radius is a little smaller than the outer edge of the rings.  A ring joins the
-        contact when the contact radius reaches the mean of the effective radii without and with
-        this ring.  A growing contact then has the correct stiffness on average.  If the ring joined
-        as soon as the contact reached the ring's inner edge, it would stick too early.  This would
-        be an error of first order.
+        Without slip, a contact whose radius is entry k has the same stiffness as the first k rings.
+        An effective radius is slightly smaller than the outer edge of the k rings.  A ring joins
+        the contact when the contact radius reaches the mean of the effective radii without and with
+        this ring.  The stiffness of a growing contact is then correct on average.  If the ring
+        joined as soon as the contact reached the ring's inner edge, it would stick too early, which
+        would cause an error of first order.
         """
         weighted = self.area[:, None] * self.influence
         part = np.linalg.solve(np.linalg.cholesky(0.5 * (weighted + weighted.T)), self.area)
-        # w^T B^-1 w of the first k rings, B: weighted influence
+        # w^T B^-1 w of the first k rings, where B is the weighted influence
         return np.concatenate([[0.0], np.cumsum(part**2) * self.radius / self.stiffness])
 
     def bounds(self, depths: np.ndarray, edge: np.ndarray | None = None) -> np.ndarray:
-        """Mean friction bound of each ring at each depth, shape (len(depths), cells).
+        """Return the mean friction bound of each ring at each depth, of shape (len(depths), cells).
 
-        edge: radii (len(depths),) inside which rings are in contact; None for the contact radii.
-        The load outside these rings is added to the outermost ring.
+        edge: for each depth, the radius inside which rings are in contact; None for the contact
+        radii.  The load outside these rings is added to the outermost ring in contact.
         """
         growth = self.growth
         load_within = growth.load_within(growth.pressure, growth.edges, depths)
@@ -278,7 +289,9 @@ class RingContact(Contact):
         return np.maximum(np.diff(load_within, axis=1), 0.0) / self.area
 
     def bounds_along(self, path: Path) -> np.ndarray:
-        """Friction bounds at the start and at every stage of a path, (1 + steps stages, cells).
+        """Return the friction bounds at the start and at every stage of a path.
+
+        The result has the shape (1 + steps stages, cells).
 
         Rings join or leave the contact only at the last stage of a step, because the integrator
         would carry over a jump from an earlier stage to the later stages.  A ring that joins at the
@@ -291,17 +304,17 @@ class RingContact(Contact):
         ends = self.growth.pressure.radius(path.depth[::stages])
         shift = 0.5 - 1.0 / (1.0 + path.carry[-1].sum())
         radii = ends.copy()
-        radii[:-1] += shift * np.diff(ends)  # not the last one, where the next march begins
+        radii[:-1] += shift * np.diff(ends)  # except at the end, where the next march begins
         edge = np.repeat(radii[:-1, None], stages, axis=1)
         edge[:, -1] = radii[1:]
         return self.bounds(path.depth, np.append(radii[:1], edge))
 
 
 class RadialContact(RingContact):
-    """Contact of rings; states have shape (2, 1, cells).
+    """Contact of rings without angular points; states have the shape (2, 1, cells).
 
-    It is exact for translations at nu = 0, because the tractions then depend on the radius alone.
-    Use `resolved` to create the contact of an elastic half-space.
+    The model is exact for translations at nu = 0, because the tractions then depend on the radius
+    alone.  `resolved` creates the contact of an elastic half-space.
 
     Parameters
     ----------
@@ -324,7 +337,7 @@ class RadialContact(RingContact):
     ):
         weighted = weight[:, None] * influence
         weighted = 0.5 * (weighted + weighted.T)
-        if stiffness is None:  # force for a unit displacement of all rings
+        if stiffness is None:  # computed as the force for a unit displacement of all rings
             stiffness = float(weight @ np.linalg.solve(weighted, weight))
         one, positions = np.ones((2, 1, 1)), np.zeros((2, 1, len(bound)))
         waves = one, one, (weighted / weight[:, None])[None]

@@ -1,8 +1,8 @@
 """Mesh of rings of a circular contact: edges, areas, friction bounds and lever arms.
 
-Edges are r = sin(psi) with equidistant psi, unless the mesh is graded towards a focus.  This
-refines the mesh at the edge of the contact, where smooth pressures fall like a square root.
-Contacts with a hole are refined at the edge of the hole in the same way.
+The edges of the rings are r = sin(psi) with equidistant psi, unless the mesh is graded towards a
+focus.  This choice refines the mesh at the edge of the contact, where smooth pressures decrease
+like a square root.  Contacts with a hole are refined at the edge of the hole in the same way.
 """
 
 from __future__ import annotations
@@ -25,9 +25,9 @@ class Focus(NamedTuple):
     Attributes
     ----------
     radii : tuple of float
-        Increasing radii divided by the contact radius, 0 to 1.
+        Increasing radii divided by the contact radius, from 0 to 1.
     strength : float
-        Strength of the grading: a ring at one of the radii is (1 - strength) times as wide as the
+        Strength of the grading.  A ring at one of the radii is (1 - strength) times as wide as the
         mean ring.
     """
 
@@ -37,7 +37,7 @@ class Focus(NamedTuple):
 
 @dataclass(frozen=True, eq=False)
 class Rings:
-    """A mesh of n rings up to psi = pi/2.
+    """A mesh of n rings that extends to psi = pi/2.
 
     Attributes
     ----------
@@ -48,8 +48,8 @@ class Rings:
     bound : np.ndarray, shape (n,)
         Mean friction bound of each ring; area @ bound is 1.
     radius : np.ndarray, shape (n,)
-        Mean lever arm of a traction with the shape of the friction bound.  It makes the torque at
-        full slip exact.
+        Mean lever arm of a traction proportional to the friction bound.  With this lever arm, the
+        torque at full slip is exact.
     focus, pressure
         See make_rings.
     """
@@ -62,7 +62,7 @@ class Rings:
     pressure: Pressure
 
     def with_count(self, count: int) -> Rings:
-        """Mesh of another number of rings for the same focus and pressure."""
+        """Return a mesh with another number of rings for the same focus and pressure."""
         return make_rings(count, self.focus, self.pressure)
 
 
@@ -70,9 +70,9 @@ class Rings:
 def make_rings(count: int, focus: Focus | float | None = None, pressure: Pressure = HERTZ) -> Rings:
     """Create a mesh of rings that is graded towards a focus.
 
-    Each radius of the focus is an edge between rings.  The traction has a kink at the stick radius,
-    and a ring across the kink would reduce the order of accuracy by one.  Calls with equal
-    arguments return the same object, which must not be modified.
+    Each radius of the focus becomes an edge between two rings.  The traction has a kink at the
+    stick radius, and a ring that contains the kink would reduce the order of accuracy by one.
+    Calls with equal arguments return the same object, which must not be modified.
 
     Parameters
     ----------
@@ -94,7 +94,7 @@ def make_rings(count: int, focus: Focus | float | None = None, pressure: Pressur
     if focus is None:
         return _of_edges(np.linspace(0.0, np.pi / 2, count + 1), focus, pressure)
     radii, strength = _as_focus(focus)
-    # rings begin at the edge of a hole, if there is one
+    # the first ring begins at the edge of the hole, if there is one
     hole = pressure.inner**2
     inside = np.sqrt(np.maximum(np.square(radii) - hole, 0.0) / (1.0 - hole))
     if len(radii) > 1 and not 0.0 < inside[0] <= inside[-1] < 1.0:
@@ -105,8 +105,10 @@ def make_rings(count: int, focus: Focus | float | None = None, pressure: Pressur
 
 
 def _of_edges(psi: np.ndarray, focus: Focus | float | None, pressure: Pressure) -> Rings:
-    """Create the Rings from edges for a contact without a hole.  If the contact has a hole, the
-    edges are mapped to the ring outside the hole."""
+    """Create Rings from the edges for a contact without a hole.
+
+    If the contact has a hole, the edges are mapped to the annulus outside the hole.
+    """
     if pressure.inner > 0.0:
         hole = pressure.inner**2
         psi = np.arcsin(np.sqrt(hole + (1.0 - hole) * np.sin(psi) ** 2))
@@ -115,7 +117,7 @@ def _of_edges(psi: np.ndarray, focus: Focus | float | None, pressure: Pressure) 
 
 
 def _as_focus(focus: Focus | float) -> Focus:
-    """Convert a radius to a Focus and check it.  Raises InputError if it is invalid."""
+    """Convert a radius to a Focus, and check the Focus.  Raises InputError if it is invalid."""
     focus = focus if isinstance(focus, Focus) else Focus((focus,))
     radii = focus.radii
     ordered = radii and all(one < other for one, other in zip(radii, radii[1:], strict=False))
@@ -127,8 +129,9 @@ def _as_focus(focus: Focus | float) -> Focus:
 
 
 def _focused(count: int, places: np.ndarray, strength: float) -> np.ndarray:
-    """Edges (count + 1,) as angles psi, graded towards `places`.  Each place is an edge between two
-    rings. The rings are widest half-way between two places.
+    """Return count + 1 edges as angles psi, graded towards `places`.
+
+    Each place is an edge between two rings.  The rings are widest half-way between two places.
     """
     edge = np.pi / 2
 
@@ -146,7 +149,7 @@ def _focused(count: int, places: np.ndarray, strength: float) -> np.ndarray:
     for piece, rings in enumerate(counts):
         start, width = ends[piece], ends[piece + 1] - ends[piece]
         t = np.linspace(0.0, 1.0, rings + 1)
-        # every second piece ends at a place, and the others begin there
+        # every second piece ends at a place, and the other pieces begin at one
         share = 1.0 - spread(1.0 - t) if piece % 2 == 0 else spread(t)
         psi += list((start + width * share)[1:])
     psi[-1] = edge
@@ -154,8 +157,11 @@ def _focused(count: int, places: np.ndarray, strength: float) -> np.ndarray:
 
 
 def _shared_out(count: int, ends: Sequence[float]) -> list[int]:
-    """Return the number of rings inside each end, approximately proportional to psi.  There are at
-    least a few rings on both sides of each place."""
+    """Return the number of rings up to each of the angles `ends`, approximately proportional to
+    psi.
+
+    There are at least a few rings on both sides of each place.
+    """
     least = max(count // (2 * len(ends) - 2), 1)
     before = [int(round(count * end / ends[-1])) for end in ends]
     for k in range(1, len(ends)):

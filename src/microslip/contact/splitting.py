@@ -1,23 +1,26 @@
-"""Douglas-Rachford splitting of a Coulomb step of a contact on rings, in compiled code.
+"""Douglas-Rachford splitting for the Coulomb steps of a contact on rings, in compiled code.
 
 The unknowns of a step are tractions q with |q| <= g.  The slip b - A q occurs only where |q| = g,
 in the direction of q.  A driven body adds one unknown, its displacement d, which is added to b, and
 one equation, stiffness d + forward force = load.
 
-The state is one field y.  With the projection P on the discs |q| <= g and the penalty s,
+The state of the iteration is a single field y.  With the projection P onto the discs |q| <= g and
+the penalty s, one iteration is
 
-    q = P(y),    t = 2 q - y,    v = (A + s)^-1 (b + s t),    y <- y + RELAXATION (v - q),
+    q = P(y),    t = 2 q - y,    v = (A + s)^-1 (b + s t),    y <- y + RELAXATION (v - q).
 
-until the force Sum weight |v - q| is within the tolerance.  The slip is b - A v = s (v - t), so A
-itself is never applied.  The iteration converges for any relaxation below 2 (Lions and Mercier
-1979; Eckstein and Bertsekas 1992).  The response of v to the displacement d of a driven body is d
-times a constant field, so the equation of the body is solved by a division.  After every
-BETWEEN_BALANCES iterations, `rebalance` solves the equation of the body for the tractions P(y).
+The iteration ends when the force Sum weight |v - q| is within the tolerance.  The slip is b - A v =
+s (v - t), so A itself is never applied.  The iteration converges for any relaxation factor below 2
+(Lions and Mercier 1979; Eckstein and Bertsekas 1992).  The response of v to the displacement d of a
+driven body is d times a constant field, so the equation of the body is solved by a division.  After
+every BETWEEN_BALANCES iterations, `rebalance` solves the equation of the body for the tractions
+P(y).
 
 A small penalty is best for points that stick, and a large penalty is best for points that slip.
-Let D be the derivative of the projection, averaged over the points and both directions.  It is 1
-for a point that sticks, and |q| / (2 |y|) for a point that slips.  The best penalty is about
-(1 - D) / D times the best penalty for D = 1/2.  Each step uses the nearest of PENALTIES.
+Let D be the derivative of the projection, averaged over the points and both directions.  A point
+that sticks contributes 1, and a point that slips contributes |q| / (2 |y|).  The best penalty is
+about (1 - D) / D times the best penalty for D = 1/2.  Each step uses the nearest value in
+PENALTIES.
 """
 
 from __future__ import annotations
@@ -33,22 +36,23 @@ MOST_ITERATIONS = 4000
 RELAXATION = 1.7
 """Relaxation factor; 1.5 to 1.8 is usual (Eckstein and Bertsekas 1992)."""
 BETWEEN_BALANCES = 32
-"""Number of iterations in a driven step between calls of `rebalance`.  It is above the mean numbers
-of iterations printed by benchmarks/splitting.py, so `rebalance` is rarely called."""
+"""Number of iterations between calls of `rebalance` in a step with a driven body.  The mean numbers
+of iterations per step printed by benchmarks/splitting.py are lower, so that `rebalance` is rarely
+called."""
 FIRST_ADVANCE, LONGEST_ADVANCE, HALVINGS = 1e-3, 1e6, 40
 """Parameters of the search for the displacement at which the forces balance: first and largest
-trial in u_lim (each trial is four times the previous one), and number of bisections."""
+trial value in u_lim (each trial value is four times the previous one), and number of bisections."""
 BALANCED_RINGS = 12
-"""Number of rings at which the best penalty equals a ring's self-influence, if half of the points
-stick.  Calibrated by benchmarks/splitting.py."""
+"""Number of rings for which the best penalty equals the self-influence of a ring if half of the
+points stick.  The value is calibrated by benchmarks/splitting.py."""
 LEVELS = 4
-"""Number of penalties for which a resolvent is available."""
+"""Number of penalties for which a resolvent is computed."""
 PENALTIES = 2.0 ** (np.arange(LEVELS) - 0.5 * (LEVELS - 1))
-"""Possible penalties of a step divided by `best_penalty`, from 1/sqrt(8) to sqrt(8)."""
+"""Possible penalties of a step, divided by `best_penalty`, from 1/sqrt(8) to sqrt(8)."""
 BETWEEN_LOOKS = 2e5
-"""Approximate number of point updates between two calls of `interrupted`.  It corresponds to a few
-hundredths of a second.  A call waits for the other threads of the interpreter, so calls should be
-rare."""
+"""Approximate number of point updates between two calls of `interrupted`, which corresponds to a
+few hundredths of a second.  A call waits for the other threads of the interpreter, so calls should
+be rare."""
 
 _acquire = types.ExternalFunction("PyGILState_Ensure", types.intc())
 _release = types.ExternalFunction("PyGILState_Release", types.void(types.intc))
@@ -57,10 +61,12 @@ _occurred = types.ExternalFunction("PyOS_InterruptOccurred", types.intc())
 
 @kernel
 def interrupted() -> bool:
-    """Whether Ctrl-C was pressed since the last call; always false except in the main thread.
+    """Return whether Ctrl-C was pressed since the last call; the result is always false except in
+    the main thread.
 
-    Python handles signals only between its own instructions, and a march can take minutes.  After
-    an interrupt, the march ends early, and the calling Python code raises the signal again.
+    Python handles signals only between its own instructions, and a time integration in compiled
+    code can take minutes.  After an interrupt, the time integration ends early, and the calling
+    Python code raises the signal again.
     """
     state = _acquire()
     occurred = _occurred()
@@ -69,7 +75,7 @@ def interrupted() -> bool:
 
 
 def best_penalty(scale: np.ndarray, rings: int) -> np.ndarray:
-    """Best penalty of each ring if half of the points stick.
+    """Return the best penalty for each ring if half of the points stick.
 
     The splitting converges fastest if the penalty is the geometric mean of the smallest and the
     largest eigenvalue of A.  The smallest eigenvalue belongs to a narrow ring, and the largest
@@ -103,8 +109,10 @@ def respond(
     response: np.ndarray,
     slope: np.ndarray,
 ) -> None:
-    """For each penalty, compute the tractions v for d = 1, and their forward force.  `unit` is a
-    scratch field."""
+    """Compute the tractions v for d = 1, and their forward force, for each penalty.
+
+    `unit` is a scratch field.
+    """
     for i in range(unit.shape[1]):
         unit[0, i], unit[1, i] = 1.0, 0.0
     for level in range(len(slope)):
@@ -114,8 +122,10 @@ def respond(
 
 @kernel
 def squared_distance(weight: np.ndarray, a: np.ndarray, b: np.ndarray) -> float:
-    """Return Sum weight |a - b|^2 for two fields a and b, whose number of points is a multiple of
-    four."""
+    """Return Sum weight |a - b|^2 for two fields a and b.
+
+    The number of points must be a multiple of four.
+    """
     total = ZERO
     for at in range(0, len(weight), 4):
         w, p, q, r, s = (
@@ -136,8 +146,10 @@ def squared_distance(weight: np.ndarray, a: np.ndarray, b: np.ndarray) -> float:
 
 @kernel
 def stuck_share(y: np.ndarray, bound: np.ndarray, q: np.ndarray, factors: np.ndarray) -> float:
-    """Fill q = P(y), and return D (see the module) times the number of points that have a bound.
-    `factors` is a scratch array."""
+    """Set q to P(y), and return D (see the module) times the number of points with a bound above 0.
+
+    `factors` is a scratch array.
+    """
     for i in range(len(bound)):
         f = shrink(y[0, i], y[1, i], bound[i])
         q[0, i], q[1, i], factors[i] = f * y[0, i], f * y[1, i], f
@@ -156,10 +168,10 @@ def imbalance(
     stiffness: float,
     advance: float,
 ) -> float:
-    """Residual of the equation of the body after an advance, which is added to the slip of points
-    that slip.
+    """Return the residual of the equation of the body after an additional displacement, `advance`.
 
-    excess: residual without the forward force, for no advance.
+    The advance is added to the slip of the points that slip.  excess: residual without the forward
+    force if the advance is 0.
     """
     weight, penalty, _, _, _ = points
     force = excess + stiffness * advance
@@ -180,8 +192,8 @@ def rebalance(
 ) -> None:
     """Shift y, in place, to the displacement at which the forces on the body balance.
 
-    The splitting alone converges slowly if nearly all points slip and the drive is soft. If the
-    shift would exceed LONGEST_ADVANCE, y does not change.
+    The splitting alone converges slowly if nearly all points slip and the drive is soft.  If the
+    shift would exceed LONGEST_ADVANCE, y remains unchanged.
     """
     residual = imbalance(points, bound, y, excess, stiffness, 0.0)
     if not abs(residual) > tolerance:
@@ -208,20 +220,23 @@ def solve_step(operators: tuple, points: tuple, step: tuple, body: tuple, scratc
     Parameters
     ----------
     operators : tuple
-        See operators.multiply; the operators are A and the resolvents of PENALTIES.
+        See operators.multiply.  The operators are A and the resolvents for PENALTIES.
     points : tuple
-        Area of each point, and penalty for a contact in which half of the points stick, (points,);
-        sum of the areas; number of points that have an area; positions, not used here.
+        Area of each point, of shape (points,); penalty of each point if half of the points stick,
+        of shape (points,); sum of the areas; number of points with an area above 0; positions,
+        which are not used here.
     step : tuple
-        Imposed displacement b for d = 0, (2, points); friction bound, (points,); largest allowed
-        residual, as a force divided by mu F_z.
+        Imposed displacement b for d = 0, of shape (2, points); friction bound, of shape (points,);
+        largest allowed residual, as a force divided by mu F_z.
     body : tuple
-        Whether there is a driven body; stiffness and load in its equation; results of `respond`.
+        Whether there is a driven body; stiffness and load in the equation of the body; results of
+        `respond`.
     scratch : tuple
-        fields (5 or more, 2, points): the unknown y, which is the initial guess on entry and
-        belongs to the penalty in `points` on entry and return; the tractions; three scratch fields.
-        The slip, (2, points), which is filled.  The scratch array of operators.multiply.  The
-        number of point updates since the last look for an interrupt, (1,).
+        Four arrays.  The first has the shape (5 or more, 2, points) and contains the unknown y,
+        which is the initial guess on entry and refers to the penalty in `points` on entry and on
+        return; the tractions; and three scratch fields.  The second is the slip, of shape (2,
+        points), which is an output.  The third is the scratch array of operators.multiply.  The
+        fourth, of shape (1,), is the number of point updates since the last check for an interrupt.
 
     Returns
     -------
@@ -240,7 +255,7 @@ def solve_step(operators: tuple, points: tuple, step: tuple, body: tuple, scratc
     iterations, residual, displacement = 0, np.inf, 0.0
     while True:
         stuck = stuck_share(guess, bound, q, right[0])
-        level, ratio = 0, 0.5  # the penalty nearest to (1 - D) / D
+        level, ratio = 0, 0.5  # the available penalty nearest to (1 - D) / D
         while level < LEVELS - 1 and count - stuck > ratio * stuck:
             level, ratio = level + 1, 2.0 * ratio
         factor = PENALTIES[level]
@@ -249,7 +264,7 @@ def solve_step(operators: tuple, points: tuple, step: tuple, body: tuple, scratc
                 y[c, i] = q[c, i] + (guess[c, i] - q[c, i]) / factor
                 right[c, i] = b[c, i] + factor * penalty[i] * (2.0 * q[c, i] - y[c, i])
         while True:
-            if rings:  # without the call of multiply, which takes a tenth of the time
+            if rings:  # without a call of multiply, which would take a tenth of the time
                 multiply_two(matrices[1 + level, 0], right, v)
             else:
                 multiply(operators, 1 + level, right, v, waves)
@@ -259,7 +274,7 @@ def solve_step(operators: tuple, points: tuple, step: tuple, body: tuple, scratc
                     for i in range(size):
                         v[c, i] += displacement * response[level, c, i]
             iterations += 1
-            residual = squared_distance(weight, v, q)  # bounds the force by Schwarz's inequality
+            residual = squared_distance(weight, v, q)  # bounds the force (Schwarz's inequality)
             solved = not residual > accepted or iterations >= MOST_ITERATIONS
             if solved or (driven and iterations % BETWEEN_BALANCES == 0):
                 break

@@ -1,7 +1,8 @@
 """Contact of equal rectangular cells with a compiled convolution, for any nu and any outline.
 
-The cells cover the rectangle around the contact, with the same number along both axes.  For a round
-contact they are squares, as in the paper, and this model is the reference for the other models.
+The cells cover the rectangle around the contact, with the same number of cells along both axes.
+For a round contact, the cells are squares, as in the paper, and this model is the reference for the
+other models.
 
 Tractions have the symmetries that the rigid displacement, the pressure and the influence operator
 have in common.  Of all cells related by these symmetries, only one is resolved (see `_images`).
@@ -32,34 +33,34 @@ from microslip.scene.pressure import Pressure
 MOST_DISPLACEMENTS = 60
 """Largest number of trial displacements of a driven body in each step."""
 FLATTEST = 1e-3
-"""Smallest slope of a secant, divided by the largest possible slope."""
+"""Smallest slope of a secant that is used, divided by the largest possible slope."""
 INNER = 0.3
-"""Allowed residual at a trial displacement, divided by the tolerance of the driven step."""
+"""Allowed residual at each trial displacement, divided by the tolerance of the step."""
 ROUNDED = 1e-10
-"""Two loads count as equal if their difference divided by the largest load is below this value.
-For a sphere on 192 x 192 cells, loads differ from their images by less than 1/20 of this
-value."""
+"""Two loads are treated as equal if their difference divided by the largest load is below this
+value.  For a sphere on 192 x 192 cells, the loads of symmetric cells differ by less than 1/20 of
+this value."""
 
 
 class CartesianContact(Contact):
-    """Contact of equal cells over the rectangle around the contact (see contact.Contact).
+    """Contact of equal cells that cover the rectangle around the contact; see contact.Contact.
 
     States have the shape (2, cells, cells), with the forward coordinate along axis 1 and the
-    lateral one along axis 2.  With symmetry, axis 1 or both axes have half the length.  A cell cut
-    by the edge of the contact carries only the load inside the contact.
+    lateral coordinate along axis 2.  If symmetry is used, axis 1 or both of these axes have half
+    the length.  A cell cut by the edge of the contact carries only the load inside the contact.
 
     Parameters
     ----------
     cells : int
-        Number of cells along a side.
+        Number of cells along each side.
     poisson : float
         Poisson's ratio.
     pressure : pressure.Pressure
         Any pressure.
     symmetry : str
         Symmetry of the motion: convolution.TURN for translations, convolution.MIRROR for rotations
-        without a lateral displacement, "" for other motions.  It is used only if the pressure is
-        symmetric as well.
+        without a lateral displacement, "" for other motions.  The symmetry is used only if the
+        pressure is symmetric as well.
 
     Attributes
     ----------
@@ -109,11 +110,11 @@ class CartesianContact(Contact):
         )
         self.compliance = np.full(self.bound.shape, self.scale)
         self.resultants = np.ones(3)
-        if self.images > 1:  # the images of the cells cancel this force
+        if self.images > 1:  # this force is cancelled by the images of the cells
             self.resultants[LATERAL if symmetry == convolution.MIRROR else TORQUE] = 0.0
 
     def displacement(self, state: np.ndarray) -> np.ndarray:
-        """Elastic displacement A q of each cell under tractions q, with the shape of the state."""
+        """Return the elastic displacement A q of each cell under tractions q."""
         out = np.empty_like(state)
         convolution.convolve(
             self.convolution,
@@ -138,14 +139,14 @@ class CartesianContact(Contact):
         body: Body | None = None,
         start: np.ndarray | None = None,
     ) -> March:
-        """March along a path; see contact.Contact."""
+        """Integrate the contact along a path; see contact.Contact."""
         solver = DescentSolver(self, tolerance)
         march = march_by_steps(self, solver, path, state, previous, body=body, start=start)
         return replace(march, forces=march.forces * self.resultants)
 
 
 class DescentSolver:
-    """Solver of the Coulomb steps of a march on squares.
+    """Solver of the Coulomb steps of a contact of equal cells.
 
     Parameters
     ----------
@@ -154,7 +155,7 @@ class DescentSolver:
     tolerance : float
         Largest allowed residual of a step, as a force divided by mu F_z.
     patience : int or None
-        See convolution.PATIENCE, the default.
+        Replaces convolution.PATIENCE; None to use this default.
     """
 
     def __init__(self, contact: CartesianContact, tolerance: float, patience: int | None = None):
@@ -167,8 +168,8 @@ class DescentSolver:
     def solve(self, b: np.ndarray, guess: np.ndarray, share: float = 1.0) -> Step:
         """Solve a step for the imposed displacement b.
 
-        share: factor of the tolerance.  Returns tractions, slip, number of iterations, residual,
-        and the displacement of a driven body, which is 0.
+        share: factor by which the tolerance is multiplied.  Returns the tractions, the slip, the
+        number of iterations, the residual, and the displacement of a driven body, which is 0.
         """
         contact, q, slip = self.contact, np.array(guess), np.empty_like(b)
         while True:
@@ -184,10 +185,10 @@ class DescentSolver:
             signal.raise_signal(signal.SIGINT)
 
     def balance(self, b: np.ndarray, guess: np.ndarray, stiffness: float, load: float) -> Step:
-        """Solve a step of a driven body, see march.py.  Returns the same values as `solve`.
+        """Solve a step of a driven body; see march.py.  Returns the same values as `solve`.
 
-        The secant method finds the displacement d at which the forces balance.  The forward force
-        never decreases as d increases, and its slope is at most the stiffness of the contact.
+        The displacement d at which the forces balance is found by the secant method.  The forward
+        force never decreases as d increases, and its slope is at most the stiffness of the contact.
         """
         steepest = stiffness + self.contact.stiffness
         place, slope, low, high, before, last_gap = 0.0, steepest, -np.inf, np.inf, np.nan, np.nan
@@ -211,11 +212,11 @@ class DescentSolver:
 
 
 def _images(loads: np.ndarray, symmetry: str, poisson: float) -> int:
-    """Number of cells of the whole contact for each resolved cell: 1, 2 or 4.
+    """Return the number of cells of the whole contact for each resolved cell: 1, 2 or 4.
 
-    Displacements of a translation are symmetric under a half turn, and those of a rotation under a
-    reflection across the lateral axis.  For translations at nu = 0, forward and lateral
-    displacements are independent, and each is even along both axes.
+    Displacements in a translation are symmetric under a half turn, and displacements in a rotation
+    are symmetric under a reflection across the lateral axis.  For translations at nu = 0, forward
+    and lateral displacements are independent, and each is even along both axes.
     """
     if len(loads) % 2 or not symmetry:
         return 1
@@ -228,12 +229,13 @@ def _images(loads: np.ndarray, symmetry: str, poisson: float) -> int:
 
 
 def _is_like(loads: np.ndarray, image: np.ndarray) -> bool:
-    """Whether two fields are equal up to rounding errors."""
+    """Return whether two fields are equal up to rounding errors."""
     return bool(np.abs(image - loads).max() <= ROUNDED * loads.max())
 
 
 def _mean_of_images(loads: np.ndarray, images: int, symmetry: str) -> np.ndarray:
-    """Loads of the resolved cells, averaged over their images to remove rounding errors."""
+    """Return the loads of the resolved cells, averaged over the images to remove rounding
+    errors."""
     if images == 1:
         return loads
     ahead = len(loads) // 2
