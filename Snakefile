@@ -3,9 +3,10 @@
 #   config.yaml --> solve_batch, solve_map --> results/batches --> make_dataset --> draw_figure
 #                                                            data/NAME.HASH.nc, .png in results
 #
-# The name of a file contains a hash of all that it is made of, so a file that exists is right.  The
-# rules apply to missing files only: neither dates nor .snakemake matter.  Plain names, such as
-# results/bore.nc, are links.  CONTRIBUTING.md follows one point along this way.
+# The name of a file contains a hash of everything that it is made from, so an existing file is up
+# to date.  Rules therefore run only for missing files, whatever the dates of files and the contents
+# of .snakemake are.  Plain names, such as results/bore.nc, are links.  CONTRIBUTING.md follows one
+# point through this workflow.
 
 from snakemake.utils import min_version
 
@@ -27,7 +28,7 @@ rule all:
         everything,
 
 
-# Makes all missing datasets and figures in one process, which imports the libraries once.
+# Make all missing datasets and figures in one process, so that the libraries are imported once.
 rule make_products:
     input:
         inputs_of(*PLAN.products),
@@ -39,7 +40,7 @@ rule make_products:
         marker="[0-9a-f]+",
     conda:
         "workflow/envs/microslip.yaml"
-    # Memory and time on a cluster, including Snakemake: see docs/how-to/cluster.md.
+    # Memory and time on a cluster, including those of Snakemake (see docs/how-to/cluster.md).
     resources:
         mem_mb=lambda wildcards, attempt: 1000 * attempt,
         runtime=lambda wildcards, attempt: 30 * attempt,
@@ -49,11 +50,11 @@ rule make_products:
         "workflow/scripts/make.py"
 
 
-# The results folder, with the prefix of a Snakemake module.
+# State of the results folder, whose path includes the prefix of a Snakemake module.
 STATE = look(os.path.dirname(os.path.dirname(str(rules.make_products.output[0]))))
 
 
-# Each dataset and each figure is a target.
+# Make each dataset and each figure a target.
 for name in PLAN.products:
 
     rule:
@@ -63,7 +64,7 @@ for name in PLAN.products:
             files_of(name),
 
 
-# Solves a batch of points.
+# Solve a batch of points.
 rule solve_batch:
     output:
         in_place(f"{RESULTS}/batches/{{folder}}/{{batch}}.jsonl"),
@@ -83,7 +84,7 @@ rule solve_batch:
         "workflow/scripts/solve.py"
 
 
-# Solves all points of a certified map in several processes.
+# Solve all points of a certified map in several processes.
 use rule solve_batch as solve_map with:
     wildcard_constraints:
         folder="[^/.]+",
@@ -135,7 +136,7 @@ use rule make_dataset as draw_figure with:
         stem=any_of(STATE.stems_of("figure")),
 
 
-# Interactive page of maps, with stored periods of their points.
+# Make an interactive page of maps, with stored periods of points.
 use rule make_dataset as make_page with:
     output:
         report(
@@ -150,7 +151,7 @@ use rule make_dataset as make_page with:
         stem=any_of(STATE.stems_of("explorer")),
 
 
-# A plain name, such as results/bore.nc, as a target.
+# Make each plain name, such as results/bore.nc, a target.
 rule link_file:
     input:
         unpack(lambda wildcards: inputs_of_link(wildcards.plain)),
@@ -165,7 +166,7 @@ rule link_file:
         "workflow/envs/microslip.yaml"
     params:
         to=lambda wildcards, input, output: os.path.relpath(
-            input.file, os.path.dirname(output[0])  # a module adds its prefix to both
+            input.file, os.path.dirname(output[0])  # a module adds its prefix to both paths
         ),
     shell:
         "(ln -s {params.to:q} {output:q} || cp {input.file:q} {output:q}) 2> {log:q}"

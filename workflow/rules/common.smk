@@ -1,4 +1,4 @@
-# Shared by all rules: the package, the configuration, its plan, and what the results folder lacks.
+# Set up what all rules share: the package, the configuration, the plan, and the missing results.
 
 import os
 import re
@@ -7,22 +7,23 @@ import sys
 from contextlib import contextmanager
 from pathlib import Path
 
-# The package of this tree runs, even if another one is installed.
+# Use the package of this source tree, even if another one is installed.
 ROOT = Path(str(workflow.current_basedir)).parents[1]
 if (ROOT / "src").is_dir():
     sys.path.insert(0, str(ROOT / "src"))
     search = [str(ROOT / "src"), *filter(None, [os.environ.get("PYTHONPATH")])]
     os.environ.update(PYTHONPATH=os.pathsep.join(search))
 
-# The jobs inherit this: each process solves one point at a time, with one thread.
+# Jobs inherit these variables, so that each process solves one point at a time with one thread.
 for library in ("OMP", "OPENBLAS", "MKL", "NUMBA"):
     os.environ[f"{library}_NUM_THREADS"] = "1"
 
 
 def hang_up(*_):
-    """After SIGHUP (closed terminal), end the jobs, and end Snakemake without leaving a lock.
+    """After SIGHUP (closed terminal), end the jobs, and end Snakemake so that no lock remains.
 
-    A terminal sends SIGHUP to its first process only. A shell sends it to the whole group.
+    A terminal sends SIGHUP only to its first process, whereas a shell sends it to the whole process
+    group.
     """
     signal.signal(signal.SIGHUP, signal.SIG_IGN)
     if os.getpgrp() == os.getpid():
@@ -31,7 +32,7 @@ def hang_up(*_):
 
 
 if hasattr(signal, "SIGHUP") and signal.getsignal(signal.SIGHUP) == signal.SIG_DFL:
-    signal.signal(signal.SIGHUP, hang_up)  # not reached under nohup
+    signal.signal(signal.SIGHUP, hang_up)  # not reached under nohup, which ignores SIGHUP
 
 from microslip.app.plan import Plan, Results
 from microslip.config import load
@@ -41,7 +42,8 @@ from microslip.foundation.errors import CacheError
 
 @contextmanager
 def refused_in_one_line():
-    """Context manager: end the run with one line, before any job, for errors the user can fix."""
+    """Context manager that ends the run with a one-line message for errors that the user can
+    fix."""
     try:
         yield
     except load.ConfigError as error:
@@ -51,8 +53,8 @@ def refused_in_one_line():
 
 
 # A file given with --configfile replaces the default configuration.  The default is
-# config/config.yaml in the working directory, or else in the package. A module is configured by the
-# outer workflow.
+# config/config.yaml in the working directory, or else in the package. If this workflow is a module,
+# the outer workflow configures it.
 MAIN = os.path.abspath(workflow.basedir) in (str(ROOT), str(ROOT / "workflow"))
 if not (config and workflow.configfiles):
     DEFAULT = "config/config.yaml"
@@ -61,7 +63,7 @@ if not (config and workflow.configfiles):
     if not ROOT.is_dir():  # a workflow on a server
         DEFAULT = workflow.source_path("../../config/config.yaml")
     with refused_in_one_line():
-        load.read_yaml(os.path.relpath(DEFAULT))  # its errors have line numbers
+        load.read_yaml(os.path.relpath(DEFAULT))  # to report errors with line numbers
 
     configfile: DEFAULT
 
@@ -70,10 +72,10 @@ elif MAIN:
         for file in workflow.configfiles:
             load.read_yaml(os.path.relpath(file))  # rejects duplicate keys
 
-# In a module, these files belong to the outer workflow and can have other keys.
+# If this workflow is a module, these files belong to the outer workflow and can contain other keys.
 FILES = [os.path.relpath(file) for file in workflow.configfiles] if MAIN else []
 ORIGIN = ", ".join(FILES) or "configuration"
-# Folders of files named in the configuration; the working directory comes after them.
+# Folders in which files named in the configuration are searched for, before the working directory.
 FOLDERS = [os.path.dirname(os.path.abspath(file)) for file in workflow.configfiles]
 
 with refused_in_one_line():
@@ -87,13 +89,14 @@ HERE = exists(os.devnull)  # False for results in remote storage
 in_place = update if HERE else str  # keeps the old file until a job has written the new one
 IS_JOB = "--target-jobs" in sys.argv  # on another machine
 WHOLE = IS_JOB or not HERE or "--report" in sys.argv
-"""True to apply the rules to all files, and not only to missing ones."""
+"""If True, apply the rules to all files, and not only to missing ones."""
 MARKER = f"{RESULTS}/data/{os.urandom(8).hex()}.made"
-PRODUCT_OF = {}  # name of a product by the stem of its files
+PRODUCT_OF = {}  # names of products, keyed by the stem of the files
 
 
 def look(place):
-    """Return the state of the results folder, and check what is missing with the solver."""
+    """Return the state of the results folder, and check that the solver accepts the missing
+    points."""
     with refused_in_one_line():
         if HERE:
             folders = [f"{place}/{name}" for name in ("batches", "data", "figures", "summaries")]
@@ -109,17 +112,18 @@ def look(place):
 
 
 def any_of(names):
-    """Return a regular expression for these names, or for none."""
+    """Return a regular expression that matches any of these names, or nothing if there are none."""
     return "|".join(map(re.escape, names)) or "(?!)"
 
 
 def files_of(*names):
-    """Return the paths of products."""
+    """Return the paths of the files of products."""
     return [f"{RESULTS}/{file}" for name in names for file in STATE.files(name)]
 
 
 def inputs_of(*names):
-    """Return an input function: the paths of what products are made from, except each other."""
+    """Return an input function that lists the files from which products are made, except files of
+    these products themselves."""
 
     def inputs(wildcards):
         here = {file for name in names if name in STATE.missing for file in STATE.files(name)}
@@ -130,20 +134,20 @@ def inputs_of(*names):
 
 
 def inputs_of_stem(stem):
-    """Return the paths of what a product is made from."""
+    """Return the paths of the files from which a product is made."""
     return inputs_of(PRODUCT_OF[stem])(None)
 
 
 def everything(wildcards):
-    """Return all products, with one job for the missing ones."""
+    """Return the files of all products. If several products are missing, one job makes them."""
     if WHOLE or len(STATE.missing) < 2:
         return files_of(*PLAN.products)
     return [MARKER, *files_of(*(name for name in PLAN.products if name not in STATE.missing))]
 
 
 def inputs_of_link(plain):
-    """Return the file to which a plain name refers, and for a link to another file the folder,
-    which is newer than the link, see `Results.link`."""
+    """Return the file to which a plain name refers. For a link to another file, also return the
+    folder, which is newer than the link (see `Results.link`)."""
     name, file = STATE.plain()[plain]
     if name not in STATE.missing:
         return {"file": ancient(f"{RESULTS}/{file}")}
@@ -152,7 +156,8 @@ def inputs_of_link(plain):
 
 
 def make_ready():
-    """Before the first job, check that results can be written, and remove files of killed runs."""
+    """Check that results can be written, and remove the files of killed runs, before the first
+    job."""
     with refused_in_one_line():
         files.refuse_unwritable(STATE.folder)
     for path in files.clear_abandoned(STATE.folder):

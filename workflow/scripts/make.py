@@ -1,8 +1,8 @@
-"""Make datasets with their pages, figures, and pages of the explorer.
+"""Make datasets with HTML pages, figures, and explorer pages.
 
-Output: for a dataset, a netCDF-4 file with CF conventions and an HTML page; for a figure, PNG and
-PDF; for the explorer, one HTML file that needs no network.  All quantities are dimensionless,
-except the seconds and bytes of studies.
+The output for a dataset is a netCDF-4 file with CF conventions and an HTML page; for a figure, a
+PNG and a PDF file; and for the explorer, one HTML file that needs no network.  All quantities are
+dimensionless, except the seconds and bytes of studies.
 """
 
 import logging

@@ -1,4 +1,4 @@
-"""The two oscillating motions of the paper: their titles, and the second component of the force."""
+"""Titles and second force components of the paper's two oscillating motions."""
 
 from __future__ import annotations
 
@@ -6,7 +6,8 @@ from typing import NamedTuple
 
 
 class Motion(NamedTuple):
-    """Texts of a motion: heading, name of the second force in a period, and its label in HTML."""
+    """Texts of a motion: heading, and name and HTML label of the second force component in a
+    period."""
 
     title: str
     force: str
@@ -20,4 +21,5 @@ MOTIONS = {
     ),
     "bore": Motion("oscillating bore", "torque", TORQUE),
 }
-"""Motions with stored periods, a form for real contacts, and panels in the figures of claims."""
+"""Motions that have stored periods, a form for real contacts, and panels in the figures of
+`claims`."""

@@ -1,7 +1,8 @@
-"""Write pages that describe datasets: their contents and their provenance.
+"""Write pages that describe the contents and the provenance of datasets.
 
-The page of the study `claims` has verdicts, their numbers, and commands to repeat the runs. It is
-made from the dataset and the template claims.html. Every page is one self-contained HTML file.
+The page of the study `claims` contains the verdicts, the numbers that support them, and commands
+that repeat the runs. It is made from the dataset and the template claims.html. Every page is one
+self-contained HTML file.
 """
 
 from __future__ import annotations
@@ -26,14 +27,14 @@ RANGES = (
     *("mu_macro", "mu_macro_error", "mu_torque", "dissipated_energy", "dissipated_energy_error"),
     *("reference_error", "seconds"),
 )
-"""Variables whose smallest and largest values are on the page."""
+"""Variables whose smallest and largest values are shown on the page."""
 MOST_LINES = 40
 
 
 def page(dataset: xr.Dataset, lines: list[str]) -> str:
-    """Return the HTML of the page of a dataset. It depends on the arguments only.
+    """Return the HTML of the page of a dataset. The HTML depends only on the arguments.
 
-    lines: log of the collection of the dataset.
+    lines: log lines from the collection of the dataset.
     """
     if "verdict" in dataset:
         return claims_page(dataset, lines)
@@ -56,7 +57,7 @@ def text_page(dataset: xr.Dataset, lines: list[str]) -> str:
 def provenance(
     dataset: xr.Dataset, lines: Sequence[str] = (), without: Sequence[str] = ("title",)
 ) -> Iterator[str]:
-    """Return lines with the attributes (except `without`), `lines` and the configuration."""
+    """Yield the attributes except those in `without`, then `lines`, then the configuration."""
     attributes = {name: value for name, value in dataset.attrs.items() if name not in without}
     configuration = json.loads(attributes.pop("configuration", "{}"))
     yield from (f"  {name}: {value}" for name, value in attributes.items())
@@ -97,9 +98,9 @@ def claims_page(dataset: xr.Dataset, lines: list[str]) -> str:
 
 
 def _records(dataset: xr.Dataset, dim: str, prefix: str = "") -> list[SimpleNamespace]:
-    """Return the entries along a dimension. The attribute `name` of an entry is its coordinate.
+    """Return the entries along a dimension. The attribute `name` of an entry is the coordinate.
 
-    prefix: prefix to remove from the names of variables, by default the name of the dimension.
+    prefix: prefix to remove from the names of variables. The default is the name of the dimension.
     """
     names = [name for name in dataset.variables if dataset[name].dims == (dim,)]
     short = {name: str(name).removeprefix(prefix or f"{dim}_") for name in names} | {dim: "name"}
@@ -108,7 +109,7 @@ def _records(dataset: xr.Dataset, dim: str, prefix: str = "") -> list[SimpleName
 
 
 def _runs(dataset: xr.Dataset) -> dict[str, SimpleNamespace]:
-    """Return the runs by name. Each run has a description and its row on the page."""
+    """Return the runs by name, each with a description and the number of its row on the page."""
     runs = {run.name: run for run in _records(dataset, "run")}
     for row, run in enumerate(runs.values(), start=1):
         run.row = row
@@ -123,14 +124,15 @@ def _runs(dataset: xr.Dataset) -> dict[str, SimpleNamespace]:
 
 
 def _parts(dataset: xr.Dataset, runs: dict[str, SimpleNamespace]) -> list[SimpleNamespace]:
-    """Return the parts of all statements, each with its checks and the decisive check."""
+    """Return the parts of all statements, each with the checks of the part and the decisive
+    check."""
     checks, parts = _records(dataset, "check"), _records(dataset, "part")
     for check in checks:
         check.run, check.other_run = runs[check.run], runs.get(check.other_run)
     for part in parts:
         part.checks = [check for check in checks if check.part == part.name]
         decided = (check for check in part.checks if OUTCOMES[check.outcome] != "open")
-        # the check that fails most clearly, else the check that holds most narrowly
+        # the check that fails most clearly or, if no check fails, the one that holds most narrowly
         part.decisive = min(decided, key=lambda one: (-one.outcome, one.margin), default=None)
     return parts
 
@@ -140,7 +142,7 @@ def _number(value: float, digits: int = 4) -> str:
 
 
 def _with_error(value: float, error: float) -> str:
-    """Format a number's significant digits and its error estimate."""
+    """Format the significant digits of a number, and the error estimate."""
     if not np.isfinite(value):
         return "none"
     if not np.isfinite(error):

@@ -1,4 +1,4 @@
-"""Parts of the datasets of sweeps that figures and the explorer show."""
+"""Select the parts of a sweep's dataset that figures and the explorer show."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from microslip.datasets.catalogue import FORMS, ClosedForm
 
 PLANE = "velocity", "amplitude"
 WIDE = 10.0
-"""An axis is logarithmic if the ratio of its largest to its smallest value exceeds this number."""
+"""Ratio of the largest to the smallest value above which an axis is logarithmic."""
 
 
 def columns(dataset: xr.Dataset, *names: str) -> tuple[np.ndarray, ...]:
@@ -29,7 +29,7 @@ def at_each_poisson(dataset: xr.Dataset) -> list[xr.Dataset]:
 
 
 def moving(dataset: xr.Dataset) -> xr.Dataset:
-    """Select the velocities above 0."""
+    """Select the part of a dataset with velocities above 0."""
     if "velocity" not in dataset.dims:
         return dataset
     return dataset.isel(velocity=dataset["velocity"].values > 0)
@@ -47,12 +47,13 @@ def lines(
     variable : str
         Variable of the ordinate.
     along : str
-        Axis of the lines. The default is the force, or else the longest axis.
+        Axis along the lines. The default is the force if it is an axis, or else the longest axis.
 
     Returns
     -------
     tuple
-        The axis, and a list with the other coordinates and the dataset of each line.
+        The axis along the lines, and a list with the other coordinates and the dataset of each
+        line.
     """
     sizes = {str(dim): size for dim, size in dataset[variable].sizes.items()}
     along = along or ("force" if "force" in sizes else max(sizes, key=sizes.__getitem__))
@@ -63,7 +64,8 @@ def lines(
 
 
 def resampled(dataset: xr.Dataset, **coordinates: Any) -> xr.Dataset:
-    """Return a certified map at coordinates. Its values outside unsolved cells are converged."""
+    """Return a certified map at the given coordinates. Values outside unsolved cells count as
+    converged."""
     fine = dataset.microslip.at(**coordinates).squeeze().assign_attrs(dataset.attrs)
     for name in PLANE:
         fine[name].attrs = dataset[name].attrs
@@ -71,9 +73,10 @@ def resampled(dataset: xr.Dataset, **coordinates: Any) -> xr.Dataset:
 
 
 def closed_forms(dataset: xr.Dataset) -> list[ClosedForm]:
-    """Return the closed forms that a dataset contains. The closed forms of its motion come first.
+    """Return the closed forms that a dataset contains, those of the dataset's motion first.
 
-    A form that is exact for Poisson's ratio 0 is not exact for another ratio. Its label says so.
+    If a form is exact only for Poisson's ratio 0 and the dataset has other ratios, the label of the
+    form states "for ν = 0".
     """
     own = FORMS.get(dataset.attrs.get("motion", "").partition(":")[0], {})
     every = {name: form for forms in FORMS.values() for name, form in forms.items()}

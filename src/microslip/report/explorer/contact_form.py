@@ -1,8 +1,8 @@
-"""Pack the data of the form for a real contact: fields, units, materials, rules, and tables of
-friction.
+"""Pack the data of the form for a real contact: fields, units, materials, rules, and friction
+tables.
 
-si.warnings contains the rules and their texts. A table has friction on a regular grid, from a
-certified map, so that the page needs no formula of a map.
+The rules and the texts of their warnings come from si.warnings. A table contains friction on a
+regular grid, interpolated from a certified map, so that the page only needs linear interpolation.
 """
 
 from __future__ import annotations
@@ -22,11 +22,11 @@ from microslip.sweeps.period_codec import text_of
 from microslip.theory.hertz import D_half
 
 COUNTS = {"velocity": 129, "amplitude": 129, "poisson": 6}
-"""Number of coordinates of a table along each axis with more than one value."""
+"""Number of coordinates of a table along each axis that has more than one value."""
 LARGEST = 65535
-"""Largest integer of two bytes."""
+"""Largest unsigned integer of two bytes."""
 OF_NUMBERS = "by E and ν"
-"""Choice in the list of materials for entering Young's modulus and Poisson's ratio."""
+"""Entry in the list of materials that lets the user enter Young's modulus and Poisson's ratio."""
 ADHESION = ("adhesion", "range", "short", "rubbery")
 """Constants of si.warnings that the rules on adhesion use, in lower case."""
 PRESSURES = ("GPa", "MPa", "kPa", "Pa", "psi")
@@ -43,8 +43,8 @@ FIELDS = {
     "stroke": ("amplitude (half stroke)", "amplitude", ("um", "nm", "mm", "m"), "0.3"),
     "angle": ("amplitude (half angle)", "rotation_amplitude", ("mrad", "deg", "rad"), "1"),
 }
-"""Label of each field, its input in si.inputs, its units (the first one is the default), and its
-default number. The fields are in the order of the form."""
+"""Label, input in si.inputs, units and default number of each field, in the order of the form. The
+first unit is the default."""
 
 
 def packed() -> dict:
@@ -77,13 +77,14 @@ def packed() -> dict:
 
 
 def table(dataset: xr.Dataset) -> dict:
-    """Pack friction of a certified map, and its error bound, on a regular grid.
+    """Pack the friction and the error bound of a certified map on a regular grid.
 
-    The page interpolates linearly along the logarithm of the velocity, the amplitude and Poisson's
-    ratio. The error of a cell is the largest error of the map in the cell plus twice the largest
-    difference between the interpolation and the map. The differences are computed at the midpoints
-    of the cell, its edges and its faces. For a parabola and for a function with a kink, twice the
-    difference at a midpoint bounds the interpolation error.
+    The page interpolates linearly in the logarithm of the velocity, in the amplitude and in
+    Poisson's ratio. The error bound of a cell is the largest error bound of the map in the cell
+    plus twice the largest difference between this interpolation and the map. The differences are
+    computed at the centre of the cell and at the midpoints of its edges and faces. For a parabola
+    and for a function with a kink, twice the difference at a midpoint bounds the interpolation
+    error.
     """
     ends = {name: (float(dataset[name].min()), float(dataset[name].max())) for name in COUNTS}
     axes = {
@@ -115,7 +116,7 @@ def table(dataset: xr.Dataset) -> dict:
 
 
 def _with_midpoints(values: np.ndarray, axis: int) -> np.ndarray:
-    """Insert the means of neighbours along an axis."""
+    """Insert the mean of each two neighbours along an axis."""
     rows = np.moveaxis(values, axis, 0)
     result = np.repeat(rows, 2, axis=0)[:-1]
     result[1::2] = (rows[1:] + rows[:-1]) / 2.0

@@ -1,10 +1,10 @@
 """The explorer: an interactive HTML page that needs no network.
 
-This module lists the inputs of a page. `page` packs datasets and periods and writes the page, and
-`contact_form` packs the data of the form for a real contact. The JavaScript files in this folder
-run in the browser and draw with plotly.js.
+This module lists the inputs of a page. The module `page` packs datasets and periods and writes the
+page, and `contact_form` packs the data of the form for a real contact. The JavaScript files in this
+folder run in the browser and draw with plotly.js.
 
-Snakemake imports this module whenever it parses the workflow, so the module has few imports.
+Snakemake imports this module whenever it parses the workflow, so it has few imports.
 """
 
 from __future__ import annotations
@@ -19,12 +19,13 @@ SCRIPTS = "data charts disc sweeps contact form link page"
 ASSETS = ("page.html", "style.css", *(f"{name}.js" for name in SCRIPTS.split()))
 """Files of the page, besides the data and plotly.js. The scripts run in this order."""
 CELLS, ANGLES, STEPS = 10, 12, 32
-"""Resolution of a stored period: number of rings, points on half a ring, and steps. It is
-sufficient for a picture of 300 pixels."""
+"""Resolution of a stored period: number of rings, of points on half a ring, and of steps. It is
+sufficient for a picture 300 pixels wide."""
 PERIODS_PER_JOB = 150
-"""Number of periods in one job. The job takes a few seconds."""
+"""Number of periods in one job, which takes a few seconds."""
 MOST_PERIODS = 1200
-"""Maximum number of periods on a page of at most 15 MB. A period takes about 7.6 kB."""
+"""Maximum number of periods on a page, which limits its size to 15 MB. A period takes about 7.6
+kB."""
 
 
 def maps_of(configuration: Configuration, figure: Figure) -> list[str]:
@@ -42,8 +43,8 @@ def maps_of(configuration: Configuration, figure: Figure) -> list[str]:
 def period_requests(configuration: Configuration, *maps: str, name: str) -> list[dict]:
     """Return the requests for the periods of the map `name` at the smallest Poisson's ratio.
 
-    The velocity varies fastest. If the maps of the page have more points than `MOST_PERIODS`, there
-    are periods only at every n-th value of each axis.
+    The velocity varies fastest. If the number of points exceeds `MOST_PERIODS` divided by the
+    number of maps, periods are computed only at every n-th value along each axis (n = 2, 3, ...).
     """
     sweep = configuration.sweeps[name]
     most = MOST_PERIODS // len(maps)
@@ -61,7 +62,7 @@ def period_requests(configuration: Configuration, *maps: str, name: str) -> list
 
 
 def report(periods: dict) -> Iterator[str]:
-    """Yield lines of a log: the number of periods, and each period that did not converge.
+    """Yield log lines with the number of periods and with each period that did not converge.
 
     periods: list of records for each map, keyed by the map's name.
     """

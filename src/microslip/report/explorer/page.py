@@ -1,11 +1,12 @@
 """Write the page as one file: markup, style, plotly.js, scripts, and all data as one JSON value.
 
-A sweep over velocities and amplitudes is a map for each Poisson's ratio. Other sweeps, and sweeps
-with a drive, are lines: the abscissa is the longest axis, and there is one line for each
-combination of the other axes.
+A sweep over velocities and amplitudes is shown as one map for each Poisson's ratio. Other sweeps,
+and sweeps with a drive, are shown as lines: the abscissa is the longest axis, and there is one line
+for each combination of values along the other axes.
 
-Numbers in datasets are stored exactly. Forces, phases, radii and bounds of periods are rounded.
-Tractions, slips and densities are the texts of sweeps.period_codec, which the page decodes.
+Numbers from datasets are stored exactly. The forces, phases, radii and bounds of periods are
+rounded. Tractions, slip flags and densities are the strings of sweeps.period_codec, which the page
+decodes.
 """
 
 from __future__ import annotations
@@ -33,22 +34,23 @@ from microslip.sweeps.period_codec import SHARES
 FOLDER = Path(__file__).parent
 POINTS = ["mu_macro", "mu_macro_error", "converged", "model", "reason"]
 POINTS += ["cells", "angles", "steps_per_period", "dissipated_energy", "dissipated_energy_error"]
-"""Variables of the points of maps, beside the parts of the error."""
+"""Variables of the points in a map, besides the parts of the error."""
 ERRORS = {
     name: row["description"].removeprefix("part of mu_macro_error from ")
     for name, row in TABLE.items()
     if name.startswith("error_")
 }
-"""Parts of the error of a point, and their sources."""
+"""Parts of the error of a point, with the source of each part."""
 DECIMALS = 5
 """Number of decimals of the forces, phases, radii and bounds of periods."""
 PERIOD = ["phase", "radius", "bound", "tractions", "slips", "densities", "angles", "turned"]
 PERIOD += ["mu_macro", "converged", "reason"]
-"""Entries of a stored period, beside the forces. A period that was not found has the last two."""
+"""Entries of a stored period, besides the forces. If no period was found, only the last two
+exist."""
 
 
 def page(content: dict) -> str:
-    """Return the text of the page. content: result of `build`."""
+    """Return the HTML of the page. content: value returned by `build`."""
     texts = {name: (FOLDER / name).read_text(encoding="utf-8").rstrip() for name in ASSETS}
     template, style = jinja2.Template(texts.pop("page.html")), texts.pop("style.css")
     # A "<" could end the script, so it is escaped.
@@ -63,11 +65,11 @@ def build(datasets: dict, periods: dict, certified: Sequence = ()) -> dict:
     Parameters
     ----------
     datasets : dict of xarray.Dataset
-        Datasets, keyed by the sweep's name, see `explorer`.
+        Datasets, keyed by the name of the sweep (see `explorer`).
     periods : dict of list
-        Records of the stored periods, keyed by the sweep's name.
+        Records of the stored periods, keyed by the name of the sweep.
     certified : sequence of xarray.Dataset
-        Certified maps that the form for real contacts uses.
+        Certified maps for the form for real contacts.
 
     Returns
     -------
@@ -99,14 +101,14 @@ def build(datasets: dict, periods: dict, certified: Sequence = ()) -> dict:
 
 
 def _label(dataset: xr.Dataset, dim: str) -> str:
-    """Return the name and the formula of an axis as HTML for plotly."""
+    """Return the name and the formula of an axis as HTML for plotly.js."""
     attributes = dataset[dim].attrs
     text = attributes.get("long_name", dim).split(",")[0]
     return f"{text}  {look.html(attributes.get('formula', ''))}".strip()
 
 
 def _values(dataset: xr.Dataset, **names: str) -> dict:
-    """Return the values of variables by new names."""
+    """Return the values of variables, keyed by new names."""
     return {key: plain(dataset[name].values) for key, name in names.items()}
 
 
@@ -126,7 +128,8 @@ def _map(dataset: xr.Dataset, records: Sequence[dict]) -> dict:
 
 
 def _lines(dataset: xr.Dataset) -> dict:
-    """Pack the lines of a sweep, and the torque of a steady bore, which the chart does not show."""
+    """Pack the lines of a sweep. The torque of a steady bore is included, although no chart shows
+    it."""
     over_force = "force" in dataset.dims
     value = "velocity" if over_force else "mu_macro"
     along, parts = lines(dataset, value)
@@ -151,9 +154,10 @@ def _lines(dataset: xr.Dataset) -> dict:
 
 
 def _limits(dataset: xr.Dataset, part: str = "", *arguments: str) -> list[dict]:
-    """Pack closed forms: their values at every point, and their curves on fine axes.
+    """Pack the closed forms with the values at every point and the curves on fine axes.
 
-    part: "torque", or "" for friction. arguments: arguments of the forms, by default any.
+    part: "torque", or "" for friction. arguments: if given, only forms with these arguments are
+    packed.
     """
     entries = []
     for form in closed_forms(dataset):
@@ -176,7 +180,8 @@ def _limits(dataset: xr.Dataset, part: str = "", *arguments: str) -> list[dict]:
 
 
 def _periods(dataset: xr.Dataset, records: Sequence[dict]) -> list:
-    """Return the stored period of each point of a map, None for a point without one."""
+    """Return the stored period of each point of a map, or None for a point without a stored
+    period."""
     rows, columns = (
         {number(value): i for i, value in enumerate(dataset[dim].values)}
         for dim in ("amplitude", "velocity")
@@ -195,7 +200,7 @@ def _periods(dataset: xr.Dataset, records: Sequence[dict]) -> list:
 
 
 def _provenance(dataset: xr.Dataset, records: Sequence[dict]) -> str:
-    """Return the provenance of a map and its periods as text."""
+    """Return the provenance of a map and of the stored periods as text."""
     lines = []
     if records:
         request = records[0]["request"]

@@ -1,8 +1,8 @@
-"""Friction along one axis of sweeps: computed points with error estimates, and closed forms.
+"""Draw friction along one axis of sweeps: computed points with error estimates, and closed forms.
 
-The figure has a panel for each abscissa, and a line for each value of the other axes of a sweep. A
-sweep over forces is drawn at the mean velocities that the forces cause. Maps have panels of the
-same kind, which show their edges.
+The figure has a panel for each abscissa, and a line for each value of the other axes of a sweep. In
+a sweep over forces, the abscissa is the mean velocity that each force causes. Figures of maps
+contain similar panels for the edges of a map.
 """
 
 from __future__ import annotations
@@ -22,11 +22,11 @@ from microslip.report.selection import PLANE, closed_forms, columns, limit, movi
 
 FORCE_AND_TORQUE = f"force  {FORCE_FORWARD.math}\ntorque  {TORQUE.math}"
 JOINING = 0.5
-"""Width in points of the lines that join markers."""
+"""Width of the lines that join markers, in points."""
 MOST_ABOVE = 4
-"""Largest number of lines of one dataset whose legend is above a narrow panel."""
+"""Largest number of lines from one dataset for which the legend is above a narrow panel."""
 MANY = 12
-"""Largest number of lines with a narrow legend."""
+"""Largest number of lines for which the legend is narrow."""
 ROW = 0.165
 """Height of a row of the legend, in inches."""
 FINE = 201
@@ -41,7 +41,7 @@ class Line(NamedTuple):
     points : xarray.Dataset
         Points along one dimension.
     x, y : str
-        Variables of the abscissa and the ordinate.
+        Names of the variables of the abscissa and the ordinate.
     title : str
         Text of the legend.
     limit : tuple or None
@@ -107,7 +107,7 @@ def _lines(dataset: xr.Dataset, titled: bool) -> Iterator[Line]:
         text = ", ".join(filter(None, [title, where])) or "computed"
         if over_force:
             moves = points.isel(force=points["velocity"].values > 0)
-            # A contact at rest has no place on a logarithmic axis of velocities.
+            # A contact at rest cannot be shown on a logarithmic axis of velocities.
             if at_rest := points.sizes["force"] - moves.sizes["force"]:
                 text = f"{text} ({at_rest} at rest: not drawn)"
             moves = moves.assign(force_error=xr.zeros_like(moves["force"]))
@@ -122,7 +122,7 @@ def _lines(dataset: xr.Dataset, titled: bool) -> Iterator[Line]:
 def _limit(
     points: xr.Dataset, still: xr.Dataset | None, dim: str, variable: str
 ) -> tuple[np.ndarray, np.ndarray, str] | None:
-    """Return a closed form that is exact for these points, else the computed static limit."""
+    """Return a closed form that is exact for these points, or else the computed static limit."""
     for form in closed_forms(points):
         own = ("torque" in form.name) == ("torque" in variable)
         line = limit(points, form.name)
@@ -137,14 +137,15 @@ def _limit(
 def _panel(axes: Axes, lines: Sequence[Line], alone: bool, joined: bool = True) -> None:
     """Draw lines with the same abscissa, and label the axes.
 
-    alone: True for lines of one dataset. joined: True to join points without a limit.
+    alone: if True, all lines come from one dataset. joined: if True, join the points of lines
+    without a limit.
     """
     shared = [_with_limit_of(line, lines) for line in lines]
     for k, line in enumerate(lines):
         color, marker, ls = look.line(k)
         room = 1.25 if alone else 1.6 if len(lines) <= MANY else 2.4
         label = look.wrapped(line.title, room, 8.0)
-        label = f" {label}" if label.startswith("_") else label  # which would hide it
+        label = f" {label}" if label.startswith("_") else label  # a leading "_" would hide it
         # Later markers are smaller and in front, so that all markers at one place can be seen.
         spread = 3.9 if not joined else 2.6 if len(lines) > MOST_ABOVE else 0.0
         size = (3.6 if spread == 0.0 else 3.2) + min(1.3, spread / len(lines)) * (
@@ -155,12 +156,12 @@ def _panel(axes: Axes, lines: Sequence[Line], alone: bool, joined: bool = True) 
         if line.limit is not None:
             x, y, form = line.limit
             several, first = len(shared[k]) > 1, shared[k][0]
-            if several:  # one black line, whose style depends on the number of such lines before it
+            if several:  # one black line; its style depends on the number of such lines before it
                 color = look.BLACK
                 ls = look.STYLES[
                     len({id(one[0]) for one in shared[:k] if one and one[0] is not first})
                 ]
-            # With several datasets, one legend entry is for the points and their own limit.
+            # With several datasets, the points and the limit of a line share one legend entry.
             joint = not (alone or several)
             own: look.Ink = ink | {"label": label} if joint else {"color": color, "label": form}
             if first is line:
@@ -179,7 +180,7 @@ def _panel(axes: Axes, lines: Sequence[Line], alone: bool, joined: bool = True) 
 
 
 def _with_limit_of(line: Line, lines: Sequence[Line]) -> list[Line]:
-    """Return the lines that have the same limit as a line."""
+    """Return all lines that have the same limit as the given line."""
     if line.limit is None:
         return []
     x, y, form = line.limit
@@ -188,7 +189,7 @@ def _with_limit_of(line: Line, lines: Sequence[Line]) -> list[Line]:
 
 
 def _references(axes: Axes, points: xr.Dataset, shown: Sequence[xr.Dataset]) -> None:
-    """Draw friction at the velocity of a drive, from a sweep without a drive in the figure."""
+    """Draw the friction of a sweep without a drive as a reference, at the velocity of the drive."""
     if "drive" not in points.attrs or points.get("velocity", points["poisson"]).ndim:
         return
     for one in shown:
@@ -203,8 +204,8 @@ def _references(axes: Axes, points: xr.Dataset, shown: Sequence[xr.Dataset]) -> 
 def cut(axes: Axes, parts: Sequence[xr.Dataset], dim: str, at: xr.DataArray) -> None:
     """Draw friction along an edge of a map, with the closed forms for this edge.
 
-    parts: the map at each Poisson's ratio. dim: the axis along the edge. at: coordinate of the edge
-    on the other axis.
+    parts: the map at each Poisson's ratio. dim: axis along the edge. at: coordinate of the edge
+    along the other axis.
     """
     other, value = str(at.name), float(at)
     forms = [

@@ -1,6 +1,6 @@
 """Draw figures from datasets and save them.
 
-Figures show stored numbers only: every curve, including those from theory, is a variable of a
+Figures show stored numbers only: every curve, including theoretical ones, is a variable of a
 dataset. The kind of figure determines the function that draws it. The module `style` defines
 colours and fonts.
 
@@ -30,14 +30,14 @@ if TYPE_CHECKING:
 
 DRAWN = {kind: one.draw for kind, one in KINDS.items() if one.draw}
 DRAWN |= {"fit": "predictions.fit", "curve": "predictions.curve"}
-"""Module and function that draw each kind of figure.  Commands draw the kinds fit and curve, from
-their own results."""
+"""Module and function that draw each kind of figure.  The kinds fit and curve are drawn by
+commands, from the results of the command."""
 FORMATS: dict[str, tuple[dict[str, None], str]] = {
     "png": ({"Software": None}, "Description"),
     "pdf": ({"Creator": None, "Producer": None, "CreationDate": None}, "Subject"),
 }
-"""Formats of `save`, each with the metadata to omit (dates and versions) and the entry that
-contains the provenance."""
+"""File formats of `save`. For each format: the metadata to omit (dates and versions), and the
+metadata entry that contains the provenance."""
 PROVENANCE = ["title", "references", "microslip_version", "source_digest", "results_digest"]
 PROVENANCE += ["configuration", "library_versions"]
 """Attributes of a dataset that describe its provenance."""
@@ -57,9 +57,9 @@ def draw(kind: str, datasets: Mapping[str, xr.Dataset]) -> Figure:
     Parameters
     ----------
     kind : str
-        Kind of figure, a key of `DRAWN`.
+        Kind of figure, which is a key of `DRAWN`.
     datasets : dict of xarray.Dataset
-        The datasets of the figure by name, each with its groups.
+        The datasets of the figure by name, each including its groups.
 
     Returns
     -------
@@ -85,10 +85,11 @@ def draw(kind: str, datasets: Mapping[str, xr.Dataset]) -> Figure:
 
 
 def import_matplotlib() -> None:
-    """Import matplotlib with any value of MPLBACKEND in the environment.
+    """Import matplotlib, whatever the value of MPLBACKEND in the environment is.
 
     matplotlib cannot be imported if this variable has an unknown value. Figures of this package
-    need no backend. Other figures of the process get the backend of the variable if it is known.
+    need no backend. Other figures in the process use the backend of the variable if matplotlib
+    knows this backend.
     """
     if "matplotlib" in sys.modules:
         return
@@ -104,9 +105,9 @@ def import_matplotlib() -> None:
 def save(figure: Figure, path: str | os.PathLike[str]) -> Path:
     """Write a figure atomically as `.png` (300 dpi) or `.pdf` and return its path.
 
-    The metadata contain the provenance of the datasets (a JSON list) and no date, so that equal
-    figures have equal bytes. A missing folder is created. Raises CacheError if the file cannot be
-    written.
+    The metadata contain the provenance of the datasets as a JSON list, but no date, so that
+    identical figures give byte-identical files. A missing folder is created. Raises CacheError if
+    the file cannot be written.
     """
     import_matplotlib()
     from microslip.report.figures.style import style

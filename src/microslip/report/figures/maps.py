@@ -1,8 +1,10 @@
-"""Maps over two axes: friction, its change with Poisson's ratio, error estimates, drift velocity.
+"""Draw maps over two axes: friction, its change with Poisson's ratio, error estimates, drift
+velocity.
 
-Every panel is drawn by `fill`: bands, contours where they are certain, points where they are few,
-and hatched cells without a result.  Every finite value of a dataset is visible, as a colour or as a
-marker.  What a panel leaves out is an entry of the legend or a heading, outside of the panels.
+Every panel is drawn by `fill`: bands, contours where they are certain, the computed points if there
+are few, and hatched cells where there is no result.  Every finite value of a dataset is visible as
+a colour or a marker.  Whatever is omitted from a panel is given outside the panels, in the legend
+or in a heading.
 """
 
 from __future__ import annotations
@@ -30,15 +32,15 @@ from microslip.report.figures import style as look
 from microslip.report.selection import PLANE, at_each_poisson, columns, limit, moving, resampled
 
 FEW = 9
-"""The points are drawn if an axis has fewer points than this."""
+"""The points are drawn if an axis has fewer than this number of points."""
 POINTS: look.Ink = {"ls": "none", "marker": "o", "ms": 2.6, "color": look.BLACK}
 POINTS |= {"mec": "white", "mew": 0.4, "clip_on": False, "label": "computed points"}
 BARE: look.Ink = {"marker": "o", "s": 22.0, "edgecolors": look.BLACK, "linewidths": 0.8}
 BARE |= {"clip_on": False, "zorder": 6, "gid": "bare-points"}
-"""Points beside cells without a colour. The colour of such a point shows its value."""
+"""Style of points beside cells without a colour. The colour of such a point shows its value."""
 NEAR, FAR = 0.8, 2.5
-"""Smallest distances of a number, divided by its height. NEAR: from other contours. FAR: from the
-ends of its contour and from other numbers."""
+"""Smallest distance of a contour's number from other contours (NEAR), and from the ends of its own
+contour and other numbers (FAR), both divided by the height of the number."""
 HATCHED: look.Ink = {"fc": (1.0, 1.0, 1.0, 0.45), "ec": look.BLACK, "lw": 0.0, "hatch": 6 * "/"}
 REST: look.Ink = {"facecolor": look.PALE, "label": "comes to rest", "gid": "rest"}
 THRESHOLD: look.Ink = {"color": look.BLACK, "label": "static limit: threshold", "gid": "mu_static"}
@@ -49,15 +51,16 @@ COLUMNS = {1: 1, 2: 2, 4: 2}
 HEIGHT = {1: 3.6, 2: 2.6, 3: 2.0, 4: 1.75}
 """Height of a row in inches, by the number of columns."""
 CUTS = 2.7
-"""Height of the cuts below a row of maps, in inches."""
+"""Height of the panels with cuts below a row of maps, in inches."""
 FINE = 193
-"""Number of coordinates along each axis of a certified map that is drawn."""
+"""Number of coordinates along each axis at which a certified map is evaluated for drawing."""
 
 
 class Panel(NamedTuple):
-    """A map: the dataset at one Poisson's ratio, the variable that is drawn, and the heading.
+    """One map: the dataset at one Poisson's ratio, the drawn variable, and the heading.
 
-    points: velocities and amplitudes of the computed points of a certified map, else None.
+    points: velocities and amplitudes of the computed points of a certified map, or None for other
+    maps.
     """
 
     dataset: xr.Dataset
@@ -75,8 +78,8 @@ def draw(*datasets: xr.Dataset) -> Figure:
     """Draw the maps of one or several sweeps.
 
     A sweep at several Poisson's ratios has a map at the smallest ratio, and maps of the change of
-    friction at larger ratios.  A certified map has a panel with its error estimates.  A figure of
-    one other sweep of friction has cuts along two edges of the map.
+    friction at larger ratios.  A certified map has a panel with its error estimates.  For a single
+    sweep of friction that is not certified, cuts along two edges of the map are added.
     """
     rows = [_panels(dataset, len(datasets) > 1) for dataset in datasets]
     drawn = [panel for row in rows for panel in row]
@@ -101,7 +104,8 @@ def draw(*datasets: xr.Dataset) -> Figure:
 
 
 def _panels(dataset: xr.Dataset, titled: bool) -> list[Panel]:
-    """Return the panels of a dataset. titled: True to write its title above them."""
+    """Return the panels of a dataset. titled: if True, write the title of the dataset above the
+    panels."""
     title = look.literal(dataset.attrs.get("title", "")) if titled else ""
     if "cell_error" in dataset:
         return _certified(dataset, title)
@@ -124,7 +128,8 @@ def _joined(*texts: str) -> str:
 
 
 def _certified(dataset: xr.Dataset, title: str) -> list[Panel]:
-    """Return two panels of a certified map at its smallest Poisson's ratio: friction and errors."""
+    """Return the two panels of a certified map, friction and errors at the smallest Poisson's
+    ratio."""
     ends = [(float(dataset[dim].min()), float(dataset[dim].max())) for dim in PLANE]
     velocity, amplitude = np.geomspace(*ends[0], FINE).clip(*ends[0]), np.linspace(*ends[1], FINE)
     nu = float(dataset["poisson"].min())
@@ -168,11 +173,11 @@ def _fill(page: Any, drawn: list[Panel], across: int) -> None:
 
 
 def _label(axes: list[Axes], drawn: list[Panel], across: int, room: float) -> None:
-    """Label the axes: once in each column and row if all panels have the same label, else on each
-    panel."""
+    """Label the axes, once for each column and row if all panels have the same label, otherwise on
+    each panel."""
     for name, dims in (("x", [p.across for p in drawn]), ("y", len(drawn) * ["amplitude"])):
         quantities = map(look.quantity, (panel.dataset for panel in drawn), dims)
-        # With the symbol, a label is longer than the axis of a small panel.
+        # On a small panel, a label with a symbol would be longer than the axis.
         texts = [look.axis(one, short=len(drawn) > 2) for one in quantities]
         for index, (one, text) in enumerate(zip(axes, texts, strict=True)):
             outer = index + across >= len(axes) if name == "x" else index % across == 0
@@ -184,16 +189,17 @@ def _label(axes: list[Axes], drawn: list[Panel], across: int, room: float) -> No
 def fill(axes: Axes, panel: Panel, scale: Scale) -> ContourSet:
     """Fill a panel with a variable, interpolated as in `microslip.at`.
 
-    Contours end where the interpolation is too uncertain, see `Surface.supported`. In this case,
-    and on coarse maps, the computed points are drawn as well. Points beside a cell without a colour
-    are always drawn, in the colour of their value. Returns the bands, for a colour bar.
+    Contours end where the interpolation is too uncertain (see `Surface.supported`). If a contour
+    ends in this way, or if the map is coarse, the computed points are drawn as well. Points beside
+    a cell without a colour are always drawn, in the colour of their value. Returns the bands, which
+    a colour bar needs.
     """
     shown = panel.dataset.transpose("amplitude", panel.across, ...)
     x, amplitude, values = columns(shown, panel.across, "amplitude", panel.variable)
     surface = Surface(x, amplitude, values)
     grid, ends = (surface.velocity, surface.amplitude), scale.fills[[0, -1]]
     colours: look.Ink = {"cmap": scale.colours, "norm": scale.norm}
-    # Values that are outside the levels due to rounding would be white.
+    # Values that rounding moves outside the levels would be white.
     filled = axes.contourf(*grid, surface.values.clip(*ends), scale.fills, **colours)
     filled.set(edgecolor="face", linewidth=0.3)  # without white hairlines in a PDF
     complete = True
@@ -227,12 +233,12 @@ def fill(axes: Axes, panel: Panel, scale: Scale) -> ContourSet:
 
 
 def number_contours(axes: Axes, contours: ContourSet, filled: ContourSet, scale: Scale) -> None:
-    """Write numbers on contours after the layout has given the panel its final size.
+    """Write numbers on contours after the layout has determined the final size of the panel.
 
-    A number is placed as far as possible from other contours and from the ends of its own contour.
-    Beside a number, the end of a contour could be read as a minus sign. A contour without enough
-    space has no number. A number is on a box in the colour of its band, so that it can be read
-    above points.
+    A number is placed as far as possible from other contours and from the ends of its own contour,
+    because the end of a contour next to a number could be read as a minus sign. A contour that
+    lacks room for a number is left unnumbered. Behind each number is a box in the colour of the
+    band, so that the number is readable on top of points.
     """
     height = look.SMALLEST * look.DPI / 72.0
 
@@ -261,7 +267,8 @@ def number_contours(axes: Axes, contours: ContourSet, filled: ContourSet, scale:
 
 
 def _rest(axes: Axes, shown: xr.Dataset, scale: Scale) -> None:
-    """Draw where a contact under a force comes to rest, and a rigid contact."""
+    """Draw the region in which a contact under a force comes to rest, and the velocities of a rigid
+    contact."""
     if "mu_static" in shown:
         line = limit(shown, "mu_static")
         across = line[line.dims[0]].values
@@ -278,17 +285,19 @@ def _rest(axes: Axes, shown: xr.Dataset, scale: Scale) -> None:
 # Scales: colours, contours and ticks of the quantities
 
 BELOW = "Reds_r"
-"""Colour map of friction 0 to -1. At 0, it is as dark as `style.COLOURMAP`."""
+"""Colour map for friction from 0 to -1. At 0, it is as dark as `style.COLOURMAP`."""
 DARK = 0.5
 """Lines are white on bands with a luminance below this value, and black on all others."""
 BEYOND = 0.01
-"""Largest excess below 0 or above 1 that is attributed to the errors of the points."""
+"""Largest distance of friction from the range 0 to 1 that is attributed to the errors of the
+points."""
 DIVERGING = "PuOr"
-"""Colour map of differences. It is pale in the middle."""
+"""Colour map for differences. It is pale in the middle."""
 MOST_BANDS = 12
 """Maximum number of bands on each side of 0 in a map of differences."""
 FEW_BANDS = 6
-"""With more bands on each side of 0, the labels of the two levels next to 0 would overlap."""
+"""Largest number of bands on each side of 0 at which the labels of the two levels next to 0 do not
+overlap."""
 SLOWEST = 1e-3
 """Lower end of the scale of velocities."""
 
@@ -309,7 +318,7 @@ class Scale(NamedTuple):
     colours : Colormap
         Colours of the values.
     signed : bool
-        True to dash the contours below 0.
+        If True, contours below 0 are dashed.
     """
 
     label: str
@@ -326,7 +335,8 @@ class Scale(NamedTuple):
         return Normalize(*self.fills[[0, -1]])
 
     def contours(self) -> look.Ink:
-        """Return colours that contrast with the bands, and styles of the contours."""
+        """Return the colours, which contrast with the bands, and the line styles of the
+        contours."""
         weights = (0.2126, 0.7152, 0.0722)  # luminance by Rec. 709
         shades = [np.dot(weights, to_rgb(self.colours(self.norm(level)))) for level in self.lines]
         return {
@@ -337,7 +347,7 @@ class Scale(NamedTuple):
 
 
 def friction(datasets: Sequence[xr.Dataset]) -> Scale:
-    """Return the scale of friction: 0 to 1, extended to the smallest and the largest value.
+    """Return the scale of friction from 0 to 1, extended to the smallest and the largest value.
 
     The colours for 0 to 1 are the same for all datasets, unless the largest value is above 1.
     """
@@ -394,4 +404,4 @@ SCALES = {
     "mu_macro_error": error,
     "velocity": drift,
 }
-"""Function that makes the scale of each variable."""
+"""Function that returns the scale for each variable."""

@@ -1,4 +1,4 @@
-"""Figures that commands draw: predictions over ranges, and a fit with its residuals."""
+"""Draw the figures of commands: predictions over ranges, and a fit with its residuals."""
 
 from __future__ import annotations
 
@@ -17,8 +17,8 @@ FRICTION = (
     ("friction_force_N", "friction_force_error_N", "friction force ", "N"),
 )
 DRIFT = (("speed_m_s", "speed_error_m_s", "speed ", "m/s"),)
-"""Variable, error estimate, label and SI unit of each panel. FRICTION is for contacts at a speed,
-DRIFT for contacts under a force."""
+"""Variable, error estimate, label and SI unit of each panel. FRICTION is used for contacts at a
+speed, and DRIFT for contacts under a force."""
 
 CONDITIONS = {
     "speed_m_s": ("speed", "m/s"),
@@ -26,14 +26,15 @@ CONDITIONS = {
     "row_load_N": ("load", "N"),
     "frequency_Hz": ("frequency", "Hz"),
 }
-"""Name and SI unit of the conditions that can differ between the rows of a fit."""
+"""Name and SI unit of each condition that can differ between the rows of a fit."""
 MEASURED = {"friction": ("friction force", "N"), "mu": ("coefficient of friction", "")}
 PARAMETERS = (
     (r"\mu", "mu{}", ""),
     (r"u_\mathrm{lim}", "u_lim{}_m", "m"),
     ("G", "shear_modulus{}_Pa", "Pa"),
 )
-"""Fitted parameters: symbol, name in the dataset (with "", "_low" or "_high" for {}), SI unit."""
+"""Symbol, name in the dataset and SI unit of each fitted parameter. In the name, {} stands for "",
+"_low" or "_high"."""
 BAND = 2.0
 """Half-width of the residual band, in standard errors. About 95 % of the residuals are inside."""
 
@@ -41,7 +42,7 @@ BAND = 2.0
 def curve(dataset: xr.Dataset) -> Figure:
     """Draw friction over the longest axis, with one line for each value of the other axis.
 
-    For contacts under a force, draw the speed. Values that did not converge are hollow.
+    For contacts under a force, the speed is drawn instead. Values that did not converge are hollow.
     """
     abscissa, lines = selection.lines(dataset, "converged")
     attributes = {name: dataset[name].attrs for name in dataset.dims}
@@ -71,16 +72,16 @@ def curve(dataset: xr.Dataset) -> Figure:
 
 
 def _value(name: str, unit: str, value: float) -> str:
-    """Format a value with its name and a prefixed unit, such as "load 10 N"."""
+    """Format a value with a name and a prefixed unit, such as "load 10 N"."""
     return f"{name} {prefixed_text(value, unit) if unit else f'{value:.4g}'}"
 
 
 def fit(dataset: xr.Dataset) -> Figure:
-    """Draw measured and fitted friction above, residuals below.
+    """Draw a panel with measured and fitted friction, and a panel with the residuals below it.
 
-    The abscissa is the condition with the most values. Rows that differ in another condition have
-    different colours and markers. The line is the model curve, with a band for the model error. A
-    row without a model curve has a short dash at the model's friction.
+    The abscissa is the condition with the largest number of values. Rows that differ in another
+    condition have different colours and markers. The line is the model curve, with a band for the
+    model error. For a row without a model curve, a short dash marks the friction of the model.
     """
     counts = {name: len(np.unique(dataset[name])) for name in CONDITIONS}
     along, *others = sorted(counts, key=lambda name: -counts[name])
@@ -129,7 +130,7 @@ def fit(dataset: xr.Dataset) -> Figure:
 
 
 def _parameters(dataset: xr.Dataset) -> str:
-    """Format the fitted parameters, each with the larger half of its interval."""
+    """Format the fitted parameters, each with the larger half-width of its confidence interval."""
     parts = []
     for symbol, name, unit in PARAMETERS:
         names = [name.format(part) for part in ("", "_low", "_high")]

@@ -1,5 +1,5 @@
-"""Single runs: forces over the first periods (Figure 1), tractions in the contact with the
-instantaneous centre of rotation of a steady bore (Figure 3), and transients (Figure 5)."""
+"""Draw single runs: forces over the first periods (Figure 1), the tractions and the instantaneous
+centre of rotation of a steady bore (Figure 3), and transients (Figure 5)."""
 
 from __future__ import annotations
 
@@ -21,27 +21,28 @@ STARTS = {
     "full-rotation": "full rotational slip",
     "full-slip": "full forward slip",
 }
-"""Labels of the initial states in the paper. Other states are labelled with their names."""
+"""Labels of the initial states used in the paper. Any other state is labelled with its name."""
 QUANTITIES = (
     ("force", "Eq 21", "transient_force_forward", look.BLUE, look.SOLID),
     ("torque", "Eq 22", "transient_torque", look.VERMILLION, look.DASHDOT),
 )
-"""For each quantity of a transient: name, equation of the steady value, variable, colour and line
-style."""
+"""Name, equation of the steady value, variable, colour and line style of each quantity of a
+transient."""
 SPACING = 0.14
 """Distance between the arrows, in contact radii."""
 SHADES = LinearSegmentedColormap.from_list("bound", ["#FFFFFF", "#8CC8EE"])
-"""Colours that contrast well with black arrows."""
+"""Colour map of the friction bound, which contrasts well with black arrows."""
 
 
 def _conditions(dataset: xr.Dataset, run: str, *names: str) -> str:
-    """Format the conditions of a run. run: first word of its variables."""
+    """Format the conditions of a run. run: first word in the names of the run's variables."""
     values = {name: float(dataset[f"{run}_{name}"]) for name in names}
     return look.conditions(dataset.attrs.get("motion", ""), values)
 
 
 def history(dataset: xr.Dataset) -> Figure:
-    """Draw the forward force with its mean over the last period, and the lateral force."""
+    """Draw the forward force, the mean of this force over the last period, and the lateral
+    force."""
     periods = dataset["history_phase"].values / (2.0 * np.pi)
     forward, lateral = columns(dataset, "history_force_forward", "history_force_lateral")
     figure = look.new_figure(look.SINGLE, 3.2)
@@ -73,7 +74,7 @@ def transients(dataset: xr.Dataset) -> Figure:
     for index, (axes, start) in enumerate(zip(grid, starts, strict=True)):
         at = dataset.isel(start=index)
         for what, equation, name, color, ls in QUANTITIES:
-            # Shorter runs end in NaN, which is not drawn.
+            # The values of shorter runs end in NaN, which is not drawn.
             line = columns(at, "transient_displacement", name)
             axes.plot(*line, color=color, ls=ls, label=f"{what}, computed", gid=name)
             ink: look.Ink = {"color": color, "ls": look.DOTTED, "lw": 1.0, "zorder": 1.5}
@@ -90,7 +91,7 @@ def transients(dataset: xr.Dataset) -> Figure:
 
 
 def field(dataset: xr.Dataset) -> Figure:
-    """Draw traction arrows over a colour map of the bound, with a horizontal lateral axis.
+    """Draw arrows for the tractions over a colour map of the bound. The lateral axis is horizontal.
 
     The longest arrow is shorter than the distance between arrows, so that arrows do not touch.
     """
@@ -123,8 +124,9 @@ def _lattice(
 ) -> tuple[np.ndarray, ...]:
     """Interpolate fields linearly from the cells onto a square lattice.
 
-    Arrows at the cells would overlap in the middle and at the rim. Nodes close to the rim and to
-    the centre of rotation are omitted. Returns lateral and forward positions, then the fields.
+    Arrows at the cells would overlap in the middle and at the rim. Nodes close to the rim or to the
+    centre of rotation are omitted. Returns the lateral and forward positions, followed by the
+    fields.
     """
     line = SPACING * np.arange(-round(1.0 / SPACING), round(1.0 / SPACING) + 1)
     nodes = np.stack(np.meshgrid(line, line), axis=-1).reshape(-1, 2)

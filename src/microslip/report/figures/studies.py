@@ -1,8 +1,9 @@
-"""Figures of the studies.
+"""Draw the figures of the studies.
 
-Accuracy: performance profiles, error against cost, and cheapest models. Stability: a table with a
-coloured square for the outcome of each method in each case. Claims: static limits, fractions of the
-friction bound, and stick zones.
+The figures of `accuracy` are performance profiles, plots of error against cost, and maps of the
+cheapest model. The figure of `stability` is a table with a coloured square for the outcome of each
+method in each case. The figures of `claims` show static limits, fractions of the friction bound,
+and stick zones.
 """
 
 from __future__ import annotations
@@ -33,18 +34,19 @@ from microslip.studies.static_limits import FORMULAS
 NAMES = {"auto": "chosen by tolerance", "paper": "paper's run"}
 """Labels of competitors whose names need an explanation."""
 LEAST_RANGE = 10.0
-"""The axis of a profile extends at least to this ratio."""
+"""Ratio to which the axis of a profile extends at least."""
 COSTS = {
     "seconds": "CPU time of a run  $t$ (s)",
     "effort": "effort: iterations $\\times$ unknowns\n(dimensionless)",
 }
 """Label of each cost."""
 ACROSS, WIDTH, ROW, LINE = 3, 1.95, 1.95, 0.15
-"""Number of panels in a row; width of a panel, height of a row and of a legend line, in inches."""
+"""Number of panels in a row, followed by the width of a panel, the height of a row and the height
+of a legend line, all in inches."""
 MOST = 1e6
 """Largest ratio of the upper to the lower end of the axis of errors."""
 EDGE = 0.06
-"""Distance between the range of the values and a value outside this range, divided by the range."""
+"""Distance at which a value outside the range is drawn from the range, divided by the range."""
 FRONT: look.Ink = {"color": "#EBD9A0", "lw": 5.0, "solid_capstyle": "round", "zorder": 1}
 AUTO: look.Ink = {"color": look.BLACK, "marker": "D", "lw": 0.8, "ms": 4.2, "zorder": 7}
 PAPER: look.Ink = {"color": look.BLACK, "marker": "*", "ls": "none", "ms": 9.0, "zorder": 8}
@@ -57,7 +59,7 @@ MARKS = {
     **{NAMES["auto"]: AUTO, NAMES["paper"]: PAPER, "any other method": OTHER},
     **{"not converged, or none": CROSS, "beyond the axis": BEYOND},
 }
-"""Labels and styles of the trials of all models."""
+"""Labels and styles of the legend entries that apply to all models."""
 SHIPPED: look.Ink = {"lw": 1.1, "ms": 4.2, "mew": 0.8, "zorder": 5}
 UNKNOWN: look.Ink = {"fc": "none", "ec": "#A8A8A8", "lw": 0.0, "hatch": "/////"}
 NONE: look.Ink = {"fc": "white", "ec": look.GREY, "lw": 0.0, "hatch": 5 * "/"}
@@ -66,7 +68,7 @@ NONE: look.Ink = {"fc": "white", "ec": look.GREY, "lw": 0.0, "hatch": 5 * "/"}
 def profile(dataset: xr.Dataset) -> Figure:
     """Draw performance profiles at the tightest tolerance, with a panel for each contest.
 
-    A profile is the fraction of points that a competitor solves within a cost.
+    A profile is the fraction of points that a competitor solves within a given cost ratio.
     """
     dataset = dataset.isel(map_tolerance=int(np.argmin(dataset["map_tolerance"].values)))
     of_contest = dataset["competitor_contest"].values.astype(str)
@@ -79,7 +81,8 @@ def profile(dataset: xr.Dataset) -> Figure:
         ratios = own["profile_ratio"].transpose("competitor", "point").values
         high = 1.3 * max(ratios[np.isfinite(ratios)].max(initial=1.0), LEAST_RANGE)
         names = own["competitor"].values.astype(str)
-        # The default is first and black; the others follow in the order of the dataset.
+        # The default method comes first and is black. The others follow in the order of the
+        # dataset.
         order = np.argsort(~np.isin(names, ("shipped", "auto")), kind="stable")
         for place, (name, row) in enumerate(zip(names[order], ratios[order], strict=True)):
             at = np.sort(row[np.isfinite(row)])
@@ -102,9 +105,9 @@ def profile(dataset: xr.Dataset) -> Figure:
 def _versus(dataset: xr.Dataset, cost: str) -> Figure:
     """Draw the errors of all trials against a cost, with a panel for each point.
 
-    Each model with the default method has a colour and a marker, runs of other methods are grey.
-    Trials outside of the axes are drawn at their edge, in a circle: errors far below the error of
-    the reference, and trials without a result or without a cost.
+    Each model with the default method has its own colour and marker; runs of other methods are
+    grey. Trials that lie outside the axes are drawn at the edge, in a circle. These are errors far
+    below the error of the reference, and trials without a result or without a cost.
     """
     names = {f"trial_{name}": name for name in ("point", "model", "method", "level")}
     names |= {cost: "cost", f"front_{cost}": "front"}
@@ -151,13 +154,14 @@ versus_work = partial(_versus, cost="effort")
 
 
 def _beyond(low: float, high: float, share: float) -> tuple[float, float]:
-    """Return two values outside of a logarithmic range, at a share of the range from its ends."""
+    """Return two values below and above a logarithmic range, at a distance from the ends of `share`
+    times the range."""
     factor = (high / low) ** share
     return low / factor, high * factor
 
 
 def _trials(axes: Axes, trials: pd.DataFrame) -> None:
-    """Draw every trial of a point, with a curve for each model and markers for other methods."""
+    """Draw every trial at a point, with a curve for each model and markers for other methods."""
     front = trials[trials["front"] != 0].sort_values(["x", "y"], ascending=[True, False])
     axes.plot(front["x"], front["y"], drawstyle="steps-post", gid="front", **FRONT)
     for (model, method), own in trials.groupby(["model", "method"], sort=False):
@@ -181,8 +185,8 @@ def _ink(model: str, method: str) -> look.Ink:
 
 
 def model_map(dataset: xr.Dataset) -> Figure:
-    """Draw the cheapest accurate model at each velocity and amplitude: a row of panels for each
-    motion, and a column for each tolerance."""
+    """Draw the cheapest accurate model at each velocity and amplitude, with a row of panels for
+    each motion and a column for each tolerance."""
     tolerances = dataset["map_tolerance"].values
     names = {str(n) for motion in MOTIONS for n in dataset[f"{motion}_cheapest"].values.ravel()}
     models = look.in_order(names - {""})
@@ -205,7 +209,7 @@ def model_map(dataset: xr.Dataset) -> Figure:
 
 
 def _cheapest(axes: Axes, dataset: xr.Dataset, motion: str, models: list[str]) -> None:
-    """Colour every cell by its model, and label every connected region."""
+    """Colour each cell by its cheapest model, and label each connected region."""
     dims = f"{motion}_amplitude", f"{motion}_velocity"
     amplitude, velocity = columns(dataset, *dims)
     names = dataset[f"{motion}_cheapest"].transpose(*dims).values.astype(str)
@@ -216,13 +220,13 @@ def _cheapest(axes: Axes, dataset: xr.Dataset, motion: str, models: list[str]) -
     look.cells(axes, x, y, names == "", gid="none", **NONE)
     text: look.Ink = {"ha": "center", "va": "center", "fontweight": "bold", "gid": "region"}
     for name in models:
-        # Coloured edges prevent hairlines between the cells in a PDF.
+        # Coloured edges prevent hairlines between the cells in PDF files.
         ink: look.Ink = {"fc": _pale(name), "ec": _pale(name), "lw": 0.3, "gid": f"cheapest {name}"}
         look.cells(axes, x, y, names == name, **ink)
         regions, count = ndimage.label(names == name)
         for region in range(1, count + 1):
             depth = ndimage.distance_transform_cdt(np.pad(regions == region, 1))[1:-1, 1:-1]
-            # Among the cells farthest from the border, the label is in the most central one.
+            # The label is in the most central one of the cells that are farthest from the border.
             deepest = np.argwhere(depth == depth.max())
             i, j = deepest[np.argmin(np.hypot(*(deepest - deepest.mean(axis=0)).T))]
             axes.text(velocity[j], amplitude[i], _short(name), **text)
@@ -237,7 +241,7 @@ def _short(model: str) -> str:
 
 
 def _pale(model: str) -> tuple[float, ...]:
-    """Return the colour of a model, lightened so that black letters are readable on it."""
+    """Return the colour of a model, lightened so that black letters on it are readable."""
     return tuple(0.5 + 0.5 * part for part in to_rgb(look.model(model)[0]))
 
 
@@ -249,21 +253,21 @@ OUTCOMES = {
     3: ("wrong", "#C04F00", "W", "white", "reported as converged, but too far from the reference"),
     4: ("diverged", "#222222", "D", "white", "diverged, or no result"),
 }
-"""Outcomes by code: name, fill colour, symbol, symbol colour, meaning. The fill colours darken from
-good to bad, so that they also differ in greyscale."""
+"""Name, fill colour, symbol, symbol colour and meaning of each outcome, by code. The fill colours
+become darker from good to bad, so that they also differ in greyscale."""
 CASE, LEGEND = 0.125, 1.7
-"""Height of a row of the table, and of the names of the methods with the legend, in inches."""
+"""Height of a row of the table, and total height of the method names and the legend, in inches."""
 NOTE = 2.8
 """Width of the notes beside the table, in inches."""
 
 
 def atlas(dataset: xr.Dataset) -> Figure:
-    """Draw the outcomes: a row for each case, and a column for each method. A cell is blank if the
-    method does not apply."""
+    """Draw a table of the outcomes, with a row for each case and a column for each method. A square
+    is blank if the method does not apply."""
     outcome = dataset["outcome"].transpose("case", "method").values.astype(int)
     methods = dataset["method"].values.astype(str)
     of_case, labels = (part.astype(str) for part in columns(dataset, "case_axis", "case_label"))
-    order = np.argsort(methods != "shipped", kind="stable")  # the default method is first
+    order = np.argsort(methods != "shipped", kind="stable")  # the default method comes first
     order = order[(outcome.any(axis=0) | (methods == "shipped"))[order]]
     texts = zip(*columns(dataset, "axis", "axis_label", "axis_note"), strict=True)
     blocks = [(np.flatnonzero(of_case == str(axis)), *two) for axis, *two in texts]
@@ -308,9 +312,9 @@ def atlas(dataset: xr.Dataset) -> Figure:
 PAPERS_RUN: look.Ink = {"mfc": "none", "mec": look.VERMILLION, "mew": 1.1, "zorder": 6, "ms": 6.5}
 PAPERS_RUN |= {"marker": "s", "ls": "none", "clip_on": False, "gid": "paper"}
 LIGHTEST = 0.82
-"""Upper end of the colour map for lines. Lines in lighter colours have too little contrast."""
+"""Upper end of the colour map for lines. Lighter lines would have too little contrast."""
 MOMENTS = {0: "before one turning point", 1: "mid-stroke", 2: "before the other"}
-"""Labels of the moments in `patches`, keyed by index in the dataset."""
+"""Labels of the moments in `patches`, keyed by the index of the moment in the dataset."""
 AREAS = (
     ("patch_stick", "all", look.BLACK, look.SOLID),
     ("patch_stick_right", "right half", look.BLUE, look.DASHED),
@@ -319,7 +323,8 @@ AREAS = (
 
 
 def static(dataset: xr.Dataset) -> Figure:
-    """Draw friction against the amplitude, and fractions of the bound against the radius."""
+    """Draw friction against the amplitude, and fractions of the friction bound against the
+    radius."""
     figure = look.new_figure(look.DOUBLE, 6.4)
     grid = figure.subplots(2, 2)
     for axes, (motion, texts) in zip(grid[0], MOTIONS.items(), strict=True):
@@ -351,7 +356,8 @@ def _friction(axes: Axes, dataset: xr.Dataset, motion: str) -> None:
 
 
 def _shares(axes: Axes, dataset: xr.Dataset, motion: str) -> None:
-    """Draw the fractions of the bound for oscillation (solid) and forward friction (dashed)."""
+    """Draw the fractions of the friction bound used by the oscillation (solid) and left for forward
+    friction (dashed)."""
     dim = f"{motion}_share_amplitude"
     radius, amplitudes = columns(dataset, "share_radius", dim)
     shades = matplotlib.colormaps[look.COLOURMAP](np.linspace(0.0, LIGHTEST, amplitudes.size))
@@ -367,7 +373,8 @@ def _shares(axes: Axes, dataset: xr.Dataset, motion: str) -> None:
 
 
 def patches(dataset: xr.Dataset) -> Figure:
-    """Draw the contact at three moments of an oscillating bore, and the stick area in a period."""
+    """Draw the contact at three moments of an oscillating bore, and the stick area over a
+    period."""
     figure = look.new_figure(look.DOUBLE, 5.2)
     grid = figure.subplot_mosaic("abc;ddd", height_ratios=(1.0, 0.72))
     contacts = [grid[which] for which in "abc"]
@@ -391,7 +398,8 @@ def patches(dataset: xr.Dataset) -> Figure:
 
 
 def _contact(axes: Axes, at: xr.Dataset) -> ScalarMappable:
-    """Draw points that stick, coloured by traction divided by bound. Points that slip are white."""
+    """Draw sticking points in colours that show traction divided by bound. Slipping points are
+    white."""
     share = at["patch_share"].where(at["patch_share"] < 1.0).values
     x, y = columns(at, "patch_lateral", "patch_forward")
     ink: look.Ink = {"cmap": look.COLOURMAP, "vmax": 1.0, "gid": "sticks"}

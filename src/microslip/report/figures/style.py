@@ -1,4 +1,4 @@
-"""The style of all figures: sizes, fonts, colours, texts, and parts of panels."""
+"""Style of all figures: sizes, fonts, colours, text formats, and parts of panels."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ Ink = dict[str, Any]
 SINGLE, DOUBLE = 3.39, 7.09
 """Journal column widths in inches (86 mm and 180 mm)."""
 
-# Colours of Okabe and Ito, which can be distinguished with all common kinds of colour vision.
+# Colours of Okabe and Ito, which can be distinguished with all common types of colour vision.
 BLACK, BLUE, VERMILLION = "#000000", "#0072B2", "#D55E00"
 GREEN, ORANGE, PURPLE = "#009E73", "#E69F00", "#CC79A7"
 GREY, PALE, SKY = "#6E6E6E", "#D4D4D4", "#56B4E9"
@@ -40,7 +40,7 @@ GREY, PALE, SKY = "#6E6E6E", "#D4D4D4", "#56B4E9"
 COLOURMAP = "cividis"
 """Colour map for values from 0 to 1, perceptually uniform and readable in grey."""
 
-# Line styles distinguish curves that are printed without colour.
+# Line styles distinguish curves when they are printed without colour.
 SOLID = "-"
 DASHED = (0, (5.0, 2.0))
 DASHDOT = (0, (6.0, 1.6, 1.2, 1.6))
@@ -49,11 +49,12 @@ DOTTED = (0, (1.0, 1.6))
 COLOURS = BLACK, BLUE, VERMILLION, GREEN, ORANGE, PURPLE, SKY, GREY
 STYLES = 2 * (SOLID, DASHED, DASHDOT, DOTTED)
 LINES = tuple(zip(COLOURS, "os^DvPX*", STYLES, strict=True))
-"""Colour, marker and line style of each line in a panel, in the order of the lines."""
+"""Colour, marker and style of the first, second, ... line in a panel."""
 
 
 def line(index: int) -> tuple[str, str, Any]:
-    """Return the colour, marker and style of a line; 64 lines differ in colour or marker."""
+    """Return the colour, marker and style of a line. The first 64 lines differ in colour or
+    marker."""
     color, marker, ls = LINES[index % len(LINES)]
     return color, LINES[(index + index // len(LINES)) % len(LINES)][1], ls
 
@@ -68,7 +69,7 @@ LIMITS: dict[str, tuple[str, Any]] = {
     "mu_forward_theory": (BLUE, SOLID),
     "mu_torque_theory": (VERMILLION, DASHED),
 }
-"""Colour and line style of each closed form, by the name of its variable."""
+"""Colour and line style of each closed form, keyed by the name of the variable."""
 
 MODELS = {
     "rigid": (BLACK, "h"),
@@ -105,10 +106,11 @@ RC = {
     "hatch.linewidth": 0.6,
     "pdf.fonttype": 42,
 }
-"""Settings that differ from those of matplotlib, whose font is the same on every machine."""
+"""Settings that differ from matplotlib's defaults. The default font is kept, because it is the same
+on every machine."""
 
-# The label of an axis has words, a symbol and a unit. A symbol that is a ratio needs no unit. Other
-# dimensionless symbols have the label "(dimensionless)".
+# The label of an axis consists of words, a symbol and a unit. A ratio needs no unit. Any other
+# dimensionless quantity is labelled "(dimensionless)".
 FRICTION = f"{MU_MACRO.text}  {MU_MACRO.math}\n(dimensionless)"
 
 
@@ -118,12 +120,13 @@ def style() -> AbstractContextManager[None]:
 
 
 def new_figure(width: float, height: float) -> Figure:
-    """Return an empty figure with a size in inches and a layout in which panels do not overlap."""
+    """Return an empty figure of a size in inches, with a layout in which panels do not overlap."""
     return Figure(figsize=(width, height), layout="constrained")
 
 
 def quantity(dataset: xr.Dataset, dim: str) -> Quantity:
-    """Return the description of an axis of a dataset. Axes of the paper have a symbol."""
+    """Return the description of an axis of a dataset. Only the axes of the paper and drives have a
+    symbol."""
     known = TABLE.get(dim, {}).get(dataset.attrs.get("motion", "")) or DRIVES.get(dim)
     name = "forward velocity" if dim == "velocity" else dim
     formula = dataset[dim].attrs.get("formula", "") if dim in dataset else ""
@@ -131,7 +134,7 @@ def quantity(dataset: xr.Dataset, dim: str) -> Quantity:
 
 
 def symbol(motion: str, dim: str) -> str:
-    """Return the symbol of an axis for a motion in LaTeX, or else its name."""
+    """Return the LaTeX symbol of an axis for a motion, or else the name of the axis."""
     known = TABLE.get(dim, {}).get(motion) or DRIVES.get(dim)
     name = rf"\mathrm{{{dim}}}" if dim != "poisson" else r"\nu"
     return known.latex if known else name
@@ -140,7 +143,7 @@ def symbol(motion: str, dim: str) -> str:
 def axis(one: Quantity, short: bool = False) -> str:
     """Return the label of an axis: words, the symbol, and the ratio that defines the symbol.
 
-    short: True to leave out a symbol that a ratio defines.
+    short: if True, omit a symbol that is defined by a ratio.
     """
     ratio = mathtext(one.unit)
     if not one.latex or (short and ratio):
@@ -189,10 +192,10 @@ def in_order(names: set[str]) -> list[str]:
 
 
 def literal(text: object) -> str:
-    """Escape a title from the configuration so that matplotlib draws it verbatim.
+    """Escape a title from the configuration, so that matplotlib draws it literally.
 
-    Dollar signs are escaped, white space becomes single spaces, and a text of more than `LONGEST`
-    characters ends in an ellipsis.
+    Dollar signs are escaped, white space is replaced by single spaces, and a title of more than
+    `LONGEST` characters is shortened with an ellipsis.
     """
     plain = "".join(sign if sign.isprintable() else " " for sign in str(text))
     plain = " ".join(plain.split())
@@ -202,7 +205,8 @@ def literal(text: object) -> str:
 
 
 def width(text: str, size: float) -> float:
-    """Return the width in inches of a text at a font size in points. The text can have mathtext."""
+    """Return the width in inches of a text at a font size in points. The text can contain
+    mathtext."""
     return TextPath((0, 0), text, size=size).get_extents().width / 72.0
 
 
@@ -239,7 +243,7 @@ _WORD = re.compile(r"([A-Za-z]+)(\d*)(?:_([A-Za-z0-9]+))?")
 
 
 def mathtext(formula: str) -> str:
-    """Convert a formula to mathtext. If it contains words, only its symbols are mathtext.
+    """Convert a formula to mathtext. If it contains words, only the symbols are converted.
 
     A symbol is a letter or the name of a Greek letter, with an optional number or index: x, v0,
     u_lim, phi_lk. Other sequences of letters are words.
@@ -283,8 +287,8 @@ def _in_words(match: re.Match[str]) -> str:
 # Parts of panels
 
 VISIBLE_ERROR = 0.01
-"""Smallest error estimate that is drawn, relative to the largest value. The markers hide smaller
-error estimates."""
+"""Smallest error estimate that is drawn, divided by the largest value. Smaller error bars would be
+hidden by the markers."""
 PIXELS = 401
 """Number of pixels along each side of a contact's image."""
 
@@ -298,15 +302,15 @@ def grid(figure: Any, count: int, across: int, **shared: Any) -> list[Axes]:
 
 
 def lettered(axes: Axes, note: str = "") -> str:
-    """Return the heading of a panel: the next letter of its figure, bold and in brackets, and an
-    optional note."""
+    """Return the heading of a panel: the next letter in the figure, bold and in brackets, followed
+    by an optional note."""
     figure: Any = axes.get_figure(root=True)
     figure.letters = getattr(figure, "letters", -1) + 1
     return rf"$\bf{{({letter(figure.letters)})}}$" + (rf"$\;$ {note}" if note else "")
 
 
 def heading(axes: Axes, note: str = "", room: float = np.inf) -> None:
-    """Write a letter and a note above a panel, in lines at most `room` inches wide."""
+    """Write a letter and a note above a panel, in lines that are at most `room` inches wide."""
     lines = lettered(axes, note).split("\n")
     text = "\n".join(wrapped(line, room, HEADING) for line in lines)
     axes.set_title(text, loc="left", y=1.0, pad=5)
@@ -316,7 +320,7 @@ def legend_above(axes: Axes, note: str = "", **more: Any) -> None:
     """Write a letter, a note and a legend above a panel. more: arguments of `legend`."""
     place: Ink = {"loc": "lower left", "bbox_to_anchor": (0.0, 1.02), "alignment": "left"}
     place |= {"handletextpad": 0.6, "columnspacing": 0.8, "borderaxespad": 0.0, "borderpad": 0.0}
-    # An empty legend has a title, too.
+    # The title is also drawn if the legend is empty.
     place |= {"handles": axes.get_legend_handles_labels()[0], "ncols": 2}
     axes.legend(title=lettered(axes, note), **place | more)
 
@@ -329,25 +333,26 @@ def legend_of_figure(figure: Any, handles: Iterable, where: str, ncols: int, **m
 
 
 def colour_bar(shown: Any, panels: Axes | Sequence[Axes], label: str, **settings: Any) -> Colorbar:
-    """Add a colour bar beside one or several panels. shown: artist with colours in one of them."""
+    """Add a colour bar beside one or several panels. shown: coloured artist in one of the
+    panels."""
     bar = shown.axes.figure.colorbar(shown, ax=panels, label=label, **settings)
     bar.ax.tick_params(direction="out")
     return bar
 
 
 def ticks_outside(axes: Axes) -> None:
-    """Move the ticks of a filled panel to its outside, at the bottom and the left."""
+    """Draw the ticks of a filled panel outside the panel, at the bottom and the left."""
     axes.tick_params(which="both", direction="out", top=False, right=False)
 
 
 def logarithmic_if_wide(axes: Axes, values: np.ndarray) -> None:
-    """Make the abscissa logarithmic if its values are positive and far apart."""
+    """Make the abscissa logarithmic if the values are positive and span a wide range."""
     if is_wide(values):
         logarithmic(axes)
 
 
 def logarithmic(axes: Axes, limits: Sequence[float] | np.ndarray | None = None) -> None:
-    """Make the abscissa of a panel logarithmic. limits: its first and last value."""
+    """Make the abscissa of a panel logarithmic. limits: first and last value of the abscissa."""
     axes.set(xscale="log")
     if limits is not None:
         axes.set_xlim(*limits)
@@ -355,7 +360,8 @@ def logarithmic(axes: Axes, limits: Sequence[float] | np.ndarray | None = None) 
 
 
 def logarithmic_ticks(axis: Axis) -> None:
-    """Label an axis at powers of ten, or at round numbers if it contains fewer than two powers."""
+    """Label an axis at powers of ten, or at round numbers if the axis contains fewer than two of
+    them."""
     low, high = np.sort(axis.get_view_interval())
     powers = np.floor(np.log10(high) + 1e-9) - np.ceil(np.log10(low) - 1e-9) + 1
     axis.set_minor_formatter(ticker.NullFormatter())
@@ -368,11 +374,11 @@ def logarithmic_ticks(axis: Axis) -> None:
 
 
 def edges(points: np.ndarray, logarithmic: bool) -> np.ndarray:
-    """Return the edges, shape (n + 1,), of cells around n points.
+    """Return the edges of cells around n points, as an array of shape (n + 1,).
 
     The edges are half-way between neighbouring points. The first and the last point are in the
-    middle of their cells. points: ascending; logarithmic: True for geometric means, False for
-    arithmetic means.
+    middle of their cells. points: coordinates in ascending order. logarithmic: if True, use
+    geometric means, else arithmetic means.
     """
     if logarithmic:
         return np.exp(edges(np.log(points), False))
@@ -381,9 +387,10 @@ def edges(points: np.ndarray, logarithmic: bool) -> np.ndarray:
 
 
 def cells(axes: Axes, x: np.ndarray, y: np.ndarray, which: np.ndarray, **ink: Any) -> None:
-    """Draw a rectangle for each cell that is True.
+    """Draw a rectangle for each cell whose entry in `which` is True.
 
-    x, y: edges of the cells, shapes (n + 1,) and (m + 1,). which: shape (m, n).
+    x, y: edges of the cells, as arrays of shape (n + 1,) and (m + 1,). which: array of shape (m,
+    n).
     """
     for i, j in np.argwhere(which):
         size = x[j + 1] - x[j], y[i + 1] - y[i]
@@ -393,9 +400,9 @@ def cells(axes: Axes, x: np.ndarray, y: np.ndarray, which: np.ndarray, **ink: An
 def disc(
     axes: Axes, x: np.ndarray, y: np.ndarray, values: np.ndarray, method: str, **ink: Any
 ) -> ScalarMappable:
-    """Draw an image of the contact with its edge, a circle with radius 1.
+    """Draw an image of the contact, with a circle of radius 1 as the edge.
 
-    x, y, values: lateral and forward positions of points, and their values. NaN is white. method:
+    x, y, values: lateral position, forward position and value of each point. NaN is white. method:
     method of scipy.interpolate.griddata.
     """
     line = np.linspace(-1.0, 1.0, PIXELS)
@@ -408,7 +415,8 @@ def disc(
 
 
 def unit_range(axes: Axes) -> None:
-    """Set the vertical range of a panel to 0 to 1, extended to all points and lines with an id."""
+    """Set the vertical range of a panel to 0 to 1, extended to include all points and lines with an
+    id."""
     lines = [np.ravel(line.get_ydata()) for line in axes.get_lines() if line.get_gid()]
     values = np.concatenate([np.array([0.0, 1.0]), *lines])
     values = values[np.isfinite(values)]
@@ -419,13 +427,14 @@ def unit_range(axes: Axes) -> None:
 
 
 def closed_form(axes: Axes, x: Any, y: Any, name: str, label: str) -> None:
-    """Draw a closed form in its colour and line style. name: its variable in datasets."""
+    """Draw a closed form in its colour and line style. name: variable of the closed form in
+    datasets."""
     color, ls = LIMITS[name]
     axes.plot(x, y, color=color, ls=ls, label=label, gid=name)
 
 
 def computed(axes: Axes, x: np.ndarray, *points: np.ndarray, label: str = "", **ink: Any) -> None:
-    """Draw computed points with error bars. Unconverged points are hollow.
+    """Draw computed points with error bars. Points that did not converge are hollow.
 
     points: values, error estimates, and flags that are nonzero for converged points.
     """
