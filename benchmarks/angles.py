@@ -1,9 +1,9 @@
-"""Friction error by number of angles, for rotations, and for translations at nu > 0.
+"""Measure the friction error for each number of angles (rotations, translations at nu > 0).
 
     python benchmarks/angles.py [--points N] [--markdown FILE]
 
-Random points of several motions and pressures are solved with few and with many angles, with equal
-rings and steps. The table has one line for each motion. It shows the largest friction difference
+Random points of several motions and pressures are solved with few and with many angles, with the
+same rings and steps. The table has one row for each motion, with the largest friction difference
 for each number of angles on half the disc.
 """
 
@@ -34,7 +34,7 @@ DISTANCE = 1e-7
 
 
 def differences(motion: str, place: tuple, poisson: float, pressure: str) -> list[float]:
-    """Friction with ANGLES minus friction with MANY. place: velocity and amplitude."""
+    """Return the friction with each of ANGLES minus that with MANY, at (velocity, amplitude)."""
     problem = Problem(motion_named(motion), *place, poisson, pressure_named(pressure))
     settings = Settings(focus=edge_focus(problem, "polar"))
     steps = round(STEPS * max(problem.stroke, 1.0) ** 0.5)
@@ -66,7 +66,7 @@ def main() -> None:
         rows.append({"motion": motion})
         rows[-1] |= {str(n): f"{one:.0e}" for n, one in zip(ANGLES, worst, strict=True)}
         print(rows[-1], flush=True)
-    heading = "Largest difference of the friction from that with"
+    heading = "Largest friction difference between each number of angles and"
     text = f"{heading} {MANY} angles, over {options.points} random points of each motion.\n\n"
     tables.publish(text + tables.markdown(rows), options)
 

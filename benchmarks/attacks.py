@@ -5,9 +5,9 @@
 
 A chain begins at a random point and takes STEPS random steps of decreasing length. A step is kept
 if it increases the ratio of the error to the error estimate. Every evaluated point is an attack.
-Its ratio is the largest of all quantities of the result, each compared with a solution at a tenth
-of the tolerance, or at a hundredth if the ratio exceeds 1. An attack succeeds if the error exceeds
-the estimate by more than the estimate of that solution.
+Its ratio is the largest over all quantities of the result. Each quantity is compared with a second
+solution at a tenth of the tolerance, or at a hundredth if the ratio exceeds 1. An attack succeeds
+if the error exceeds the estimate by more than the error estimate of the second solution.
 
 The scenes are springs with a mass, energies of motions at a prescribed velocity, and imposed
 resolutions. Results are written to a file of JSON lines, and an interrupted run can be continued.
@@ -27,7 +27,7 @@ import microslip
 STEPS = 7
 """Number of local steps after the random point."""
 LENGTH, SHORTER = 0.3, 0.8
-"""Standard deviation of the first step in the logarithms of the numbers, and its decrease."""
+"""Standard deviation of the first step, in logarithms, and its ratio from step to step."""
 MOTIONS = ("transverse", "zigzag", "transverse", "bore")
 SCENES = {
     "spring with a mass": {
@@ -44,7 +44,7 @@ SCENES = {
         "steps": (8, 160),
     },
 }
-"""Ranges of the numbers in each scene. They are log-uniform; cells and steps are even."""
+"""Ranges of the parameters of each scene, log-uniform. Cells and steps are even numbers."""
 EVEN = ("cells", "steps")
 TOLERANCES = (1e-2, 5e-3)
 FINE = 1e-3
@@ -54,7 +54,7 @@ MOST_WORK = 1e8
 
 
 def attacked(seed: int, k: int) -> dict:
-    """Line k of the output: the points of a chain with their ratios."""
+    """Return line k of the output: the points of a chain and the ratio of each."""
     draw = np.random.default_rng([seed, k])
     scene = list(SCENES)[k % len(SCENES)]
     ranges = SCENES[scene]
@@ -77,8 +77,8 @@ def attacked(seed: int, k: int) -> dict:
 
 
 def judged(point: dict) -> tuple[float, float, str]:
-    """Largest ratio of error to estimate, the same without the reference's uncertainty, and the
-    quantity. (0, 0, "") if the point or its reference is not converged."""
+    """Return the largest ratio of error to estimate, the same ratio without the reference's
+    uncertainty, and the quantity, or (0, 0, "") if the point or its reference is not converged."""
     result = microslip.solve(**{"tolerance": None} | point, most_work=MOST_WORK)
     if not result.converged:
         return 0.0, 0.0, ""
@@ -88,7 +88,7 @@ def judged(point: dict) -> tuple[float, float, str]:
 
 
 def compared(result: microslip.Result, point: dict, factor: float) -> tuple[float, float, str]:
-    """The result of `judged` for a reference at `factor` times the tolerance."""
+    """Return the result of `judged` for a reference at `factor` times the tolerance."""
     plain = {name: value for name, value in point.items() if name not in EVEN}
     tolerance = factor * point["tolerance"] if "tolerance" in point else 10.0 * factor * FINE
     reference = microslip.solve(**plain | {"tolerance": tolerance}, most_work=MOST_WORK)
@@ -104,7 +104,7 @@ def compared(result: microslip.Result, point: dict, factor: float) -> tuple[floa
 
 
 def summary(lines: list[dict]) -> str:
-    """Markdown: number of attacks and misses by scene, and every miss."""
+    """Return Markdown with the number of attacks and misses of each scene, and every miss."""
     rows, misses = [], []
     for scene in [*SCENES, "all"]:
         points = [p for line in lines if scene in (line["scene"], "all") for p in line["points"]]

@@ -1,4 +1,4 @@
-"""Stratified random points of all kinds, concentrated where error estimates can be too small.
+"""Draw stratified random points, with more points where error estimates can be too small.
 
 `point(seed, k)` returns point k of a seed's sample. The point depends on seed and k only, so every
 longer sample begins with the shorter ones. Seed 3 has the strata that calibrate the error estimate.
@@ -142,7 +142,7 @@ PHASES = (0, 10, 30, 45, 60, 90, 120)
 SLOW = {"velocity": (-4.5, -1.0), "tolerances": (1e-2, 5e-3, 2e-3)}
 STRAIGHT = ("transverse", "transverse", "zigzag", *LOOPS)
 MOVING = {"velocity": (-2.0, 0.5), "amplitude": (-0.5, 1.0), "tolerances": TOLERANCES[:2]}
-"""Range in which a force moves most contacts, and in which a spring changes the friction."""
+"""Range in which a force moves most contacts, and a spring changes the friction."""
 COUPLES = (
     "phase=0;phase=180",
     "phase=0;phase=180",
@@ -201,7 +201,7 @@ def _together(*drives):
 
 
 def _driven(name, drive, weights, **changes):
-    """Strata of translations and rotations under a drive."""
+    """Return the strata of translations and rotations under a drive."""
     both = (("translations", STRAIGHT, ROUND), ("bore", ("bore",), ("hertz", *ROUND)))
     return tuple(
         Stratum(
@@ -338,16 +338,16 @@ ELLIPTIC = tuple(
         ("rotations", ("bore", "bore", "transverse-bore")),
     )
 )
-"""Ellipses of all proportions, forward and sideways."""
+"""Ellipses of all aspect ratios, with the long axis forward or sideways."""
 
 
 def strata_of(seed: int) -> tuple[Stratum, ...]:
-    """Strata of a seed's sample."""
+    """Return the strata of a seed's sample."""
     return {CALIBRATION_SEED: CALIBRATION, ELLIPTIC_SEED: ELLIPTIC}.get(seed, VALIDATION)
 
 
 def point(seed: int, k: int) -> dict:
-    """Point k of a seed's sample: arguments of `microslip.solve`, and the stratum."""
+    """Return point k of a seed's sample: arguments of `microslip.solve`, and the stratum."""
     draw = np.random.default_rng([seed, k])
     strata = strata_of(seed)
     weights = np.array([stratum.weight for stratum in strata])

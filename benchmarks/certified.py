@@ -1,4 +1,4 @@
-"""Validate the error estimates of certified maps at random points, and compare uniform grids.
+"""Validate the error estimates of certified maps at random points, and compare them with grids.
 
     python benchmarks/certified.py [--results FOLDER ...] [--maps NAME ...] [--points N] [--seed S]
                                    [--output FILE] [--markdown FILE]
@@ -47,12 +47,12 @@ amplitude. The points were used neither to make a map nor to choose a constant. 
 if the error of the map is at most its estimate plus the error estimate of the reference. The last
 column is the smallest fraction of the surplus with which all points would be covered."""
 GRIDS = """\
-Cost of the maps, and of uniform grids whose nodes are as accurate as the points of the map. The
-error between the nodes is that of `microslip.at`."""
+Cost of the maps, and of uniform grids whose nodes are as accurate as the points of the map. Between
+the nodes, the error estimate is that of `microslip.at`."""
 
 
 def random_points(dataset, number, seed):
-    """(velocity, amplitude, Poisson's ratio) of random points on a map."""
+    """Return (velocity, amplitude, Poisson's ratio) of random points on a map."""
     motion = list(TRUTH).index(dataset.motion)
     rng = np.random.default_rng([seed, motion])
     velocity, amplitude, poisson = (
@@ -70,7 +70,7 @@ def random_points(dataset, number, seed):
 
 
 def solved(motion, points, tolerance, path):
-    """(friction, error) at the points, shape (n, 2). Points in the file are not solved again."""
+    """Return friction and error at each point, shape (n, 2). Points in the file are reused."""
     names = ("velocity", "amplitude", "poisson")
     lines = [line for line in tables.parsed(path) if line["motion"] == motion]
     by_point = {tuple(line[n] for n in names): line for line in lines if line["asked"] == tolerance}
@@ -89,7 +89,7 @@ def solved(motion, points, tolerance, path):
 
 
 def cost(dataset, velocity, amplitude, poisson):
-    """Mean CPU time of a grid point in s, measured at some of the points, shape (n,) each."""
+    """Return the mean CPU time (s) of some of the points. The arguments have the shape (n,)."""
     chosen = np.random.default_rng(0).permutation(len(velocity))[:TIMED]
     begun = time.process_time()
     for k in chosen:
@@ -100,7 +100,7 @@ def cost(dataset, velocity, amplitude, poisson):
 
 
 def surpluses_at(dataset, points):
-    """Surplus of the cell at each point, and largest error estimate of the cell's nodes."""
+    """Return the surplus of the cell at each point, and the largest error estimate of its nodes."""
     table = cells_of(dataset)
     coordinates = table.coordinates
     scaled = coordinates.scaled(*np.array(points).T[: len(coordinates.directions)])
@@ -113,7 +113,7 @@ def surpluses_at(dataset, points):
 
 
 def judged(dataset, points, truth):
-    """A line of the table of error estimates."""
+    """Return a row of the table of error estimates."""
     answers = [dataset.microslip.at(v, a, poisson=nu) for v, a, nu in points]
     mu, estimate = (
         np.array([float(x[n]) for x in answers]) for n in ("mu_macro", "mu_macro_error")
@@ -132,14 +132,14 @@ def judged(dataset, points, truth):
 
 
 def named(dataset):
-    """First columns of a line: map and its error."""
+    """Return the first columns of a row: the map and its error."""
     over = dataset["poisson"]
     ratio = ", Poisson's ratio {:g} to {:g}".format(*over.values[[0, -1]]) if over.ndim else ""
     return {"map": dataset.motion + ratio, "error": f"{dataset.error:g}"}
 
 
 def of_map(dataset):
-    """Line of the map in the table of grids."""
+    """Return the row of the map in the table of grids."""
     bounds = dataset.cell_error.values
     nodes = [dataset[name].values for name in ("velocity", "amplitude", "poisson")]
     seconds = cost(dataset, *np.broadcast_arrays(*nodes))
@@ -147,7 +147,7 @@ def of_map(dataset):
 
 
 def of_uniform_grid(dataset, count):
-    """Line of a uniform grid, with error estimates at the centres of the grid cells."""
+    """Return the row of a uniform grid, with error estimates at the centres of its cells."""
     ends = [(float(dataset[n].min()), float(dataset[n].max())) for n in ("velocity", "amplitude")]
     grid = dataset.microslip.at(np.geomspace(*ends[0], count), np.linspace(*ends[1], count))
     grid["mu_macro_error"] = xr.zeros_like(grid.mu_macro_error) + dataset.tolerance
@@ -163,7 +163,7 @@ def of_uniform_grid(dataset, count):
 
 
 def of_grid(dataset, grid, points, estimate, seconds):
-    """Line of a grid. estimate: error estimates, any shape; seconds: CPU time for a point."""
+    """Return the row of a grid with these error estimates and this CPU time (s) per point."""
     return named(dataset) | {
         "grid": grid,
         "points": points,

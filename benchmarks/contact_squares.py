@@ -1,4 +1,4 @@
-"""Shift of a sphere on the elements of CONTACT: pressure, tractions, energies, stiffness.
+"""Compute shifts of a sphere on CONTACT's elements: pressure, tractions, energies, stiffness.
 
 CONTACT computes a shift in one backward Euler step on equal square elements. The traction bound of
 an element is friction times its pressure. The pressure is computed on the same elements, or it is
@@ -26,7 +26,7 @@ JOULE = 1e-3
 
 
 def normal_problem(case: dict, centres: np.ndarray) -> dict:
-    """Pressure of each element, approach of the bodies, and elastic energy.
+    """Compute the pressure of each element, the approach of the bodies, and the elastic energy.
 
     Elements with a negative pressure leave the contact until all pressures are positive.
 
@@ -65,7 +65,7 @@ def normal_problem(case: dict, centres: np.ndarray) -> dict:
 
 
 def elliptical_bound(case: dict, centres: np.ndarray) -> dict:
-    """Hertz pressure at the centre of each element. The parameters are those of normal_problem."""
+    """Return the Hertz pressure at each element's centre, for the arguments of normal_problem."""
     radius, load = case["prescribed"]["radius"], case["prescribed"]["load"]
     inside = 1.0 - (centres[:, None] ** 2 + centres**2) / radius**2
     return {"pressure": 1.5 * load / (np.pi * radius**2) * np.sqrt(np.maximum(inside, 0.0))}
@@ -77,7 +77,7 @@ def shifted(case: dict) -> dict:
     Returns
     -------
     dict
-        The numbers that CONTACT prints, by their names in the data file. For the elements in
+        The values that CONTACT prints, keyed by name as in the data file. For the elements in
         contact, the dict also contains the fields `pressure`, `forward` and `lateral` (tractions on
         the shifted body in N/mm2), `slip` (in mm), and the coordinates `x` and `y`.
     """
@@ -96,7 +96,7 @@ def shifted(case: dict) -> dict:
     u_lim = case["friction"] * load * bound.G_star / (modulus * half)
 
     def force(shift: tuple[float, float]) -> np.ndarray:
-        """Forces at a shift (forward, lateral), divided by friction times the nominal load."""
+        """Return the forces at a shift (forward, lateral), divided by friction times load."""
         return tractions(contact, np.array(shift) / u_lim)[1] * load / nominal
 
     nominal = prescribed.get("load", load)
@@ -137,7 +137,7 @@ def shifted(case: dict) -> dict:
 
 
 def tractions(contact: CartesianContact, shift: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Tractions and forces (forward, lateral) after one step to a shift, in working units."""
+    """Compute tractions and forces (forward, lateral) after a step to a shift, in working units."""
 
     def displacement(phase: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         return shift[0] * phase, shift[1] * phase, 0.0 * phase

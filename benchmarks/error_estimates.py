@@ -11,13 +11,13 @@ exceeds the error estimate by more than the reference's uncertainty. Every twent
 reference for its energy.
 
 The first reference is the same point, solved to a tenth of the tolerance. For tolerances of 1e-4
-and below, it is solved to a quarter. It is computed by the same rules as the estimate. Therefore
-some points have a second reference, which shares no run with the result. These are every twentieth
-point, and every point whose error may exceed its estimate. For one contact at a prescribed
-velocity, `finer.py` computes the second reference. Otherwise, it is computed from two runs with
-more cells and steps than the first reference. The second reference is also used if the first
-reference would take too much work, for example for rotations at 1e-4. The reference with the
-smallest uncertainty judges the point. References that contradict each other are listed.
+and below, it is solved to a quarter. It follows the same rules as the result. Therefore every
+twentieth point, and every point whose error may exceed its estimate, also has a second reference,
+which shares no run with the result. For one contact at a prescribed velocity, `finer.py` computes
+the second reference. Otherwise, it is computed from two runs with more cells and steps than the
+first reference. The second reference is also used if the first reference would take too much work,
+for example for rotations at 1e-4. The reference with the smallest uncertainty judges the point.
+References that contradict each other are listed.
 
 Results are written to a file of JSON lines, point by point, and an interrupted run can be
 continued. The run ends if changed sources give different values. --again solves all points again
@@ -62,7 +62,8 @@ MOST_WORK = 3e7
 NOT_FINER = {"force", "stiffness", "contacts"}
 """Arguments of points that `finer.py` cannot solve."""
 DENSER = 1.25, 1.75
-"""Ratios of a second reference's cells and steps to the first reference's. No level has them."""
+"""Cells and steps in the two runs of a second reference, divided by those of the first reference.
+No such run is also a level."""
 EXACT = 1e-7
 """Largest uncertainty of a closed form. Runs cannot improve a closed form."""
 CONFIDENCE = 0.95
@@ -86,54 +87,54 @@ SOURCES = ("resolution", "periodicity", "solver", "model")
 
 
 def arguments_of(point: dict) -> dict:
-    """Arguments of `microslip.solve` for a point."""
+    """Return the arguments of `microslip.solve` for a point."""
     return {name: value for name, value in point.items() if name != "stratum"}
 
 
 def quantity(result: microslip.Result) -> tuple[float, float]:
-    """The friction (under a force, the velocity) and its error estimate."""
+    """Return the friction (under a force, the velocity) and its error estimate."""
     return result.answer.value, result.answer.error
 
 
 def allowed(line: dict) -> float:
-    """Tolerance of a line's quantity."""
+    """Return the tolerance of a line's quantity."""
     return line["tolerance"] * (max(1.0, abs(line["reference"])) if "force" in line else 1.0)
 
 
 def off(line: dict) -> float:
-    """Distance of a line's value from its reference."""
+    """Return the distance of a line's value from its reference."""
     return abs(line["value"] - line["reference"])
 
 
 def ratio(line: dict) -> float:
-    """Error of a line minus the reference's uncertainty, divided by the error estimate."""
+    """Return (error of a line minus uncertainty of the reference) divided by the error estimate."""
     beyond = off(line) - line["uncertainty"]
     return beyond / max(line["error"], 1e-12) if beyond > 0.0 else 0.0
 
 
 def is_judged(line: dict) -> bool:
-    """True if a line is converged and has a reference."""
+    """Return True if a line is converged and has a reference."""
     return line["converged"] and bool(line["by"])
 
 
 def failed(line: dict) -> bool:
-    """True if the error estimate of a converged point is too small."""
+    """Return True if the error estimate of a converged point is too small."""
     return is_judged(line) and ratio(line) > 1.0
 
 
 def has_energy(line: dict) -> bool:
-    """True if a line is converged and has a reference for its energy."""
+    """Return True if a line is converged and has a reference for its energy."""
     return line["converged"] and ENERGY in line and line.get("energy") is not None
 
 
 def energy_ratio(line: dict) -> float:
-    """Like `ratio`, for the dissipated energy."""
+    """Return `ratio` for the dissipated energy."""
     beyond = abs(line["energy"] - line[ENERGY]) - line["energy_uncertainty"]
     return beyond / max(line["energy_error"], 1e-12) if beyond > 0.0 else 0.0
 
 
 def energy_failed(line: dict) -> bool:
-    """True if the error estimate of the energy is too small."""
+    """Return True if the error estimate of the energy is too small."""
     return has_energy(line) and energy_ratio(line) > 1.0
 
 
@@ -153,7 +154,7 @@ def calibrate(
 
 
 def examine(seed: int, k: int, reference: dict | None, constants: dict) -> dict:
-    """One line of the output: point k, result and reference. If None, the reference is computed."""
+    """Return a line of the output: point k, result, reference. A reference of None is computed."""
     point = blind_points.point(seed, k)
     calibrate(**constants)
     began = time.process_time()
@@ -181,7 +182,7 @@ def examine(seed: int, k: int, reference: dict | None, constants: dict) -> dict:
 
 
 def energy_of(point: dict) -> dict:
-    """Reference for the energy of a point, and its uncertainty; empty if there is none."""
+    """Return the energy reference of a point and its uncertainty, or {} if there is none."""
     _, result = tighter(point, MOST_WORK)
     if not result.converged or result.dissipation is None:
         return {}
@@ -189,10 +190,10 @@ def energy_of(point: dict) -> dict:
 
 
 def judged(k: int, point: dict, line: dict, result: microslip.Result, before: dict | None) -> dict:
-    """For point k: the reference with the smallest uncertainty, all references, and CPU seconds.
+    """Return the best reference of point k, all of its references, and the CPU seconds.
 
-    line: contains the value and the error of the point; result: its microslip.Result; before:
-    references of an earlier run.
+    The best reference has the smallest uncertainty. The argument `line` contains the value and the
+    error of the point, `result` its microslip.Result, and `before` references of an earlier run.
     """
     began = time.process_time()
     every, spent = (
@@ -226,7 +227,7 @@ def judged(k: int, point: dict, line: dict, result: microslip.Result, before: di
 
 
 def tighter(point: dict, most_work: float | None = None) -> tuple[dict, microslip.Result]:
-    """A reference at a tighter tolerance, and its Result. `by` is empty if not converged."""
+    """Return a reference at a tighter tolerance, and its Result. `by` is "" if not converged."""
     tolerance = point["tolerance"] * (TIGHTER if point["tolerance"] > 1e-4 else TIGHTER_AT_1E_4)
     arguments = arguments_of(point) | {"tolerance": tolerance}
     result = microslip.solve(**arguments, most_work=most_work)
@@ -236,7 +237,7 @@ def tighter(point: dict, most_work: float | None = None) -> tuple[dict, microsli
 
 
 def independent(point: dict, result: microslip.Result, first: microslip.Result) -> dict:
-    """A reference that shares no run with a point's result and first reference."""
+    """Return a reference that shares no run with a point's result and first reference."""
     if not NOT_FINER & point.keys():
         pressure = pressure_named(point["pressure"])
         place = (point["velocity"], point["amplitude"], point["poisson"])
@@ -264,7 +265,7 @@ def independent(point: dict, result: microslip.Result, first: microslip.Result) 
 
 
 def contradict(line: dict) -> bool:
-    """True if two references of a line differ by more than the sum of their uncertainties."""
+    """Return True if two references differ by more than the sum of their uncertainties."""
     every = line.get(ALL_REFERENCES, ())
     return any(
         abs(one["reference"] - other["reference"]) > one["uncertainty"] + other["uncertainty"]
@@ -274,7 +275,7 @@ def contradict(line: dict) -> bool:
 
 
 def summary(seed: int, lines: list[dict]) -> str:
-    """Markdown: error/estimate ratios by stratum and by tolerance, and all failures."""
+    """Return Markdown: error/estimate ratios by stratum and by tolerance, and all failures."""
     rows = []
     for stratum in blind_points.strata_of(seed):
         of = [line for line in lines if line["stratum"] == stratum.name]
@@ -290,7 +291,7 @@ def summary(seed: int, lines: list[dict]) -> str:
 
 
 def _verdict(lines):
-    """Sentences about the number of estimates that are too small, and the largest errors."""
+    """Return sentences about the number of estimates that are too small, and the largest errors."""
     converged = [line for line in lines if is_judged(line)]
     failures = [line for line in converged if failed(line)]
     n, x = len(converged), len(failures)
@@ -300,18 +301,18 @@ def _verdict(lines):
     twice = [line for line in lines if len(line.get(ALL_REFERENCES, ())) > 1]
     plain = [off(line) / max(line["error"], 1e-12) for line in converged] or [0.0]
     text = (
-        f"{len(lines)} points, {n} of them converged and with a reference. Too small beyond the"
-        f" uncertainty of the reference: {x} ({CONFIDENCE:.0%} limit: {1e3 * limit:.2f} in 1,000)."
-        f" Largest error: {largest:.2f} estimates, and {farthest:.2f} tolerances."
-        f" Error divided by its estimate: median {np.median(plain):.2f}, 99 % of the points below"
-        f" {np.quantile(plain, 0.99):.2f}."
+        f"{len(lines)} points, {n} of them converged and with a reference. Errors above the"
+        f" estimate by more than the uncertainty of the reference: {x} ({CONFIDENCE:.0%} limit:"
+        f" {1e3 * limit:.2f} in 1,000). Largest error: {largest:.2f} times the estimate, and"
+        f" {farthest:.2f} times the tolerance. Error divided by its estimate: median"
+        f" {np.median(plain):.2f}, 99 % of the points below {np.quantile(plain, 0.99):.2f}."
     )
     with_energy = [energy_ratio(line) for line in lines if has_energy(line)]
     if with_energy:
         text += (
-            f" Points with a reference for the energy: {len(with_energy)}; too small:"
+            f" Points with a reference for the energy: {len(with_energy)}; estimates too small:"
             f" {sum(one > 1.0 for one in with_energy)}, largest error: {max(with_energy):.2f}"
-            " estimates."
+            " times the estimate."
         )
     if twice:
         text += f" Points with two references or more: {len(twice)};"
@@ -320,7 +321,7 @@ def _verdict(lines):
 
 
 def _over_tolerance(line):
-    """Error minus the reference's uncertainty, divided by the tolerance."""
+    """Return (error minus uncertainty of the reference) divided by the tolerance."""
     return max(off(line) - line["uncertainty"], 0.0) / allowed(line)
 
 
@@ -337,7 +338,7 @@ def _row(name, lines):
 
 
 def _exceptions(lines):
-    """Sentences about failures, points that are not converged, and contradicting references."""
+    """Return sentences on failures, points not converged, and contradicting references."""
     text = []
     for line in sorted(filter(failed, lines), key=ratio, reverse=True):
         text.append(

@@ -1,8 +1,8 @@
-"""Size of the explorer, and its opening time in Chromium from a local file without a network.
+"""Measure the explorer's size, and its opening time in Chromium from a local file, offline.
 
 Run ``python benchmarks/explorer_opening.py results/explorer.html --markdown
-docs/measured/explorer.md`` on the page of config/explorer.yaml. It is opened each time in a new
-profile without a cache. It counts as open when all of its charts are drawn and it reacts to a
+docs/measured/explorer.md`` on the page of config/explorer.yaml. The page is opened each time in
+a new profile without a cache. It counts as open when all charts are drawn and it reacts to a
 click. ``--pictures docs/images`` saves pictures of the page and of its form for a real contact.
 """
 
@@ -21,7 +21,7 @@ FLAGS = ["--disable-gpu", "--disable-background-networking", "--no-first-run"]
 
 
 def open_once(playwright, path, pictures=None):
-    """Wall time and CPU time of the main thread, in s, from the request to the last chart."""
+    """Return wall time and CPU time (s) of the main thread, from the request to the last chart."""
     with tempfile.TemporaryDirectory() as profile:
         context = playwright.chromium.launch_persistent_context(
             profile, executable_path=CHROMIUM, args=FLAGS, viewport={"width": 1280, "height": 800}

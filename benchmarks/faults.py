@@ -1,17 +1,17 @@
-"""Test sweeps with kills, signals and damaged files at random moments, then run them again.
+"""Test sweeps with kills, signals and damaged files at random moments, and re-run them.
 
     python benchmarks/faults.py [--rounds N] [--seed S] [--only FAULT] [--markdown FILE]
 
 The project is copied to a temporary folder, and the sweeps of config/smoke.yaml are run once
 without a fault. Every round removes a random part of the results. Then Snakemake is killed (alone
 or with its jobs) or receives SIGINT or SIGTERM, or files are damaged. The sweeps are run once more
-without special options; the folder is unlocked first if Snakemake asks for it. The jobs of a
-Snakemake process that was killed alone go on: in every other round they end before the next run,
-in the others they run beside it. The table counts the signals that came while a job was running.
-Afterwards all datasets, figures and pages must be equal to those of the first run, bit for bit.
-Points stored before a signal must not be lost or written again. If a run refuses a damaged dataset
-by name, the dataset is removed before the next run. The search for processes works on Linux. Full
-and read-only disks are tested in tests/sweeps and tests/app.
+without special options; the folder is unlocked first if Snakemake asks for it. If Snakemake alone
+is killed, its jobs go on. In every other round, they end before the next run; in the others, they
+run at the same time. The table counts the signals sent while a job was running. Afterwards all
+datasets, figures and pages must be equal to those of the first run, bit for bit. Points stored
+before a signal must not be lost or written again. If a run refuses a damaged dataset by name, the
+dataset is removed before the next run. The search for processes works on Linux. Full and read-only
+disks are tested in tests/sweeps and tests/app.
 """
 
 from __future__ import annotations
@@ -85,7 +85,7 @@ class Project:
         return output if running.returncode else ""
 
     def files(self):
-        """All results by name, except logs, damaged files and incomplete files."""
+        """Return all results by name, except logs, damaged files and incomplete files."""
         return {
             path.relative_to(self.results).as_posix(): path
             for path in sorted(self.results.rglob("*"))
@@ -94,18 +94,18 @@ class Project:
         }
 
     def digests(self):
-        """SHA-256 of the datasets, figures and pages by their plain names."""
+        """Return the SHA-256 of the datasets, figures and pages, keyed by plain name."""
         links = {name: path for name, path in self.files().items() if path.is_symlink()}
         return {name: hashlib.sha256(path.read_bytes()).hexdigest() for name, path in links.items()}
 
     def stored(self):
-        """Inode and modification time of all stored points and single runs, by name."""
+        """Return inode and modification time of each stored point and single run, keyed by name."""
         stats = {n: path.stat() for n, path in self.files().items() if is_batch(n)}
         return {name: (stat.st_ino, stat.st_mtime_ns) for name, stat in stats.items()}
 
 
 def is_batch(name):
-    """True for the name of a file of solved points or of single runs."""
+    """Return True for the name of a file of solved points or of single runs."""
     return name.startswith("batches/") and name.endswith(".jsonl")
 
 
@@ -125,7 +125,7 @@ def wait_for_all(running):
 
 
 def job_runs(running):
-    """True if a script of a job is running in the session of a process."""
+    """Return True if a script of a job is running in the session of a process."""
     for pid in processes(running):
         with suppress(psutil.Error):
             if any("/.snakemake/scripts/" in word for word in psutil.Process(pid).cmdline()):
@@ -145,8 +145,8 @@ def damage(path, rng):
 def round_of(project, fault, reference, seconds, rng, jobs_end_first):
     """Cause one fault, and run again.
 
-    Returns findings, a list of sentences, which is empty if no result has changed, and whether a
-    job was running when the signal came.
+    Returns a list of sentences, which is empty if no result has changed, and a bool: whether a job
+    was running when the signal came.
     """
     chosen = rng.choice([1.0, 0.5, 0.2])
     for path in project.files().values():

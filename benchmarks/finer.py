@@ -1,11 +1,12 @@
-"""Reference of a point, on a mesh four times as fine as the result's mesh.
+"""Compute the reference of a point on a mesh four times as fine as the result's mesh.
 
 The reference shares no run with the result. It has four times the result's rings, angles and steps,
-up to 192 rings or squares, 32 angles and 2048 steps in half a period. It has at least twice the
-result's numbers. Each axis is refined alone, from a base that is finer than the first level of any
-result. The mixed difference of two axes is also computed at the base. Every search for a periodic
-state starts anew and continues to a tenth of the tolerance. The uncertainty is estimated from runs
-with half of the refinement. If a run does not become periodic, half of the refinement is used.
+up to 192 rings or squares, 32 angles and 2048 steps in half a period, but at least twice as many
+as the result. Each axis is refined alone, from a base that is finer than the first level of
+any result. The mixed difference of two axes is also computed at the base. Every search for a
+periodic state starts anew and ends at a distance of a tenth of the tolerance. The uncertainty is
+estimated from runs with half of the refinement. If a run does not become periodic, half of the
+refinement is used.
 
 A static limit over rings scatters, because the edge of the stick zone lies within a ring. Its
 reference is the mean over many numbers of rings.
@@ -46,7 +47,7 @@ PERIODICITY = 0.1
 
 
 def reference(problem, tolerance, certified):
-    """(mu, uncertainty) on a mesh four times as fine as the mesh of the Result `certified`."""
+    """Return (mu, uncertainty) on a mesh four times as fine as that of the Result `certified`."""
     kind = problem.motion
     model = choose_model(replace(problem, velocity=1.0))
     stroke = min(max(problem.stroke, 1.0), 16.0) ** 0.5
@@ -85,7 +86,7 @@ def reference(problem, tolerance, certified):
         return solved.mu
 
     def settled(axis, finest):
-        """The largest of finest, finest/2, ... along an axis for which the run becomes periodic."""
+        """Return the largest of finest, finest/2, ... with a periodic run along an axis."""
         while finest > 2 * getattr(base, axis):
             if run(replace(base, **{axis: finest})).converged:
                 break

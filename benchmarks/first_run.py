@@ -1,4 +1,4 @@
-"""Time of the workflow's first run, without compiled code or stored results.
+"""Measure the time of the workflow's first run, without compiled code or stored results.
 
     python benchmarks/first_run.py [--cores N] [--markdown FILE]
 

@@ -1,8 +1,8 @@
-"""Time and memory of the workflow for a sweep of very many cheap points.
+"""Measure time and memory of the workflow for a sweep of very many cheap points.
 
 Run ``python benchmarks/growth.py --points 100000 --markdown docs/measured/growth.md``. The steady
-bore has closed forms, so nearly all time is spent in the workflow. The table has planning, storing
-and collecting, a run with nothing to do, and a run with one more value on an axis.
+bore has closed forms, so nearly all time is spent in the workflow. The table covers planning,
+storing and collecting, a run with nothing to do, and a run with one more value on an axis.
 """
 
 import re
@@ -22,7 +22,7 @@ VELOCITIES = 1000
 
 
 def configuration(points, per_job, more=0):
-    """Configuration of a steady bore at 1,000 velocities. more: number of additional ratios."""
+    """Return the configuration of a steady bore, with `more` additional Poisson's ratios."""
     ratios = -(-points // VELOCITIES)
     poisson = [round(0.5 * k / ratios, 9) for k in range(ratios + more)]
     velocity = {"log": [0.01, 100, VELOCITIES]}
@@ -42,7 +42,7 @@ class Project:
         self.folder = Path(folder)
 
     def snakemake(self, *arguments):
-        """Run the workflow on two cores. Returns output, seconds, and peak process memory in MB."""
+        """Run the workflow on two cores. Return output, seconds, and peak process memory in MB."""
         command = [sys.executable, "-m", "snakemake", "-s", ROOT / "Snakefile", "-j2"]
         command += ["--workflow-profile", ROOT / "profiles/default", "--configfile", "many.yaml"]
         began = time.perf_counter()
@@ -57,13 +57,13 @@ class Project:
         return output, seconds, largest
 
     def computed(self):
-        """Number of points computed in the last run, from the logs of all jobs."""
+        """Return the number of points computed in the last run, from the logs of all jobs."""
         logs = self.folder.glob("results/logs/**/*.log")
         return sum(int(n) for log in logs for n in re.findall(r"(\d+) computed", log.read_text()))
 
 
 def measure(points, per_job):
-    """Rows (quantity, value) of the table."""
+    """Return the rows (quantity, value) of the table."""
     with tempfile.TemporaryDirectory() as folder:
         project = Project(folder)
         write = Path(folder, "many.yaml").write_text

@@ -1,9 +1,9 @@
-"""Validate interpolation error bounds with omitted lines of maps, and at random points.
+"""Validate the error bounds of interpolation at omitted lines of maps and at random points.
 
     python benchmarks/interpolation.py [--results FOLDER] [--points N] [--seed S] [--markdown FILE]
 
-The folder contains the maps of a run (transverse.nc, bore.nc). Each inner line of a map, along both
-axes, is omitted in turn and interpolated from the other lines. Then N random points on each map are
+The folder contains the maps of a run (transverse.nc, bore.nc). Each inner line of a map, along each
+axis, is omitted in turn and interpolated from the other lines. Then N random points on each map are
 solved to 2e-4 and compared with the map. An interpolated value is covered if its error is at most
 its error bound plus the error estimate of the reference.
 """
@@ -27,7 +27,7 @@ TOLERANCE = 2e-4
 
 
 def omitted(dataset):
-    """(error, bound) at every point of every inner line, interpolated from the other lines."""
+    """Return (error, bound) at every point of every inner line, from the other lines."""
     errors, bounds = [], []
     for dim in ("amplitude", "velocity"):
         for i in range(1, dataset.sizes[dim] - 1):
@@ -40,14 +40,14 @@ def omitted(dataset):
 
 
 def places(dataset, points, rng):
-    """Random velocities (log-uniform) and amplitudes on the map."""
+    """Return random velocities (log-uniform) and amplitudes on the map."""
     v, a = dataset["velocity"].values, dataset["amplitude"].values
     ends = np.log10(v[[0, -1]])
     return 10 ** rng.uniform(*ends, points), rng.uniform(0, a[-1], points)
 
 
 def solved(dataset, velocity, amplitude, label):
-    """(error, bound) of interpolated values at points, with the solver as reference."""
+    """Return (error, bound) of interpolated values at points, with the solver as reference."""
     pairs = list(zip(velocity, amplitude, strict=True))
     answer = dataset.microslip.at(*(xr.DataArray(x, dims="n") for x in (velocity, amplitude)))
     results = [
@@ -61,7 +61,7 @@ def solved(dataset, velocity, amplitude, label):
 
 
 def row(motion, where, error, bound):
-    """One line of the table."""
+    """Return one row of the table."""
     return {
         "map": motion,
         "points": where,

@@ -1,4 +1,4 @@
-"""Table of references for random points.
+"""Read and write a table of references for random points.
 
 A reference is far more expensive than the result that it judges, and does not depend on the error
 estimate. Therefore the references in `docs/measured/references-SEED.csv` can also judge later
@@ -26,7 +26,7 @@ DIGITS |= dict.fromkeys(("uncertainty", ENERGY[1]), ".2e")
 
 
 def read(path, seed: int) -> dict[int, dict]:
-    """References by the number of the point. Ends the run if a row belongs to another point."""
+    """Return references keyed by point number. End the run if a row belongs to another point."""
     references = {}
     if not path.exists():
         return references

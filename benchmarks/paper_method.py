@@ -1,4 +1,4 @@
-"""Time for the paper's method, and for a point with an error estimate, on one core.
+"""Measure the time of the paper's method, and of a point with an error estimate, on one core.
 
     python benchmarks/paper_method.py [--steps N] [--repeats N] [--markdown FILE]
 
@@ -41,14 +41,14 @@ TOLERANCE = 1e-3
 
 
 def timed(function):
-    """Result and wall time (s) of one call."""
+    """Return the result and the wall time (s) of one call."""
     started = time.perf_counter()
     result = function()
     return result, time.perf_counter() - started
 
 
 def compare(name, amplitude, steps, repeats):
-    """One row of the table; the two methods run alternately, ``repeats`` times."""
+    """Return one row of the table. The two methods run alternately, ``repeats`` times."""
     contact = CartesianContact(CELLS)
     motion = Problem(motion_named(name), VELOCITY, amplitude, 0.0)
     path, start = path_of(motion, steps), forward_slip(contact)
@@ -90,7 +90,7 @@ def shown(value):
 
 
 def markdown(rows):
-    """Transposed Markdown table with one column for each point."""
+    """Return a transposed Markdown table with one column for each point."""
     lines = ["| " + " | ".join([key, *(shown(row[key]) for row in rows)]) + " |" for key in rows[0]]
     return "\n".join([lines[0], "|---" * (len(rows) + 1) + "|", *lines[1:]])
 

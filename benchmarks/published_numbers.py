@@ -38,8 +38,8 @@ ROWS = 80
 
 
 class Comparison(NamedTuple):
-    """A published value, microslip's value, the largest difference that counts as agreement, and
-    the error estimate of microslip's value, if it has one."""
+    """Comparison of a published value with a computed one. They agree if the difference is at most
+    `allowed`. `error` is the error estimate of the computed value, or 0 if it has none."""
 
     what: str
     published: float
@@ -52,7 +52,7 @@ class Comparison(NamedTuple):
         return abs(self.computed - self.published) <= self.allowed
 
     def row(self) -> dict:
-        """Row of the table."""
+        """Return the row of the table."""
         scale = max(abs(self.published), abs(self.computed))
         return {
             "quantity": self.what,
@@ -67,7 +67,7 @@ class Comparison(NamedTuple):
 
 
 def half_digit(value: float, digits: int) -> float:
-    """Largest rounding error of a number printed with `digits` significant digits."""
+    """Return the largest rounding error of a number printed with `digits` significant digits."""
     return 0.5 * 10.0 ** (np.floor(np.log10(abs(value))) - digits + 1)
 
 
@@ -80,10 +80,10 @@ LAST_DIGITS = {"stiffness_forward": 3, "stiffness_lateral": 3}
 """Number of printed digits of these quantities. All others are printed with four digits."""
 
 CONTACT_CASES = """\
-CONTACT: a published number and that of `microslip`, for these cases. Numbers in bold print
-disagree. Force and work divided by the friction force are computed on a refined mesh and may differ
-by 0.002. A stiffness may differ by 1.5 %. All other numbers agree if they are equal to the last
-printed digit."""
+CONTACT: the published value and the value of `microslip`, for these cases. Values in bold disagree.
+Force and work divided by the friction force are computed on a refined mesh and may differ by
+0.002. A stiffness may differ by 1.5 %. All other values agree if they are equal to the last printed
+digit."""
 
 
 def contact_on_its_elements(case: dict) -> list[Comparison]:
@@ -104,7 +104,7 @@ def contact_on_its_elements(case: dict) -> list[Comparison]:
 
 
 def contact_tractions() -> list[Comparison]:
-    """Compare the tractions of the first case, element by element: the largest differences."""
+    """Compare the tractions of the first case, and return the largest differences."""
     data = NUMBERS["CONTACT"]
     computed = contact_squares.shifted(data["cases"][0])
     published = np.array(data["tractions"]).T
@@ -151,7 +151,7 @@ def contact_refined(case: dict) -> list[Comparison]:
 
 
 def contact_page(cases: list[dict]) -> str:
-    """Markdown list of CONTACT's cases, and a table with a column for each case."""
+    """Return a Markdown list of CONTACT's cases, and a table with a column for each case."""
     headings = [f"case {number}" for number in range(1, len(cases) + 1)]
     names, rows = [], {}
     for heading, case in zip(headings, cases, strict=True):
@@ -212,7 +212,7 @@ def closed_forms() -> list[Comparison]:
 
 
 def tmdsimpy_loop(name: str) -> tuple[np.ndarray, microslip.Response]:
-    """Published forces of a loop, divided by friction times the first load, and the response."""
+    """Return a loop's published forces, divided by friction times first load, and the response."""
     data = NUMBERS["tmdsimpy"]
     loop = {key: np.array(column) for key, column in data["loops"][name].items()}
     nu, approach = data["poisson"], loop["approach_m"]
@@ -300,7 +300,7 @@ def popov_static() -> list[Comparison]:
 # Luo et al. (2024)
 
 PERCENT = 0.01
-"""Rounding errors of two reductions in whole percent: the fitted one and the compared one."""
+"""Sum of the rounding errors of two reductions in whole percent: the fitted and the compared."""
 
 
 def luo() -> tuple[float, list[Comparison]]:

@@ -18,7 +18,7 @@ def add_lines(
     output : Path
         File to append to. An incomplete last line stays in it.
     lines : dict
-        Existing lines by the number k of their points.
+        Existing lines, keyed by the number k of the point.
     numbers : iterable of int
         Numbers of the points.
     jobs_of : callable

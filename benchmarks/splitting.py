@@ -1,9 +1,9 @@
-"""Iterations of the step solvers in microslip.contact, for several values of their constants.
+"""Count iterations of the step solvers in microslip.contact, for several constants.
 
     PYTHONPATH=src python benchmarks/splitting.py
 
 For each value of a constant, the tables show the mean number of iterations per step during the
-search for the periodic state. The cases are few and many rings, bores, and squares.
+search for the periodic state. The cases are few and many rings, a bore, and squares.
 """
 
 import numpy as np
@@ -28,7 +28,7 @@ CONTACTS = {
 
 
 def iterations(motion, model, resolution):
-    """Mean number of iterations in a step over the points."""
+    """Return the number of iterations per step, averaged over the points."""
     runs = [
         simulate(Problem(motion_named(motion), *point, 0.0), model, resolution, 1e-5)
         for point in POINTS

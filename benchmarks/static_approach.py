@@ -1,11 +1,11 @@
-"""Approach of friction to its static limit at decreasing velocities.
+"""Measure how friction approaches its static limit at decreasing velocities.
 
     python benchmarks/static_approach.py [--tolerance T] [--markdown FILE]
 
 The table has a row for each motion (transverse and bore, nu = 0) and amplitude. It lists the closed
 form of the limit, and the excess of mu_macro over this limit at each velocity. The last column is
-the range of the local exponent p in excess ~ velocity^p between neighbouring velocities. It leaves
-out an excess that is not much larger than its error estimate. Smaller tolerances show the exponent
+the range of the local exponent p in excess ~ velocity^p between neighbouring velocities. An excess
+that is not much larger than its error estimate is left out. Smaller tolerances show the exponent
 at smaller velocities.
 """
 
@@ -30,7 +30,7 @@ CERTAIN = 5.0
 
 
 def exponent(points, limit):
-    """Local exponent between the last two points, or None if it is uncertain, see CERTAIN."""
+    """Return the exponent between the last two points, or None if uncertain (see CERTAIN)."""
     if len(points) < 2:
         return None
     excess = [point.mu_macro - limit for point in points[-2:]]
@@ -44,7 +44,7 @@ def exponent(points, limit):
 
 
 def row(motion, amplitude, tolerance):
-    """Row of the table for a motion and an amplitude."""
+    """Return the row of the table for a motion and an amplitude."""
     limit = float(FORMS[motion][STATIC].function(amplitude))
     cells = {"motion": motion, "amplitude": f"{amplitude:g}", "limit": f"{limit:.6f}"}
     points, exponents = [], []

@@ -1,9 +1,9 @@
-"""Iterations and CPU time of a backward Euler step on meshes of several sizes.
+"""Measure iterations and CPU time of a backward Euler step on meshes of several sizes.
 
     python benchmarks/step_cost.py
 
-The march starts from full slip and covers half a period at velocity 0.1 and amplitude 1. The motion
-is transverse for rings and bore for all other models.
+The integration starts from full slip and covers half a period at velocity 0.1 and amplitude 1. The
+motion is transverse for rings and bore for all other models.
 """
 
 import time
@@ -25,7 +25,7 @@ STEPS, TOLERANCE = 16, 1e-6
 
 
 def cost(model, cells, angles):
-    """Number of unknowns, and iterations and CPU seconds of a step (median of three marches)."""
+    """Return unknowns, iterations per step, and CPU seconds per step (median of three runs)."""
     problem = Problem(Transverse() if model == "radial" else Bore(), 0.1, 1.0)
     contact = contact_of(problem, model, Resolution(cells, angles, STEPS))
     path = make_path(problem.displacement, half_period_phases(STEPS), EULER)

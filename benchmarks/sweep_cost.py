@@ -1,9 +1,10 @@
-"""CPU time for a configuration's points, in one process on one core, without compilation.
+"""Measure the CPU time of all points, in one process on one core, without compilation.
 
     python benchmarks/sweep_cost.py [--config FILE] [--markdown FILE]
 
-Solves every point of every sweep once, and the single runs of figures, and sums up the CPU time
-spent in the solver. The datasets do not contain this time, because it differs from run to run.
+Solves every point of every sweep of a configuration once, and the single runs of figures, and sums
+up the CPU time spent in the solver. The datasets do not contain this time, because it differs from
+run to run.
 """
 
 from __future__ import annotations
@@ -27,7 +28,7 @@ from microslip.sweeps.request import points_of, runs_of
 
 
 def cost(name, requests):
-    """Rows of the table: the requests of each kind of a sweep."""
+    """Yield the rows of the table, one for each kind of request of a sweep."""
     for kind, group in groupby(requests, key=lambda request: request["kind"]):
         results, seconds = [], []
         for request in tqdm(list(group), desc=name, leave=False):
@@ -43,7 +44,7 @@ def cost(name, requests):
 
 
 def columns_of(seconds):
-    """Columns with times. seconds: CPU time of each point, shape (n,)."""
+    """Return the columns with times. seconds: CPU time of each point, an array of shape (n,)."""
     return {
         "solver time, s": f"{np.sum(seconds):.1f}",
         "mean, ms": f"{1e3 * np.mean(seconds):.1f}",

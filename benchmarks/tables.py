@@ -6,7 +6,7 @@ from pathlib import Path
 
 
 def markdown(rows):
-    """Markdown table of a list of dicts. Their common keys are the column headings."""
+    """Return the Markdown table of a list of dicts, whose common keys are the column headings."""
     lines = [list(rows[0]), ["---"] * len(rows[0]), *(map(str, row.values()) for row in rows)]
     return "\n".join(f"| {' | '.join(cells)} |" for cells in lines)
 
@@ -17,7 +17,7 @@ of double precision lose three to four of their 16 digits."""
 
 
 def number(value, form, error=0.0, scale=1.0):
-    """Text of a number for a page, with a format such as ".1e".
+    """Return a number as a string for a page, with a format such as ".1e".
 
     A number below its error, or below ROUNDING times its scale, is printed as 0, so that a page is
     the same for every processor and every version of the libraries.
@@ -26,12 +26,12 @@ def number(value, form, error=0.0, scale=1.0):
 
 
 def measured(rows):
-    """Markdown table of (quantity, value) pairs."""
+    """Return a Markdown table of (quantity, value) pairs."""
     return markdown([{"what": what, "measured": value} for what, value in rows])
 
 
 def parser_of(description):
-    """Parser with the option --markdown, see `publish`. description: the benchmark's docstring."""
+    """Return a parser with the option --markdown. description: the benchmark's docstring."""
     parser = argparse.ArgumentParser(description=description.partition("\n")[0])
     parser.add_argument("--markdown", type=Path, help="file that the table is written to")
     return parser
@@ -46,7 +46,7 @@ def publish(text, options):
 
 
 def parsed(path):
-    """JSON lines of an earlier run, without incomplete lines."""
+    """Return the JSON lines of an earlier run, without incomplete lines."""
     lines = []
     for line in path.read_text("utf-8").splitlines() if path.exists() else ():
         try:
