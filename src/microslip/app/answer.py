@@ -1,4 +1,4 @@
-"""The answer of a command: text, JSON, CSV and netCDF files, figures."""
+"""The answer of a command, as text, JSON, a CSV or netCDF file, or a figure."""
 
 from __future__ import annotations
 
@@ -23,19 +23,21 @@ class Answer(NamedTuple):
     Attributes
     ----------
     plain : object
-        The answer as JSON values.
+        The answer as values that JSON can represent.
     text : str
         The answer as text.
     complete : bool
-        True for exit code 0.
+        True if the command ends with the exit code 0.
     csv : callable or None
-        csv(): content of the .csv file of --output.  None if there is no such file.
+        csv() returns the content of the .csv file for --output.  None if the command writes no such
+        file.
     dataset : callable or None
-        dataset(): the xarray.Dataset of the .nc file of --output, and of the figure.
+        dataset() returns the xarray.Dataset for the .nc file of --output and for the figure.
     figure : str
         Name of the figure in report.figures.drawing.
     is_table : bool
-        True if the text has the rows of --output.  They are then not printed with this option.
+        True if the text contains the rows that --output writes.  With --output, they are not
+        printed.
     """
 
     plain: Any
@@ -78,9 +80,10 @@ class Answer(NamedTuple):
 
 
 def csv_text(columns: Mapping[str, Any], comments: Sequence[str] = (), digits: int = 0) -> str:
-    """Content of a CSV file.  NaN is an empty cell.
+    """Return the content of a CSV file.  NaN becomes an empty cell.
 
-    columns: values by name, or (unit, values).  digits: number of significant digits, or 0 for all.
+    columns: values or pairs (unit, values), keyed by name.  digits: number of significant digits,
+    or 0 for all.
     """
 
     def cell(value: Any) -> Any:
@@ -102,7 +105,8 @@ def csv_text(columns: Mapping[str, Any], comments: Sequence[str] = (), digits: i
 
 
 def output_file(*endings: str) -> Callable[[str, str], str]:
-    """Reader of an option for the name of a new file.  endings: allowed file extensions."""
+    """Return the reader of an option for the name of a new file.  endings: allowed file
+    extensions."""
 
     def read(argument: str, text: str) -> str:
         file, problem = Path(text), ""
@@ -120,7 +124,7 @@ def output_file(*endings: str) -> Callable[[str, str], str]:
 
 
 def opened_map(argument: str, text: str) -> Any:
-    """Reader of the option --map: the dataset of a .nc file, or of a sweep by its name."""
+    """Read the option --map, a .nc file or the name of a sweep, and return the dataset."""
     from microslip.datasets.open_map import open_map
 
     try:

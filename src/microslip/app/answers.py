@@ -1,4 +1,4 @@
-"""The answers of the commands, see the table in commands.py.
+"""Functions that compute the answers of the commands; see the table in commands.py.
 
 Each function imports what it needs when it is called, so that help and refusals are fast.
 """
@@ -25,20 +25,20 @@ MOST_LINES = 8
 """Largest number of lines in a figure."""
 NEEDS = {"output": "--table or a range", "figure": "a range"}
 NEEDS |= dict.fromkeys(("decimal", "encoding"), "--table")
-"""Options of `predict` that need another one."""
+"""Options of `predict` that are allowed only with another option."""
 FRICTION = ["mu_apparent", "mu_apparent_error", "friction_force_N", "friction_force_error_N"]
 """Columns of a friction table, besides its axes."""
 
 
 def point(motion: str, **arguments: Any) -> Answer:
-    """Macroscopic friction at one (velocity, amplitude), in dimensionless quantities.
+    """Compute macroscopic friction at one (velocity, amplitude), in dimensionless quantities.
 
-    Mean forward friction force divided by mu F_z, with an error estimate.  mu_macro is a ratio: 1
-    if the vibration has no effect, 0 if no friction remains.  The apparent coefficient of friction
-    is mu_apparent = mu mu_macro.  F_z is the load without oscillation (the reference load), u_lim
-    the tangential displacement at which the whole contact slides, a the contact radius, and
-    phi_lk(a/2) the angle at which the stick radius is a/2.  Bore means spin: rotation about the
-    contact normal.
+    The answer is mu_macro, the mean forward friction force divided by mu F_z, with an error
+    estimate.  This ratio is 1 if the vibration has no effect, and 0 if no friction remains.  The
+    apparent coefficient of friction is mu_apparent = mu mu_macro.  F_z is the load without
+    oscillation (the reference load), u_lim the tangential displacement at which the whole contact
+    slides, a the contact radius, and phi_lk(a/2) the angle at which the stick radius is a/2.  Bore
+    means spin: rotation about the contact normal.
     """
     import microslip
 
@@ -52,7 +52,8 @@ def point(motion: str, **arguments: Any) -> Answer:
 
 
 def point_motions() -> dict[str, str]:
-    """Description of each motion of `point`, with the units of velocity and amplitude."""
+    """Return the description of each motion of `point`, with the units of velocity and
+    amplitude."""
     from dataclasses import fields
 
     from microslip.scene.by_name import MOTIONS
@@ -68,18 +69,19 @@ def point_motions() -> dict[str, str]:
 
 
 def predict(motion: str, table: str | None = None, **arguments: Any) -> Answer:
-    """Friction of a real contact in SI units. The contacts can also be the rows of a table, or an
-    input can be a range.
+    """Predict the friction of a real contact in SI units.
+
+    The contacts can also be the rows of a table, or an input can be a range.
 
     The answer has error estimates, and warnings where the theory does not apply.  Every quantity
     has a unit.  mu_macro is a ratio: friction with vibration divided by friction without.
     mu_apparent is the coefficient of friction with vibration.  For a quantity with a standard
     uncertainty, such as '0.15 +- 0.05' or '10 N +- 5 %', the answer has intervals and the
-    probability of each outcome.  A quantity can be a range: '0..2 um' has 11 values, '0..2 um, 21'
-    has 21, and '0.1..10 mm/s, 21, log' has equal ratios.  The answer is then a table.  For an
-    oscillating normal load there are two reference loads.  Stiffness, mass and damping are made
-    dimensionless by mu times the load without oscillation, force and mu_macro by mu times the mean
-    load.
+    probability of each outcome.  A quantity can be a range: '0..2 um' gives 11 equally spaced
+    values, '0..2 um, 21' gives 21, and '0.1..10 mm/s, 21, log' gives 21 logarithmically spaced
+    values.  The answer is then a table.  For an oscillating normal load, there are two reference
+    loads.  Stiffness, mass and damping are made dimensionless by mu times the load without
+    oscillation, force and mu_macro by mu times the mean load.
     """
     from microslip.si.inputs import is_range, read_inputs
 
@@ -120,7 +122,7 @@ def predict(motion: str, table: str | None = None, **arguments: Any) -> Answer:
 
 
 def real_motions() -> dict[str, str]:
-    """Description of each motion of `predict`."""
+    """Return the description of each motion of `predict`."""
     from microslip.si.inputs import MOTIONS
 
     texts = {name: f"it {kind.description}" for name, kind in MOTIONS.items()}
@@ -128,7 +130,8 @@ def real_motions() -> dict[str, str]:
 
 
 def _predictions(cases: Cases, table: str | None = None) -> Answer:
-    """The predictions of many contacts.  Messages about those without one go to standard error.
+    """Return the answer with the predictions of many contacts.  Messages about contacts without a
+    prediction go to standard error.
 
     Raises InputError if no contact is valid.
     """
@@ -172,7 +175,7 @@ def _predictions(cases: Cases, table: str | None = None) -> Answer:
 
 
 def _solved(cases: Cases, **options: Any) -> list[Any]:
-    """The Prediction of each contact, or the reason why there is no prediction."""
+    """Return the Prediction of each contact, or the reason why there is no prediction."""
     from microslip.si.table import predictions
 
     answers = []
@@ -184,7 +187,7 @@ def _solved(cases: Cases, **options: Any) -> list[Any]:
 
 
 def _problem(error: InputError | str, cases: Cases, columns: Collection[str] = ()) -> str:
-    """Error message of a contact, with columns and options in place of Python arguments.
+    """Return the error message of a contact, with columns and options in place of Python arguments.
 
     For an empty cell or a missing column, the message contains no value.
     """
@@ -201,15 +204,15 @@ def _problem(error: InputError | str, cases: Cases, columns: Collection[str] = (
 def fit(
     motion: str, measured: str, output: object = None, figure: object = None, **arguments: Any
 ) -> Answer:
-    """Coefficient of friction and u_lim from measured friction.
+    """Fit the coefficient of friction and u_lim to measured friction.
 
-    The coefficient of friction without vibration, and the displacement u_lim at which the whole
-    contact slides, or the shear modulus, from friction measured under vibration.  Each row of the
-    CSV file is a measurement.  The heading names the columns and their units: friction [N] or mu;
-    some of speed [mm/s], amplitude [um], frequency [kHz], load [N]; and friction_error [N] or
-    mu_error.  An option in place of a column applies to all rows.  Exit codes: 0 both numbers
-    determined; 1 only mu determined, or unreadable lines left out; 2 bad input, or neither number
-    determined.
+    The answer contains the coefficient of friction without vibration, and the displacement u_lim at
+    which the whole contact slides, or the shear modulus.  Each row of the CSV file is a measurement
+    of friction under vibration.  The heading names the columns and their units: friction [N] or mu;
+    some of speed [mm/s], amplitude [um], frequency [kHz], load [N]; and optionally friction_error
+    [N] or mu_error.  An option in place of a column applies to all rows.  Exit codes: 0 both
+    parameters determined; 1 only mu determined, or unreadable lines left out; 2 bad input, or
+    neither parameter determined.
     """
     import microslip
 
@@ -223,11 +226,11 @@ def fit(
 
 
 def response(path: str, output: str | None = None, **arguments: Any) -> Answer:
-    """Forces of a contact that follows the path of a file.
+    """Compute the forces of a contact that follows a path from a file.
 
-    Forces, torque, dissipated energy and stick fraction, with error estimates.  The columns of the
-    file are forward, lateral, angle, and load or indentation, with units as in forward [um].
-    `load` is the load of the reference state.
+    The answer contains forces, torque, dissipated energy and stick fraction, with error estimates.
+    The columns of the file are forward, lateral, angle, and load or indentation, with units as in
+    forward [um].  `load` is the load of the reference state.
     """
     import microslip
 
@@ -244,7 +247,7 @@ def response(path: str, output: str | None = None, **arguments: Any) -> Answer:
 
 
 def fold(record: str, output: str = "", rows: int = 32, **arguments: str) -> Answer:
-    """One period of a motion from a long record, such as the record of a vibrometer.
+    """Average a long record of a motion, such as that of a vibrometer, to one period.
 
     The slow drift is removed, and the periods are averaged.  The standard error covers the scatter
     between the periods and a slow drift of the frequency.  The columns of the record are time and
@@ -292,12 +295,12 @@ def fold(record: str, output: str = "", rows: int = 32, **arguments: str) -> Ans
 
 
 def iwan(output: str | None = None, **arguments: Any) -> Answer:
-    """An Iwan model of a contact: parallel springs with sliders.
+    """Export an Iwan model of a contact: parallel springs with sliders.
 
-    The stiffness and the limit force of parallel Jenkins elements, each a spring in series with a
-    slider, for a contact that moves along a line.  At nu = 0 the model with many elements is exact
-    for every load path.  At nu > 0 it is compared with the full contact, and the difference is part
-    of the error.
+    The model consists of parallel Jenkins elements, each a spring in series with a slider, for a
+    contact that moves along a line.  The table contains the stiffness and the limit force of each
+    element.  At nu = 0 the model with many elements is exact for every load path.  At nu > 0 it is
+    compared with the full contact, and the difference is part of the error.
     """
     import microslip
 
@@ -317,10 +320,10 @@ def iwan(output: str | None = None, **arguments: Any) -> Answer:
 
 
 def table(motion: str, output: str | None = None, **arguments: Any) -> Answer:
-    """A table of friction over speed, amplitude, load or other quantities.
+    """Export a table of friction over speed, amplitude, load or other quantities.
 
-    One or more quantities are ranges, such as --speed '0.1..10 mm/s, 21, log': 21 values in equal
-    ratios.  '0..2 um' has 11 values in equal steps.
+    At least one quantity is given as a range: --speed '0.1..10 mm/s, 21, log' gives 21
+    logarithmically spaced values, and '0..2 um' gives 11 equally spaced values.
     """
     from microslip.si.table import dataset_of, grid_of, interpolation_errors
 
@@ -347,6 +350,6 @@ def table(motion: str, output: str | None = None, **arguments: Any) -> Answer:
 
 
 def _exported(plain: Any, columns: Any, comments: list[str]) -> Answer:
-    """The answer for a table with comments, of which six digits are printed."""
+    """Return the answer for a table with comments.  Numbers are printed with six digits."""
     text = csv_text(columns, comments, digits=6).rstrip("\n")
     return Answer(plain, text, True, csv=lambda: csv_text(columns, comments), is_table=True)

@@ -21,7 +21,7 @@ from microslip.app.terminal import complain
 from microslip.foundation.errors import CacheError, InputError
 
 SOURCES = ("measured", "path", "record", "table")
-"""Arguments with the path of a file that is read."""
+"""Arguments that are paths of input files."""
 
 
 def main(words: list[str]) -> int:
@@ -71,7 +71,7 @@ def _without_command(words: list[str]) -> int:
 
 
 def parser_of(name: str) -> Parser:
-    """The parser of a command in COMMANDS."""
+    """Return the parser of a command in COMMANDS."""
     command = COMMANDS[name]
     parser = Parser(prog=f"microslip {name}", description=command.answer.__doc__)
     for title, options in command.groups().items():

@@ -1,4 +1,4 @@
-"""The commands that give one answer: names, help texts, options and functions in one table."""
+"""Table of the commands that compute one answer: names, help texts, options and functions."""
 
 from __future__ import annotations
 
@@ -13,19 +13,19 @@ from microslip.foundation import spec
 
 
 class Command(NamedTuple):
-    """A command that gives one answer.
+    """A command that computes one answer.
 
     Attributes
     ----------
     answer : callable
-        Function that computes the answer.  The command line gives its arguments, and its docstring
-        describes the command.
+        Function that computes the answer.  Its arguments are those of the command line, and its
+        docstring is the help text.
     options : dict of Option
-        Positional arguments and options, by Python argument.
+        Positional arguments and options, keyed by Python argument.
     inputs : str
-        Groups or names of INPUTS that are options, too, except names after a minus.
+        Groups and names of INPUTS that are further options.  A name after a minus is excluded.
     motions : callable
-        motions(): description of each motion, for the help text.
+        motions() returns the description of each motion, for the help text.
     """
 
     answer: Callable[..., Answer]
@@ -34,7 +34,7 @@ class Command(NamedTuple):
     motions: Callable[[], dict[str, str]] = dict
 
     def groups(self) -> dict[str, dict[str, Option]]:
-        """All options by Python argument, in groups by their heading in the help text."""
+        """Return all options, keyed by Python argument and grouped by heading in the help text."""
         groups: dict[str, dict[str, Option]] = {}
         if words := self.inputs.split():
             from microslip.si.inputs import INPUTS  # late, since it imports NumPy
@@ -48,7 +48,7 @@ class Command(NamedTuple):
 
 
 def real_or_none(argument: str, text: str) -> float | None:
-    """A number, or None for the text "none"."""
+    """Read a number, or None for the string "none"."""
     return None if text == "none" else spec.read(argument, text)
 
 
@@ -159,4 +159,4 @@ COMMANDS = {
         motions=answers.real_motions,
     ),
 }
-"""Every command but `sweep`, by name."""
+"""All commands except `sweep`, keyed by name."""

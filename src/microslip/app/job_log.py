@@ -16,8 +16,8 @@ def job_log(path: str | Path, shown: int = logging.WARNING) -> Iterator[logging.
     """Context manager for a job.  It yields a logger that writes to the file `path`.
 
     Messages of at least the level `shown` also go to standard error.  An error ends the process
-    with exit code 1.  The log then contains the traceback, or only one line for a CacheError, a
-    SolverError, a full disk or an interrupt.
+    with exit code 1.  The log then contains the traceback.  For a CacheError, a SolverError, a
+    full disk or an interrupt, it contains only one line.
     """
     try:
         file = logging.FileHandler(path, "w", "utf-8")

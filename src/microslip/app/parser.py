@@ -1,4 +1,5 @@
-"""Parsing of command lines.  Bad input gives one line on standard error and exit code 2."""
+"""Parsing of command lines.  Bad input is reported in one line on standard error, with exit code
+2."""
 
 from __future__ import annotations
 
@@ -12,9 +13,9 @@ from microslip.foundation.errors import shown
 from microslip.foundation.spec import near_miss
 
 SYNONYMS = {"--speed": "--velocity", "--velocity": "--speed"}
-"""Options that have another name in another command."""
+"""Options that have a different name in another command."""
 SECOND_NAMES = {"nu": ["--poisson"], "poisson": ["--nu"]}
-"""Second names of options, by argument."""
+"""Second names of options, keyed by argument."""
 NEGATIVE = re.compile(r"-\s*([0-9.,]|inf|nan)", re.IGNORECASE)
 """Pattern of the first characters of a negative number.  No option matches it."""
 
@@ -27,7 +28,7 @@ class Option(NamedTuple):
     metavar, help : str
         Placeholder of the value in the help text, and the help text.
     read : callable
-        read(argument, text) returns the value of a text, or raises InputError about the argument.
+        read(argument, text) converts a string to a value, or raises InputError about the argument.
     is_place : bool
         True for a positional argument.
     """
@@ -44,7 +45,7 @@ class Parser(argparse.ArgumentParser):
     Attributes
     ----------
     readers : dict of Option
-        All options and positional arguments, by Python argument.
+        All options and positional arguments, keyed by Python argument.
     """
 
     def __init__(self, **settings: Any):
@@ -57,7 +58,7 @@ class Parser(argparse.ArgumentParser):
         raise SystemExit(2)
 
     def add(self, name: str, one: Option, group: Any = None) -> None:
-        """Add an option by the name of the Python argument."""
+        """Add the option or the positional argument for a Python argument."""
         self.readers[name] = one
         names = [name] if one.is_place else [option(name), *SECOND_NAMES.get(name, ())]
         words: dict[str, Any] = {} if one.is_place else {"dest": name}
@@ -65,7 +66,7 @@ class Parser(argparse.ArgumentParser):
         (group or self).add_argument(*names, **words, action=_Store)
 
     def print_help_with(self, title: str, texts: Mapping[str, str]) -> None:
-        """Print the help text with a list of names, each with a text."""
+        """Print the help text with a list of names and their descriptions."""
         self.usage = self.usage or self.format_usage().removeprefix("usage: ")
         group = self.add_argument_group(title)
         for name, text in texts.items():
@@ -73,8 +74,8 @@ class Parser(argparse.ArgumentParser):
         self.print_help()
 
     def parse(self, words: list[str]) -> argparse.Namespace:
-        """Parse words.  The attribute `spellings` of the result contains the option of each
-        argument as it is written on the command line."""
+        """Parse the words of a command line.  The attribute `spellings` of the result maps each
+        argument to its option as written on the command line."""
         options, others = self.parse_known_args(_joined(words))
         for word in others:
             if word.startswith("-"):
@@ -87,7 +88,8 @@ class Parser(argparse.ArgumentParser):
         return options
 
     def refuse(self, problem: str, word: str, allowed: Collection[str]) -> NoReturn:
-        """End with an error message about a word, with the most similar of the allowed words."""
+        """End the process with an error message about a word.  The message suggests the most
+        similar allowed word."""
         synonym = SYNONYMS.get(word, "")
         hint = f"did you mean {synonym}? " if synonym in allowed else near_miss(word, allowed)
         self.error(f"{problem}; {hint}allowed: {', '.join(allowed)}")
@@ -106,14 +108,14 @@ class _Store(argparse.Action):
 
 
 def option(argument: str) -> str:
-    """Option of a Python argument, such as --contact-radius for contact_radius.  An environment
-    variable, in capitals, is returned unchanged."""
+    """Return the option of a Python argument, such as --contact-radius for contact_radius.  A name
+    in capitals, which is an environment variable, is returned unchanged."""
     return argument if argument.isupper() else f"--{argument.replace('_', '-')}"
 
 
 def message(argument: str, value: object, allowed: str, names: Iterable[str]) -> str:
-    """One line about an argument, without the value None, and with options in place of the Python
-    arguments `names`."""
+    """Return an error message of one line about an argument.  The value None is omitted, and the
+    Python arguments `names` are replaced by options."""
     text = "" if value is None else f" = {shown(value)}"
     return " ".join(f"{argument}{text}: {with_options(allowed, names)}".split())
 
@@ -121,8 +123,8 @@ def message(argument: str, value: object, allowed: str, names: Iterable[str]) ->
 def with_options(text: str, arguments: Iterable[str] = ()) -> str:
     """Replace the Python arguments in a message by options.
 
-    Of the names without an underscore, only `decimal` and `encoding` are replaced, because the
-    others are also ordinary words.
+    Among the names without an underscore, only `decimal` and `encoding` are replaced, because the
+    other names are also ordinary words.
     """
     text = re.sub(r"\b(decimal|encoding) = ", r"--\1 ", text)
     names = "|".join(name for name in arguments if "_" in name) or "(?!)"

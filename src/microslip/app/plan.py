@@ -1,8 +1,10 @@
-"""Plan of a configuration: its products, their batches of requests, and what a folder lacks.
+"""Plan of a configuration: its products, the batches of requests for them, and the files that a
+folder of results lacks.
 
 A product is a dataset with its page, a figure, or a page of the explorer.  Its files are named by
-content, such as data/bore.0123456789abcdef.nc: the name contains a hash of all that the product is
-made of, so that a file that exists is right.  Plain names, such as bore.nc, are links.
+content, such as data/bore.0123456789abcdef.nc: the name contains a hash of everything that the
+product is made from, so that an existing file is always up to date.  Plain names, such as bore.nc,
+are links.
 
 The module does not import Snakemake.  It must be fast to import, since every Snakemake process
 parses the workflow.
@@ -33,7 +35,7 @@ BUILDERS = {
     "claims": ("studies", "report/pages.py", "report/claims.html"),
     "explorer": ("report/explorer", "sweeps/period_codec.py"),
 }
-"""Modules and folders that make a kind of product. Imported modules are added to them."""
+"""Modules and folders that make each kind of product.  The modules that they import are added."""
 MAP_CODE = ("sweeps/map_refinement.py", "sweeps/map_coordinates.py")
 """Modules that choose the points of a certified map."""
 
@@ -48,9 +50,9 @@ class Product(NamedTuple):
     rule : str
         Rule that makes the product: "dataset", "figure" or "explorer".
     stem : str
-        Name of the files without ending: the name of the product and the hash of its content.
+        Name of the files without extension: the name of the product and the hash of its content.
     links : dict of str to str
-        Ending of each file, by the plain name of the link to it.
+        Extension of each file, keyed by the plain name of the link to it.
     inputs : tuple of str
         Names of the datasets that the product is made from.
     """
@@ -69,7 +71,7 @@ class Plan:
     ----------
     configuration : Configuration
     products : dict of str to Product
-        All products by name, datasets first.
+        All products, keyed by name, datasets first.
     """
 
     def __init__(self, configuration: Configuration):
@@ -82,7 +84,7 @@ class Plan:
         self.batches = cache(self._batches)  # not @cache, since it would keep every plan
 
     def _product(self, name: str) -> Product:
-        """A product, named by all that it is made of."""
+        """Return a product.  Its name contains a hash of everything that it is made from."""
         configuration = self.configuration
         sweep, figure = configuration.sweeps.get(name), configuration.figures.get(name)
         kind, rule = name, "dataset"
@@ -111,7 +113,8 @@ class Plan:
         return Product(kind, rule, stem, links, inputs)
 
     def _batches(self, name: str) -> dict[str, Batch | None]:
-        """Batches of a product by their path without ending, in the order of the requests.
+        """Return the batches of a product, keyed by their path without extension, in the order of
+        the requests.
 
         A certified map has one batch with all points.  Its value is None, because its requests
         depend on the results.
@@ -135,7 +138,7 @@ class Plan:
 
 
 class Results:
-    """Folder of results of a plan.
+    """The folder with the results of a plan.
 
     A file that is damaged, or in which points have failed, is not replaced: the new file gets
     another name with a number, such as data/bore.0123456789abcdef-1.nc.
@@ -143,14 +146,14 @@ class Results:
     Attributes
     ----------
     stems : dict of str to str
-        Name of the files of each product without ending, by the name of the product.
+        Name of the files of each product without extension, keyed by the name of the product.
     missing : dict of str to list of str
-        Paths of the inputs of each product that the folder lacks, by the name of the product:
-        datasets first, then batches.
+        Paths of the inputs of each product that the folder lacks, keyed by the name of the product.
+        Datasets come first, then batches.
     """
 
     def __init__(self, plan: Plan, folder: str | Path, here: bool = True, whole: bool = False):
-        """here: False for a folder in remote storage, which counts as empty.  whole: True to list
+        """here: False for a folder in remote storage, which counts as empty.  whole: if True, list
         the inputs of all products."""
         self.plan, self.folder, self.here = plan, Path(folder), here
         self._listed = cache(self._list)
@@ -179,9 +182,9 @@ class Results:
         return paths
 
     def link(self) -> None:
-        """Let the plain names of products refer to their files, if these exist.
+        """Link the plain names of products to their files, if the files exist.
 
-        The other links are dated back, since Snakemake replaces a link only if an input is newer.
+        The other links get an old date, since Snakemake replaces a link only if an input is newer.
         """
         for plain, (_, path) in self.plain().items():
             link = self.folder / plain
@@ -193,12 +196,13 @@ class Results:
                 link.unlink()  # its file is gone, for which Snakemake fails
 
     def stems_of(self, rule: str) -> list[str]:
-        """Names without ending of the missing files that a rule makes."""
+        """Return the names, without extension, of the missing files that a rule makes."""
         return [self.stems[n] for n in self.missing if self.plan.products[n].rule == rule]
 
     def batches(self, certified: bool) -> list[str]:
-        """Names of the batch files that the folder lacks, without ending, for all missing
-        products; either those of certified maps, or all others."""
+        """Return the names, without extension, of the batch files that the folder lacks for all
+        missing products.  certified: True for the batches of certified maps, False for all other
+        batches."""
         names = {}
         for name in self.missing:
             batches = self.plan.batches(name).values()
@@ -208,7 +212,7 @@ class Results:
         return list(names)
 
     def order_of_batch(self, folder: str, name: str) -> str:
-        """JSON text of a batch for its job, or of the name of a certified map."""
+        """Return the JSON text of a batch for its job; for a certified map, that of its name."""
         path = f"{folder}/{name.partition('-')[0]}"
         for product in self.missing:
             if path in (batches := self.plan.batches(product)):
@@ -217,11 +221,12 @@ class Results:
         raise SourcesEdited("the solver")
 
     def orders(self, *names: str) -> str:
-        """JSON text of the products that a job makes, see products.make_products."""
+        """Return the JSON text of the products that a job makes; see products.make_products."""
         return canonical_json([[name, self.stems[name], self.missing[name]] for name in names])
 
     def plain(self) -> dict[str, tuple[str, str]]:
-        """Names of products and paths of their files, by the plain name of the file."""
+        """Return the name of the product and the path of each file, keyed by the plain name of the
+        file."""
         return {
             plain: (name, f"data/{self.stems[name]}{ending}")
             for name, product in self.plan.products.items()
@@ -229,8 +234,7 @@ class Results:
         }
 
     def _chosen(self, folder: str, stem: str, endings: tuple[str, ...]) -> tuple[str, bool]:
-        """Return the name of files that are whole, or a name that is free; and whether they are
-        whole."""
+        """Return the name of complete files and True, or an unused name and False."""
         number = self._listed(folder).get(stem, {})
         for variant in sorted(number):
             if content.GAPS not in number[variant] and number[variant].issuperset(endings):
@@ -241,7 +245,8 @@ class Results:
         return next(name for name in names if name not in number), False
 
     def _list(self, folder: str) -> dict[str, dict[str, set[str]]]:
-        """Endings of the files in a folder, by their name, by this name without number."""
+        """Return the extensions of the files in a folder.  They are keyed by the file name without
+        its number, and then by the file name."""
         listed: dict[str, dict[str, set[str]]] = {}
         path = self.folder / folder
         for file in os.listdir(path) if self.here and path.is_dir() else ():

@@ -40,9 +40,9 @@ def make_products(job: Any) -> None:
 
 
 def make(plan: Plan, name: str, stem: Path, inputs: list[Path]) -> None:
-    """Make the files of a product, and let its plain names refer to them.
+    """Make the files of a product, and link its plain names to them.
 
-    stem: path of the files without ending.  inputs: datasets, then batch files.
+    stem: path of the files without extension.  inputs: datasets, then batch files.
 
     Raises SourcesEdited if the code has changed since the job was planned.
     """

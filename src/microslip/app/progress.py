@@ -8,7 +8,8 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 
 FIRST, BETWEEN = 2.0, 1.0
-"""Seconds until the progress is first shown, and between updates.  Most calculations end before."""
+"""Seconds until the progress is first shown, and between updates.  Most calculations end
+earlier."""
 
 
 @contextmanager

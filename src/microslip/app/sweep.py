@@ -33,7 +33,7 @@ if TYPE_CHECKING:
 SETS_CORES = re.compile(r"-[cje]|--(cores|jobs|executor|profile|workflow-profile)(=|$)")
 """Pattern of arguments that set the number of parallel jobs, directly or by a profile."""
 PRODUCTS = (".nc", ".html", ".pdf", ".png")
-"""File extensions of products, which are no configurations."""
+"""File extensions of products.  Such files are not configurations."""
 OPTIONS = {
     "configfile": Option("FILE", "the configuration (config/config.yaml); targets go before it"),
     "cores": Option("N", "number of jobs at the same time, at least 1 (all cores)"),
@@ -43,7 +43,7 @@ OPTIONS = {
 
 
 def main(arguments: list[str]) -> int:
-    """The workflow, by Snakemake: maps, datasets and figures.
+    """Run the workflow with Snakemake, which makes maps, datasets and figures.
 
     It runs in the current folder and writes datasets to results/, and figures to results/figures/.
     Existing results are not computed again.  A CONFIGURATION is a name in the folder config, here
@@ -108,7 +108,8 @@ def _run(arguments: list[str]) -> int:
 
 
 def configurations() -> dict[str, Path]:
-    """Configurations in the folder config of the package and of the current folder, by name."""
+    """Return the configurations in the folder config of the package and of the current folder,
+    keyed by name."""
     folders = source_digest.workflow_file("config/config.yaml").parent, Path("config")
     return {file.stem: file for folder in folders for file in sorted(folder.glob("*.yaml"))}
 
@@ -159,7 +160,7 @@ def _check(arguments: list[str]) -> None:
 
 
 def _configuration(options: argparse.Namespace) -> Configuration:
-    """The configuration.  Raises ConfigError if the Snakefile would refuse it."""
+    """Return the configuration.  Raises ConfigError if the Snakefile would refuse it."""
     from snakemake.cli import parse_config
     from snakemake.utils import update_config
 
@@ -190,7 +191,8 @@ def _configuration(options: argparse.Namespace) -> Configuration:
 
 
 def _parsed(arguments: list[str]) -> argparse.Namespace | None:
-    """The arguments as parsed by Snakemake, or None if Snakemake will print its own message."""
+    """Return the arguments as parsed by Snakemake, or None if Snakemake will print its own
+    message."""
     from snakemake.cli import parse_args
 
     messages = io.StringIO()

@@ -25,7 +25,7 @@ STACK = 2**24
 """Size of a thread's stack in bytes, 16 MB.  Some systems give a thread less than the compiler of
 the kernels needs."""
 WAIT = 0.1
-"""Longest wait in seconds before pending signals are handled.  Windows handles none during a
+"""Longest wait in seconds before pending signals are handled.  Windows handles no signals during a
 wait."""
 
 
@@ -38,7 +38,7 @@ def run(command: Callable[[], int], *, stoppable: bool = True) -> int:
         Function that prints to `sys.stdout`.  It returns an exit code, or raises SystemExit with
         the exit code.
     stoppable
-        True to end the command on signals; False for a command that handles signals itself.
+        If True, signals end the command.  If False, the command handles signals itself.
 
     Returns
     -------

@@ -8,10 +8,10 @@
     )
     print(prediction.mu_apparent, prediction.force_reduction, prediction.warnings)
 
-`inputs` is the table of the inputs, with their checks, and `output` the table of the outputs, with
-all forms of a Prediction.  `contact` computes the dimensionless groups, and `solve` the
-dimensionless answer, also for a missing amplitude, speed or load.  `predict` multiplies the answer
-by its units, `uncertain` propagates the uncertainty of the inputs, and `warnings`
-contains the limits of the theory.  `table` predicts many contacts.  `response` and `strokes` read
-measured paths and motions.  `fit` and `fold` evaluate measurements.
+`inputs` contains the table of the inputs and their checks.  `output` contains the table of the
+outputs, and Prediction with its output formats.  `contact` computes the dimensionless groups.
+`solve` computes the dimensionless result, and searches for an amplitude, speed or load that is not
+given.  `predict` converts the result to SI units, `uncertain` propagates the uncertainty of the
+inputs, and `warnings` contains the limits of the theory.  `table` predicts many contacts.
+`response` and `strokes` read measured paths and motions.  `fit` and `fold` evaluate measurements.
 """

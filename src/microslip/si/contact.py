@@ -1,7 +1,7 @@
 """The contact of two elastic bodies in SI units, and the dimensionless groups of the solver.
 
 All formulas accept arrays of inputs.  For tangential loads, two half-spaces are equivalent to one
-half-space whose compliance is the sum of both compliances.  The normal and the tangential problem
+half-space whose compliance is the sum of their compliances.  The normal and the tangential problem
 are assumed to be uncoupled.
 """
 
@@ -34,7 +34,7 @@ INPUT_OF = {"velocity": "speed"} | {group: name for name, group in DRIVES.items(
 
 
 class Contact:
-    """Derived quantities of checked inputs, in SI units.
+    """A contact in SI units: its inputs, and the quantities derived from them.
 
     Attributes
     ----------
@@ -43,8 +43,9 @@ class Contact:
     mu, load : float or array
         Coefficient of friction, and normal load without oscillation, N.
     E_star, G, G_star : float or array
-        Contact modulus from 1/E* = sum (1 - nu^2)/E, shear modulus for torsion from
-        1/G = sum 1/G_i, and tangential contact modulus from 1/G* = sum (2 - nu)/(4 G), Pa.
+        Contact modulus E*, shear modulus G for torsion, and tangential contact modulus G*, Pa.
+        With sums over both bodies, 1/E* = sum (1 - nu^2)/E, 1/G = sum 1/G_i, and
+        1/G* = sum (2 - nu)/(4 G).
     poisson : float or array
         Poisson's ratio of the equivalent half-space, sum(nu/G) / sum(1/G).
     radii : tuple
@@ -125,15 +126,15 @@ class Contact:
 
     @property
     def smallest_radius(self) -> Any:
-        """The smaller |radius| of the bodies, m."""
+        """The smaller radius of the two bodies by absolute value, m."""
         return min(map(abs, self.radii), default=self.radius)
 
     @property
     def mismatch(self) -> Any:
         """Dundurs' constant beta, dimensionless; 0 for equal bodies.
 
-        With p = (1 - 2 nu)/G and q = (1 - nu)/G of each body, it is (p1 - p2) / (2 (q1 + q2)).  It
-        is a measure of the tangential displacement caused by pressure.
+        With p = (1 - 2 nu)/G and q = (1 - nu)/G for each body, beta is (p1 - p2) / (2 (q1 + q2)).
+        Beta is a measure of the tangential displacement caused by pressure.
         """
         first, second = ((1.0 - 2.0 * one.poisson) / one.shear_modulus for one in self.bodies)
         both = sum((1.0 - one.poisson) / one.shear_modulus for one in self.bodies)
@@ -149,7 +150,8 @@ class Contact:
 
     @cached_property
     def amplitudes(self) -> dict[str, Any]:
-        """Dimensionless amplitudes by direction, in the units of microslip.solve (Eqs 2, 4, 27)."""
+        """Dimensionless amplitudes, keyed by direction, in the units of microslip.solve (Eqs 2, 4,
+        27)."""
         inputs = self.inputs
         if self.kind.stroke is not None:
             columns = self.kind.stroke.deviations(self)
@@ -169,7 +171,8 @@ class Contact:
 
     @cached_property
     def motion(self) -> str | Motion:
-        """The motion for microslip.solve.  Several amplitudes are divided by the largest."""
+        """The motion for microslip.solve.  If it has several amplitudes, they are divided by the
+        largest."""
         if not self.kind.several:
             return self.kind.name
         largest = float(self.amplitude)
@@ -217,11 +220,11 @@ class Contact:
         return math.acos(1.0 / swing) / math.pi if swing > 1.0 else 0.0
 
     def drive(self, mean_load: Any = 1.0) -> dict[str, Any]:
-        """Force, stiffness, mass and damping for microslip.solve.
+        """Return the dimensionless force, stiffness, mass and damping for microslip.solve.
 
         The force is divided by mu times the mean load, the stiffness by mu F_z / u_lim, the mass by
         mu F_z / (u_lim omega^2), and the damping by mu F_z / (u_lim omega).  F_z is the load
-        without oscillation; mean_load: mean load divided by F_z.
+        without oscillation, and `mean_load` is the mean load divided by F_z.
         """
         stiffness = self.mu * self.load / self.u_lim
         units = {"force": self.mu * self.load * mean_load, "drive_stiffness": stiffness}
@@ -231,8 +234,8 @@ class Contact:
 
     @property
     def coordinates(self) -> dict[str, Any]:
-        """Dimensionless groups on which the answer of the solver depends, as arrays.  The first
-        ones, up to the velocity, are those of the static limit."""
+        """Dimensionless groups on which the result of the solver depends, as arrays.  The static
+        limit depends only on the groups before the velocity."""
         inputs, stroke = self.inputs, self.kind.stroke
         groups = {"poisson": self.poisson, "ratio": self.ratio, "phase": inputs.phase}
         if stroke is None:
@@ -248,7 +251,8 @@ class Contact:
         return {name: one for name, one in groups.items() if one is not None}
 
     def check(self) -> None:
-        """Raise InputError for a contact outside Hertz's theory or the range of the solver."""
+        """Raise InputError if the contact is outside the range of Hertz's theory or of the
+        solver."""
 
         def refuse(name: str, is_wrong: Any, allowed: str) -> None:
             if is_wrong:
@@ -298,12 +302,12 @@ class Contact:
 
 
 def contact_of(inputs: Inputs) -> Contact:
-    """The checked contact of scalar inputs.  Raises InputError."""
-    with np.errstate(all="ignore"):  # numbers that are not finite are refused
+    """Return the contact for scalar inputs.  Raises InputError if the contact is not allowed."""
+    with np.errstate(all="ignore"):  # values that are not finite are refused
         try:
             contact = Contact(inputs)
             contact.check()
-        except ArithmeticError:  # NumPy's numbers become infinite
+        except ArithmeticError:  # NumPy's floats become infinite instead
             numbers = {name: np.float64(one.si) for name, one in inputs.quantities.items()}
             contact = Contact(inputs.at(**numbers))
             contact.check()
@@ -311,14 +315,14 @@ def contact_of(inputs: Inputs) -> Contact:
 
 
 def hertz_ellipse(ratio: Any) -> tuple[Any, Any, Any]:
-    """Hertz's contact on an ellipse with the ratio b/a of the semi-axes.
+    """Compute Hertz's elliptic contact from the ratio b/a of its semi-axes.
 
     Returns
     -------
     tuple of array
-        The smaller curvature of the bodies divided by the larger one; a^3, divided by 3 F R / (4
-        E*) with the larger radius R of relative curvature (K. L. Johnson, Contact Mechanics, 4.2);
-        G* in working units, see scene.hertz.Ellipse.
+        Three values: the smaller relative curvature of the bodies divided by the larger one; a^3
+        divided by 3 F R / (4 E*), where R is the larger radius of relative curvature (K. L.
+        Johnson, Contact Mechanics, 4.2); and G* in working units (see scene.hertz.Ellipse).
     """
     from scipy.special import ellipe, ellipk  # late: refusals do not need SciPy
 
@@ -334,9 +338,9 @@ def hertz_ellipse(ratio: Any) -> tuple[Any, Any, Any]:
 
 
 def ratio_of_axes(over: Any) -> Any:
-    """Ratio b/a of the semi-axes of Hertz's ellipse.
+    """Compute the ratio b/a of the semi-axes of Hertz's elliptic contact.
 
-    over: smaller curvature divided by the larger one, float or array.
+    over: smaller relative curvature divided by the larger one, float or array.
     """
     low, high = np.full_like(over, math.log(1e-8)), np.zeros_like(over)
     with np.errstate(invalid="ignore"):

@@ -1,19 +1,21 @@
 """Fit mu, and u_lim or the shear modulus, to friction measured under vibration.
 
-The model is: measured value = mu * weight * mu_macro + error.  The ratio of velocity to amplitude
-does not depend on u_lim, so mu_macro of a row is a function of ln u_lim alone, and the model is
-linear in mu.  For each u_lim, mu follows by linear least squares.
+The model is: measured value = mu * weight * mu_macro + error.  The weight is the load if friction
+forces were measured, and 1 if coefficients of friction were measured.  In each row, the ratio of
+velocity to amplitude does not depend on u_lim, so that mu_macro depends on ln u_lim only.  Since
+the model is linear in mu, the best mu for a given u_lim follows by linear least squares.
 
 The confidence region contains the pairs (u_lim, mu) whose sum of squares is at most a threshold.
-The threshold is the least sum plus a quantile. If the rows have errors, this is a quantile of the
-chi-square distribution. Otherwise, it is a quantile of the F distribution times the mean square
-residual.  For each u_lim, the region is an interval of mu, because the sum is quadratic in mu.  The
-interval of a parameter is its range in the region, as in a profile likelihood.  It does not depend
-on the parametrisation, and may be infinite on one side.
+The threshold is the smallest sum of squares plus a margin.  If the rows have standard errors, the
+margin is a quantile of the chi-square distribution.  Otherwise, it is a quantile of the F
+distribution times the mean square residual.  For each u_lim, the region is an interval of mu,
+because the sum is quadratic in mu.  The interval of a parameter is its range in the region, as in a
+profile likelihood.  It does not depend on the parametrisation, and may be infinite on one side.
 
-Without a map, the solver computes a coarse map first.  It gives the change of friction between two
-guesses.  The rows are then solved at the best guess, which corrects the map there.  At the end, the
-remaining error of the coarse map is of second order.
+Without a map, the solver computes a coarse map first, which is used only for the change of friction
+between two guesses of u_lim.  Then, the solver computes the rows at the best guess, and the coarse
+map is corrected by the difference.  This is repeated.  At the end, the remaining error due to the
+coarse map is of second order.
 """
 
 from __future__ import annotations
@@ -25,7 +27,7 @@ from functools import cache
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-import scipy  # imports its modules when they are used, which refusals do not need
+import scipy  # loads its modules on first use, so that invalid input is refused fast
 
 from microslip.answer.point import solve
 from microslip.foundation.arguments import LARGEST
@@ -42,10 +44,12 @@ if TYPE_CHECKING:
     import xarray as xr
 
 Rows = dict[str, np.ndarray]
-"""Conditions, KEYS, and measured values and errors of the rows, each of shape (n,)."""
+"""Arrays of shape (n,) for the n rows, keyed by name: the conditions (see KEYS), the measured
+values and their errors."""
 Friction = Callable[..., np.ndarray]
-"""friction(velocity, amplitude, rough=False): mu_macro and its error estimate, shape (2, n).  With
-`rough`, mu_macro of any shape, with an error that hardly depends on the point."""
+"""friction(velocity, amplitude, rough=False) returns mu_macro and its error estimate as an array of
+shape (2, n).  If `rough` is true, the arguments can have any shape, and the first item of the
+result is an approximation of mu_macro whose error hardly depends on the point."""
 
 MOTIONS = ("transverse", "longitudinal", "zigzag")
 CONDITIONS = ("speed", "amplitude", "load", "frequency")
@@ -56,18 +60,18 @@ for _name, _unit in (("friction", "N"), ("mu", "")):
     COLUMNS[_name] = Input("", _unit, "", -math.inf, exact=True)
     COLUMNS[f"{_name}_error"] = Input("", _unit, "", exact=True)
 UNITS = {name: one.unit or "" for name, one in COLUMNS.items()}
-"""SI units of the allowed columns."""
+"""SI unit of each allowed column."""
 PARAMETERS = {"mu": "", "u_lim": "m", "shear_modulus": "Pa"}
-"""SI units of the parameters."""
+"""SI unit of each fitted parameter."""
 LISTS = "understood", "warnings", "left_out"
-"""Texts of a fit that are joined in a dataset."""
+"""Fields of a Fit with several strings, which are joined to one string in a dataset."""
 PARTS = "value", "low", "high"
 OPEN = "open"
-"""Text of an end that the rows do not determine."""
+"""Printed in place of a bound that the rows do not determine."""
 MORE_ROWS = "add rows without vibration, or rows where vibration reduces friction more"
 EMPTY = "empty; allowed: a number in every row; leave out the row, or fill the cell"
 MOST_ROWS, MOST_SOLVED = 10_000, 200
-"""Largest number of rows with a map, and without."""
+"""Largest number of rows if a map is given, and if the solver computes the rows."""
 TOLERANCE, CONFIDENCE = 1e-3, 0.95
 TOLERANCES = INPUTS["tolerance"]._replace(high=0.02)
 CONFIDENCES = Input("", "", "", high=0.999999, exact=True)
@@ -80,42 +84,47 @@ SLOWEST, FASTEST = 1e-3, 20.0
 SIZES, RATIOS = 16, 4
 """Number of amplitudes in the coarse map, and number of ratios per decade."""
 COARSE = {"poisson": 0.0, "tolerance": 5e-3}
-"""Settings of the coarse map.  Poisson's ratio hardly changes the slopes."""
+"""Settings of the coarse map.  Poisson's ratio is 0, because it hardly changes the slopes of the
+map."""
 NODES = 161
 """Number of values of ln u_lim at which the friction of the rows is tabulated."""
 MOST_PASSES, SETTLED = 6, 5e-4
-"""Largest number of corrections, and relative change of both unknowns at which they end."""
+"""Largest number of corrections of the coarse map, and relative change of both unknowns below which
+no further correction is made."""
 SMALLEST_MU = 1e-5
 WIDEST_MU = 2.0
 """Largest allowed ratio between the upper and the lower end of the interval for mu."""
 UNLIKELY = 0.01
-"""Probability below which a sum of squares leads to a warning."""
+"""Probability (p-value) of the sum of squares below which a warning is given."""
 REGION = 801
-"""Number of values of ln u_lim in the confidence region."""
+"""Number of values of ln u_lim at which the confidence region is computed."""
 PIECES = 60
-"""Number of linearly and of logarithmically spaced points on a curve of the figure."""
+"""Number of linearly spaced points on each curve of the figure.  The curve has as many
+logarithmically spaced points."""
 ROW_UNITS = {"_Pa": "Pa", "_m_s": "m s-1", "_Hz": "Hz", "_N": "N", "_m": "m", "_si": "m"}
-"""Units in a dataset, by the end of a name."""
+"""Units of the variables in a dataset, keyed by the last part of the name."""
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Fit:
-    """Coefficient of friction and u_lim of a contact, from measured friction.
+    """Result of `fit`: the coefficient of friction and u_lim of a contact, from measured friction.
 
-    An interval includes the scatter of the rows at a confidence level, and the model's error
-    estimate, which is not random.  Ends that the rows do not determine are None.  The page
-    docs/reference/fields.md explains all fields, and the names in `rows`.
+    Each interval covers the scatter of the rows at the confidence level, and is widened by the
+    model's error estimate, which is not random.  Bounds that the rows do not determine are None.
+    The page docs/reference/fields.md explains all fields, and the names in `rows`.
 
     Attributes
     ----------
     mu, u_lim_m, shear_modulus_Pa : float or None
-        The parameters.  NAME_low and NAME_high are the ends of the intervals.
+        The fitted parameters.  The bounds of their intervals have names such as u_lim_low_m and
+        u_lim_high_m.
     labels : dict of list
-        Text columns of the table, by name.
+        Text columns of the measured table, keyed by name.
     rows : dict of np.ndarray, shape (n,)
-        Conditions, measured and fitted values of each row.
+        Conditions, measured values and fitted values of the rows, keyed by name.
     curve : dict of np.ndarray
-        Conditions, friction of the model and error estimate between the rows, for the figure.
+        Model curves between the rows, for the figure: the conditions, the friction and its error
+        estimate, keyed by name.
     """
 
     motion: str
@@ -146,7 +155,7 @@ class Fit:
     curve: Rows = field(repr=False)
 
     def __str__(self) -> str:
-        """The lines that `microslip fit` prints."""
+        """Return the lines that `microslip fit` prints."""
         lines = [line(name.replace("_", " "), text) for name, text in self.understood.items()]
         kind = {"friction": "the friction force", "mu": "the coefficient of friction"}
         rows = f"{len(self.rows['measured'])}, of {kind[self.quantity]}"
@@ -173,14 +182,15 @@ class Fit:
         return "\n".join(lines + [f"warning: {text}" for text in self.warnings])
 
     def to_dict(self) -> dict:
-        """Return the fields and the rows of the fit.  Arrays and tuples become lists."""
+        """Return the fields and the rows of the fit as a dict.  Arrays and tuples become lists."""
         values = {n: x for n, x in vars(self).items() if n not in ("rows", "curve")}
         values |= {"warnings": list(self.warnings), "left_out": list(self.left_out)}
         return values | {name: array.tolist() for name, array in self.rows.items()}
 
     def to_xarray(self) -> xr.Dataset:
-        """The fit as a dataset.  Row data have the dimension `row`, the curve `curve_point`, and
-        numbers no dimension.  Texts are attributes."""
+        """Return the fit as a dataset.  Data of the rows have the dimension `row`, data of the
+        curves the dimension `curve_point`, and single numbers no dimension.  Strings are
+        attributes."""
         import xarray as xr
 
         values = vars(self) | {"understood": (f"{n}: {x}" for n, x in self.understood.items())}
@@ -229,7 +239,7 @@ def fit(
     decimal: str = ".",
     encoding: str = "utf-8",
 ) -> Fit:
-    """Fit mu, and u_lim or the shear modulus, to measured friction.
+    """Fit mu, and either u_lim or the shear modulus, to measured friction.
 
     Without a radius, the unknowns are mu and u_lim, and Poisson's ratio is the only property of the
     bodies.  With a radius, the unknowns are mu and the shear modulus.  In both cases, Hertz's
@@ -243,13 +253,13 @@ def fit(
         A CSV file with a heading line such as `speed [mm/s],amplitude [um],friction [N]`, or
         columns with such names.  Columns without a unit are in SI units.  The columns are speed,
         amplitude, frequency, load; friction (mean forward force) or mu (friction divided by load);
-        optionally their standard errors friction_error or mu_error, and texts named label, name,
-        id, sample or comment.
+        optionally their standard errors friction_error or mu_error, and text columns named label,
+        name, id, sample or comment.
     map : xarray.Dataset, optional
         Dataset of a sweep of this motion; see `open_map`.  Interpolation in a map is fast.
         Without a map, the solver computes every point.
     speed, amplitude, frequency, load : quantity, optional
-        Common value for all rows.  It replaces a column.
+        Common value for all rows, in place of a column.
     nu : quantity, optional
         Poisson's ratio of the equivalent half-space.  The default is the map's Poisson's ratio, or
         0 without a map.  With a radius, `nu` is Poisson's ratio of the bodies and is required.
@@ -268,14 +278,14 @@ def fit(
     Returns
     -------
     Fit
-        Both numbers with intervals.  If the rows determine only mu, the fit contains mu, and the
-        reason why the other number is missing.
+        Both parameters with intervals.  If the rows determine only mu, the fit contains mu and the
+        reason why the other parameter is missing.
 
     Raises
     ------
     InputError
-        If the table cannot be read, if it has too few rows or a single condition, or if the rows do
-        not determine mu.
+        If the table cannot be read, if it has too few rows, if all rows have the same condition, or
+        if the rows do not determine mu.
     """
     if not isinstance(motion, str) or motion not in MOTIONS:
         raise InputError("motion", motion, f"allowed is one of {', '.join(MOTIONS)}")
@@ -303,8 +313,8 @@ def fit(
 
 
 def _read_rows(source: Any, shared: dict[str, Any], **form: str) -> dict[str, Any]:
-    """The rows of a file or of a table of columns, and the fields quantity, labels, left_out and
-    understood of the fit.  Raises InputError."""
+    """Read the rows of a file or of a mapping of columns.  Returns a dict with the rows and with
+    the fields quantity, labels, left_out and understood of the fit.  Raises InputError."""
     table = table_of("measured", source, UNITS, need_units=True, **form)
     columns, errors = table.columns, dict(table.errors)
     good: dict[int, list[float]] = {}
@@ -364,8 +374,8 @@ def _read_rows(source: Any, shared: dict[str, Any], **form: str) -> dict[str, An
 
 
 def _read_bodies(nu: Any, radius: Any, counterbody: Any) -> tuple[dict[str, Any], dict[str, str]]:
-    """The inputs nu, radius and counterbody, as far as they are known, and their texts.  Raises
-    InputError."""
+    """Read the inputs nu, radius and counterbody.  Returns their values, if known, and their
+    descriptions.  Raises InputError."""
     if radius is None and counterbody is not None:
         raise InputError("counterbody", counterbody, "allowed with a radius")
     if radius is not None and nu is None:
@@ -382,7 +392,8 @@ def _read_bodies(nu: Any, radius: Any, counterbody: Any) -> tuple[dict[str, Any]
 def _contact(
     bodies: dict[str, Any], mu: float, modulus: float, motion: str | None = None, **moving: float
 ) -> Contact:
-    """The contact of bodies with this shear modulus, Pa, at rest or in a motion."""
+    """Return the contact of bodies with a given shear modulus, Pa.  If `motion` is None, the
+    contact is at rest."""
     young = 2.0 * modulus * (1.0 + bodies["nu"])
     other = (young, bodies["nu"]) if bodies["counterbody"] == "same" else None
     own = bodies | {"young": young, "counterbody": other}
@@ -394,7 +405,8 @@ def _contact(
 
 
 def _of_map(dataset: Any, motion: str, poisson: float | None) -> Friction:
-    """Friction interpolated in the dataset of a sweep; see datasets.accessor."""
+    """Return a function that interpolates friction in the dataset of a sweep; see
+    datasets.accessor."""
     source = FrictionMap(dataset, motion)
     from xarray import DataArray
 
@@ -420,7 +432,8 @@ def _of_map(dataset: Any, motion: str, poisson: float | None) -> Friction:
 
 
 def _of_solver(rows: Rows, motion: str, poisson: float, tolerance: float) -> Friction:
-    """Friction from the solver, and a coarse map over ln amplitude and ln ratio."""
+    """Return a function that computes friction with the solver.  For rough values, it interpolates
+    in a coarse map over ln amplitude and ln ratio."""
     if len(rows["measured"]) > MOST_SOLVED:
         allowed = f"rows; allowed are at most {MOST_SOLVED}, or any number with a map"
         raise InputError("measured", len(rows["measured"]), allowed)
@@ -456,14 +469,16 @@ def _of_solver(rows: Rows, motion: str, poisson: float, tolerance: float) -> Fri
 
 
 def _lengths(rows: Rows, load: float | None = None) -> np.ndarray:
-    """Velocity and amplitude times u_lim at the mean load, m, shape (2, n)."""
+    """Return the dimensionless velocity and amplitude of the rows times u_lim at the mean load, m,
+    as an array of shape (2, n)."""
     speed, amplitude, loads, frequency = (rows[key] for key in KEYS)
     share = (loads / (load or loads.mean())) ** (2.0 / 3.0)
     return np.stack([speed / (2.0 * math.pi * frequency), amplitude]) / share
 
 
 def _curves(friction: Friction, lengths: np.ndarray, x: Any) -> np.ndarray:
-    """Rough mu_macro of rows at values x of ln u_lim, which have a shape (..., 1)."""
+    """Return rough values of mu_macro of the rows at values x of ln u_lim.  The array x has the
+    shape (..., 1)."""
     still = lengths[1] == 0.0
     velocity, amplitude = np.where(still, 1.0, lengths)
     rough = friction(velocity / np.exp(x), amplitude / np.exp(x), rough=True)[0]
@@ -483,11 +498,11 @@ class Profile:
     macro : scipy.interpolate.CubicSpline
         mu_macro of the rows as a function of x.
     sigma, errors : np.ndarray, shape (n,)
-        Standard errors of the rows, and errors of mu_macro.
+        Standard errors of the measured values, and error estimates of mu_macro.
     y, weight : np.ndarray, shape (n,)
         Measured values, and values of the model at mu = mu_macro = 1, both divided by `sigma`.
     best : float
-        x with the least sum of squares.
+        The value of x with the smallest sum of squares.
     """
 
     def __init__(self, rows: Rows, weight: np.ndarray, friction: Friction):
@@ -514,7 +529,8 @@ class Profile:
             curves[:, moving] += macro - self.macro(self.best)[moving]
 
     def mu(self, x: Any) -> tuple[Any, Any, Any]:
-        """The best mu at x, the least sum of squares, and half of its second derivative by mu."""
+        """Return the best mu at x, the smallest sum of squares at x, and half of the second
+        derivative of this sum with respect to mu."""
         slope = self.weight * self.macro(x)
         norm = np.maximum((slope * slope).sum(axis=-1), np.finfo(float).tiny)
         mu = np.clip(slope @ self.y / norm, SMALLEST_MU, INPUTS["mu"].high)
@@ -524,8 +540,8 @@ class Profile:
         return self.mu(x)[1]
 
     def ends(self, allowed: float) -> tuple[float, float]:
-        """Ends of the interval around the best x in which the sum of squares is at most `allowed`.
-        An end is infinite if the interval reaches the end of the table."""
+        """Return the bounds of the interval around the best x in which the sum of squares is at
+        most `allowed`.  A bound is infinite if the interval extends to the edge of the table."""
         near = self.best + (self.x[-1] - self.x[0]) * np.linspace(-1.0, 1.0, NODES) ** 7
         grid = np.unique(np.clip([self.x, near], self.x[0], self.x[-1]))
         curve = scipy.interpolate.CubicSpline(grid, self.squares(grid) - allowed)
@@ -534,8 +550,8 @@ class Profile:
         return max(low, default=-math.inf), min(high, default=math.inf)
 
     def second(self, allowed: float) -> float | None:
-        """x of a minimum of at most `allowed` that differs from the best by more than a factor of
-        2."""
+        """Return x at a second minimum with a sum of squares of at most `allowed`, or None.  Its
+        u_lim differs from the best one by more than a factor of 2."""
         sums = np.pad(self.squares(self.x), 1, constant_values=np.inf)
         lowest = np.flatnonzero(sums[1:-1] <= np.minimum(np.minimum(sums[:-2], sums[2:]), allowed))
         far = [k for k in lowest if abs(self.x[k] - self.best) > math.log(2.0)]
@@ -543,7 +559,7 @@ class Profile:
 
 
 def _fitted(about: dict[str, Any], friction: Friction, bodies: dict[str, Any], level: float) -> Fit:
-    """The fit at a confidence level."""
+    """Return the result of the fit, with intervals at the given confidence level."""
     rows = about["rows"]
     load = float(rows["row_load_N"].mean())
     weight = rows["row_load_N"] ** (about["quantity"] == "friction")
@@ -621,7 +637,7 @@ def _fitted(about: dict[str, Any], friction: Friction, bodies: dict[str, Any], l
 
 
 def _warnings(motion: str, rows: Rows, bodies: dict[str, Any], mu: float, size: float) -> list[str]:
-    """Assumptions of the theory that do not hold at the best fit."""
+    """Return warnings about assumptions of the theory that are violated at the best fit."""
     if "radius" not in bodies:
         return broken_rules({"mu": mu})
     k = int(np.argmax(rows["amplitude_si"]))
@@ -631,10 +647,11 @@ def _warnings(motion: str, rows: Rows, bodies: dict[str, Any], mu: float, size: 
 
 
 def _curve(rows: Rows, profile: Profile, friction: Friction, mu: float) -> Rows:
-    """Friction of the model between rows that differ in one condition, one curve after another.
+    """Compute the model's friction between rows that differ in one condition only.  Returns the
+    curves one after another.
 
-    The condition is that with the most distinct values.  The correction of the coarse map at the
-    rows is interpolated.
+    This condition is the one with the most distinct values.  The correction to the coarse map is
+    known at the rows, and interpolated between them.
     """
     along = max(KEYS, key=lambda key: len(np.unique(rows[key])))
     which = np.unique([rows[k] for k in KEYS if k != along], axis=1, return_inverse=True)[1].ravel()

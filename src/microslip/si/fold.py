@@ -1,4 +1,4 @@
-"""One period of a motion from a long record, such as the record of a laser vibrometer.
+"""Averaging of a long record of a motion, such as that of a laser vibrometer, to one period.
 
 A record contains many periods, noise, and a slow drift.  The drift is the moving mean over one
 period.  For a periodic motion it is constant.  The difference from the drift is averaged over all
@@ -6,9 +6,9 @@ whole periods.  The scatter between the periods gives the standard error of the 
 
 If the frequency drifts, the periods are averaged out of phase, and the average is too small.  The
 covariance of the phases of neighbouring periods is the variance of this slow phase drift, because
-the noise of neighbouring periods is uncorrelated.  The average of the harmonic m is smaller by the
-factor exp(-x), where x is half of the variance of m times the phase.  This loss is part of the
-error.
+the noise of neighbouring periods is uncorrelated.  The drift reduces the average of harmonic m by
+the factor exp(-x), where x is half of the variance of m times the phase.  This loss is included in
+the error.
 """
 
 from __future__ import annotations
@@ -26,38 +26,43 @@ from microslip.scene.files import COLUMNS, EVEN
 from microslip.scene.samples import FEWEST_SAMPLES, NORMAL
 
 FEWEST_PERIODS, FEWEST_PER_PERIOD = 4, 4
-"""Smallest number of periods in a record, of which half a period is lost at each end, and of
-samples in a period."""
+"""Smallest number of periods in a record, and smallest number of samples in a period.  At each end
+of the record, half a period is lost."""
 ROWS, MOST_ROWS = 32, 10_000
 """Default and largest number of samples in the period.  More samples keep more harmonics, and more
 noise."""
 REFINEMENTS = 3
-"""Number of corrections of the frequency.  After each correction, only the error of the phases
-remains."""
+"""Number of corrections of the frequency.  The error that remains after a correction is due to the
+errors of the phases."""
 PARTS, STEADY = FEWEST_PERIODS, 0.5
-"""Number of parts of a record, of about one period or more, and smallest amplitude of a part,
-divided by the mean amplitude.  In a part below one half, rest describes the motion better than the
-mean period does, because the amplitude is nearer to 0 than to the mean."""
+"""Number of parts into which a record is divided, and smallest amplitude of a part divided by the
+mean amplitude.  A part has about one period or more.  If its amplitude is below one half of the
+mean, it is nearer to 0 than to the mean, so that a state of rest describes the part better than the
+mean period."""
 FEWEST_LEVELS = 4
 """Smallest number of different values in a record with a value that marks missing samples.  Of n
-values in equal steps, the first is one step from the others, which extend over n - 3 steps without
-both ends.  So fewer than 4 values in equal steps would count as marks."""
+equally spaced values, the first is one step away from the second, and the values between both ends
+extend over n - 3 steps.  So with fewer than 4 equally spaced values, the ends would count as
+marks."""
 MOST_DECIMALS = 12
-"""Largest number of decimals of times that count as rounded.  More decimals need no allowance."""
+"""Largest number of decimals of times that count as rounded.  Times with more decimals need no
+allowance for rounding."""
 LARGEST_LOSS = 0.01
 """Largest relative loss of the strongest harmonic by a drift of the frequency.  The estimate of the
 loss is of first order, so it is correct for small losses only."""
 SIGNIFICANT = 5.0
-"""Smallest ratio of the peak-to-peak value to its standard error.  White noise at the frequency of
-its strongest component reaches about 3."""
+"""Smallest ratio of the peak-to-peak value to its standard error.  White noise has a ratio of about
+3 at the frequency of its strongest component."""
 PHASE_OF_A_DRIFT = 0.5 * math.sqrt(1.0 / 80.0 - 1.0 / 144.0)
 """Standard deviation of the phase, in periods, for a frequency that changes linearly by one period
-per duration of the record: that of u**2 / 2 for u from -1/2 to 1/2."""
+over the duration of the record.  It is the standard deviation of u**2 / 2 for u from -1/2 to
+1/2."""
 FINER = 32
 """Number of interpolated points per sample for the peak-to-peak value.  With 32 samples, the peak
 of a sine is too small by at most 5e-6 of its amplitude."""
 CONSTANT = 1e-12
-"""Largest variation of a constant column, divided by its largest value: rounding errors."""
+"""Largest variation of a column that counts as constant, divided by its largest value.  It allows
+for rounding errors."""
 NOT_CONSTANT = "constant; allowed is an oscillation"
 TREND, SLOWEST = 3, 3
 """Degree of the polynomial that is subtracted before the search for the frequency, and smallest
@@ -78,7 +83,7 @@ class Fold:
         The mean period, without its end point.  Displacements are relative to their mean.
     errors : dict of str to np.ndarray, shape (rows,)
         Standard error of each sample of `columns`, from the scatter between the periods, plus the
-        loss of amplitude by a drift of the frequency.
+        loss of amplitude due to a drift of the frequency.
     drift : dict of str to float
         Mean rate of the slow drift of each column, per second.
     """
@@ -92,14 +97,15 @@ class Fold:
 
     @property
     def time(self) -> np.ndarray:
-        """Times of the samples, (rows,)."""
+        """Times of the samples, s, as an array of shape (rows,)."""
         rows = len(next(iter(self.columns.values())))
         return np.arange(rows) / (rows * self.frequency)
 
     def peak_to_peak(self, name: str) -> tuple[float, float]:
-        """Peak to peak value of a column between its samples, too, and its standard error.
+        """Return the peak-to-peak value of a column, interpolated between its samples, and its
+        standard error.
 
-        The standard error is twice the largest one of a sample, which is an upper bound.
+        The standard error is twice the largest standard error of a sample, which is an upper bound.
         """
         return _peak_to_peak(self.columns[name]), 2.0 * float(np.max(self.errors[name]))
 
@@ -111,7 +117,7 @@ def _peak_to_peak(values: np.ndarray) -> float:
 def fold(
     time: Any, columns: Mapping[str, Any], *, frequency: float | None = None, rows: int = ROWS
 ) -> Fold:
-    """Average a record over its periods, without its slow drift.
+    """Average a record over its periods, after removing its slow drift.
 
     Parameters
     ----------
@@ -120,8 +126,9 @@ def fold(
     columns : mapping of array_like, shape (samples,)
         Columns forward, lateral, angle, and load or indentation, in any units.
     frequency : float or None
-        Approximate frequency, Hz, which is refined.  Over the whole record, its error must be less
-        than half a period.  The default is the frequency of the strongest component.
+        Approximate frequency, Hz, which is then refined.  Its error must correspond to less than
+        half a period over the whole record.  The default is the frequency of the strongest
+        component.
     rows : int
         Number of samples in the period, an even number.  Harmonics up to the order rows / 2 - 1 are
         kept.
@@ -146,7 +153,7 @@ def fold(
     integral = spline.antiderivative()
 
     def drift(time: Any) -> np.ndarray:
-        """The mean from half a period before a time to half a period after it."""
+        """Return the mean from half a period before a time to half a period after it."""
         return (integral(time + 0.5 / hz) - integral(time - 0.5 / hz)) * hz
 
     for refinement in range(REFINEMENTS + 1):
@@ -179,7 +186,7 @@ def fold(
     )
     problem += f"is at least {SIGNIFICANT:g} times; use a longer record, or give the correct "
     problem += "approximate frequency of the motion"
-    # before the drift, since the phases of noise look like one
+    # checked before the drift, since the phases of noise look like a drift
     _refuse(ratios[best] <= SIGNIFICANT, names[best], peaks[best], problem, 3)
     _check_repeats(hz, parts, order, column)
     loss = 0.5 * (2.0 * np.pi * np.arange(parts.shape[1])) ** 2 * variance
@@ -205,7 +212,8 @@ def fold(
 
 
 def _refuse(wrong: object, argument: str, value: Any, allowed: str, digits: int = 6) -> None:
-    """Raise InputError if `wrong` is true.  A float is rounded to the digits."""
+    """Raise InputError if `wrong` is true.  digits: number of significant digits to which a float
+    `value` is rounded."""
     if wrong:
         value = float(f"{value:.{digits}g}") if isinstance(value, float) else value
         raise InputError(argument, value, allowed)
@@ -285,8 +293,8 @@ def _checked(time: Any, columns: Mapping[str, Any]) -> tuple[float, float, list[
 
 
 def _check_marks(name: str, values: np.ndarray) -> None:
-    """Raise InputError for a value that is repeated exactly, and whose distance from all other
-    values exceeds their range."""
+    """Raise InputError for an extreme value that is repeated exactly, and whose distance from all
+    other values exceeds the range of the latter."""
     levels, counts = np.unique(values, return_counts=True)
     for end, other in ((0, 1), (-1, -2)) if len(levels) >= FEWEST_LEVELS else ():
         far = abs(levels[end] - levels[other]) > levels[-2] - levels[1]
@@ -324,7 +332,7 @@ def _step(time: np.ndarray) -> tuple[float, float]:
 
 
 def _strongest(values: np.ndarray) -> float:
-    """Number of periods of the strongest component, from the record's spectrum."""
+    """Return the number of periods of the strongest component in the record's spectrum."""
     x = np.linspace(-1.0, 1.0, len(values))
     trend = np.polynomial.polynomial.polyvander(x, TREND)
     rest = values - trend @ np.linalg.lstsq(trend, values, rcond=None)[0]

@@ -1,5 +1,5 @@
-"""The inputs of a prediction: one table for the Python arguments, the options, the columns of CSV
-files, their checks, help texts and reference page."""
+"""The inputs of a prediction.  One table defines the Python arguments, the command-line options and
+the columns of CSV files, with their checks, help texts and reference page."""
 
 from __future__ import annotations
 
@@ -36,9 +36,9 @@ class Input(NamedTuple):
     group : str
         Heading in the help text: bodies, load, motion, drive or output.
     unit : str or None
-        SI unit, empty for a pure number.  None for a text.
+        SI unit; empty for a pure number, None for an input that is a string.
     help : str
-        What it is, with an example.
+        Description of the input, with an example.
     low, high : float
         Finite values with low < value <= high are allowed.
     zero : bool
@@ -99,12 +99,12 @@ INPUTS = {
     "tolerance": _output("", TOLERANCE, SMALLEST_TOLERANCE, 0.1, zero=True, exact=True),
     "map": _output(None, "map in place of the solver: its name or file (Python: dataset)"),
 }
-"""Every input of `predict`, in the order of the help text and of the printed answer."""
+"""All inputs of `predict`, in the order of the help text and of the printed result."""
 OF_BODIES = (
     *("young", "nu", "hardness", "density", "counter_hardness", "counter_density", "material"),
     "tolerance",
 )
-"""Inputs that are not printed by themselves: the line of the body contains them."""
+"""Inputs without a printed line of their own.  The properties of a body are printed in its line."""
 SEARCHED = "amplitude", "speed", "load"
 """Inputs that a reduction can replace."""
 OSCILLATIONS = {
@@ -113,21 +113,23 @@ OSCILLATIONS = {
     "rotation_amplitude": "angle",
     "load_amplitude": "load",
 }
-"""Directions of the solver's motions, keyed by the amplitude."""
+"""Direction of each oscillation in the solver's motions, keyed by the input for its amplitude."""
 SAME_ANGLE = 1e-3
-"""Largest relative difference between equal angles, one of which is sampled at 721 phases."""
+"""Largest relative difference between two angles that count as equal.  One of them is the largest
+of 721 samples."""
 
 
 @dataclass(frozen=True)
 class Kind:
-    """Inputs of a motion, and its description.
+    """A motion with its inputs and its description.
 
     Attributes
     ----------
     name, description : str
-        Name for microslip.solve, and what the sphere does.
+        Name for microslip.solve, and description of the sphere's movement.
     unit : str or None
-        SI unit of the amplitude, if it is the only one; empty for the factor of a file.
+        SI unit of the amplitude if the motion has only one; empty if the amplitude is a factor for
+        the samples of a file.
     needed, optional : tuple of str
         Required and optional inputs of the motion.
     stroke : Stroke or None
@@ -143,32 +145,34 @@ class Kind:
 
     @property
     def steady(self) -> bool:
-        """Whether nothing oscillates."""
+        """True if nothing oscillates."""
         return "frequency" not in (*self.needed, *self.optional)
 
     @property
     def several(self) -> bool:
-        """Whether the motion has several amplitudes, or is read from a file."""
+        """True if the motion has several amplitudes, or is read from a file."""
         return not (self.unit or self.steady)
 
     @property
     def defaults(self) -> dict[str, float]:
-        """Inputs that a file contains, and the factor 1 of its samples."""
+        """Default inputs of a motion from a file: the frequency and the mean load of the file, and
+        a factor of 1 for the samples."""
         if self.stroke is None:
             return {}
         own = {"amplitude": 1.0, "frequency": self.stroke.frequency, "load": self.stroke.mean_load}
         return {name: value for name, value in own.items() if value is not None}
 
     def input(self, name: str) -> Input:
-        """The entry of INPUTS, with the unit of the amplitude of this motion.  Without a motion,
-        all quantities are exact."""
+        """Return the entry of an input in INPUTS.  An amplitude gets the unit of this motion.  For
+        a contact at rest, all quantities are exact."""
         one = INPUTS[name]
         unit = one.unit if name != "amplitude" or self.unit is None else self.unit
         return one._replace(unit=unit, exact=one.exact or self is AT_REST)
 
 
 def _kinds(text: str) -> dict[str, Kind]:
-    """Kinds by name.  text: lines of name, unit, needed and optional inputs, and description."""
+    """Return the kinds, keyed by name.  text: lines with name, unit, required inputs, optional
+    inputs and description."""
     rows = (map(str.strip, line.split("|")) for line in text.strip().splitlines())
     return {
         name: Kind(
@@ -192,12 +196,13 @@ continuous-bore|| rotation            | | and spins steadily about the contact n
 """)
 """Motions with inputs of their own.  All other motions have one amplitude or a rotation."""
 AT_REST = Kind("", "rests", needed=())
-"""A contact without a motion."""
+"""Kind of a contact without a motion."""
 
 
 def kind_of(motion: Any) -> Kind:
-    """The kind of a motion: a name, a name with parameters, a user's motion, or a file with one
-    period in SI units.  Raises InputError unless its amplitude has a unit."""
+    """Return the Kind of a motion.  The motion is a name, a name with parameters, a user's motion,
+    or a file with one period, with units.  Raises InputError if the unit of its amplitude is not
+    unique."""
     if isinstance(motion, str) and motion in MOTIONS:
         return MOTIONS[motion]
     if isinstance(motion, str) and motion.startswith("file:"):
@@ -230,8 +235,8 @@ def kind_of(motion: Any) -> Kind:
 
 @dataclass(frozen=True, eq=False)
 class Inputs:
-    """Checked inputs.  Each input is an attribute, None if it is missing.  A quantity is in its SI
-    unit.
+    """Checked inputs.  Each input is also an attribute, which is None if the input is missing.  A
+    quantity is in its SI unit.
 
     Attributes
     ----------
@@ -240,11 +245,11 @@ class Inputs:
     motion : object
         The motion as the user wrote it; None for a contact without a motion.
     quantities : dict of Quantity
-        Quantities by name.
+        The quantities, keyed by name.
     search : str or None
         Name of the input that a reduction replaces.
     given : mapping
-        The inputs unchanged.
+        The inputs as the user passed them.
     """
 
     kind: Kind
@@ -261,21 +266,22 @@ class Inputs:
         return self.quantities[name].si if name in self.quantities else None
 
     def at(self, **si: Any) -> Inputs:
-        """A copy with other values in SI units, which can be arrays."""
+        """Return a copy with some values replaced.  The new values are numbers or arrays in SI
+        units."""
         quantities = dict(self.quantities)
         for name, value in si.items():
             quantities[name] = replace(quantities.get(name, Quantity(0.0, "")), si=value)
         return replace(self, quantities=quantities) if si else self
 
     def error(self, name: str, allowed: str) -> InputError:
-        """The InputError for an input, with its value as the user wrote it."""
+        """Return the InputError for an input, with its value as the user wrote it."""
         value = self.given.get(name)
         if value is None and name in self.quantities:
             value = f"{self.quantities[name].si:.6g} {self.unit(name)}"
         return InputError(name, value, allowed)
 
     def unit(self, name: str) -> str:
-        """SI unit of a quantity."""
+        """Return the SI unit of a quantity."""
         return self.kind.input(name).unit or ""
 
     @property
@@ -285,11 +291,12 @@ class Inputs:
 
     @cached_property
     def bodies(self) -> tuple[tuple[Material, str], ...]:
-        """The body and the counterbody, with their texts."""
+        """The body and the counterbody, each with its description."""
         return self._body(""), self._body("counter_")
 
     def _body(self, side: str) -> tuple[Material, str]:
-        """A body and its text.  side: "counter_" for the counterbody, otherwise empty."""
+        """Return a body and its description.  side: "counter_" for the counterbody, otherwise
+        empty."""
         name, known = "counterbody" if side else "material", self.quantities
         if side or name in self.given:
             body, text = read_body(name, self.given.get(name, "rigid"))
@@ -307,7 +314,7 @@ class Inputs:
 
     @property
     def texts(self) -> dict[str, str]:
-        """The inputs as the user wrote them, in the order of the printed answer."""
+        """The inputs as the user wrote them, in the order of the printed result."""
         own = {n: str(x) for n, x in self.given.items()}
         own |= {n: one.text for n, one in self.quantities.items() if n in own}
         texts = {"motion": f"{self.motion}: the sphere {self.kind.description}"}

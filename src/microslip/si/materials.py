@@ -18,8 +18,9 @@ ROCKWELL = {20: 238, 25: 266, 30: 302, 35: 345, 40: 392, 45: 446, 50: 513, 55: 5
 ROCKWELL |= {65: 832, 68: 940}
 """Vickers numbers of steels, keyed by Rockwell C numbers (ASTM E140, Table 1)."""
 VICKERS = 9.80665e6 / 0.9272
-"""Mean pressure of a Vickers number of 1, Pa: 1 kgf/mm^2 on the faces of the indent.  Its projected
-area is sin(68 degrees) times that of the faces."""
+"""Mean pressure for a Vickers number of 1, Pa.  The Vickers number is the force in kgf divided by
+the area of the indent's faces in mm^2.  The projected area is sin(68 degrees) times that of the
+faces."""
 BRINELL = 0.95
 """Brinell number divided by Vickers number, for steels from 80 to 650 HV (ISO 18265, Table A.1)."""
 SCALES = re.compile(r"(.*?)\s*(HV|HRC|HBW?|HBS|HR[ABD-Z]|HK|HS|Shore.*|Mohs)", re.S)
@@ -32,7 +33,7 @@ EXAMPLE = "E and nu as in '70 GPa, 0.22', with a point before decimals"
 
 @dataclass(frozen=True)
 class Material:
-    """An isotropic elastic body.  Texts with units are converted to numbers in SI units.
+    """An isotropic elastic body.  Strings with units are converted to numbers in SI units.
 
     Attributes
     ----------
@@ -43,7 +44,7 @@ class Material:
     density, hardness : float or None
         Density, kg/m^3, and mean pressure under a hardness indenter, Pa; None if unknown.
     source : str
-        Source of the numbers.
+        Source of the properties.
 
     Raises
     ------
@@ -92,9 +93,9 @@ class Material:
 
 
 def read_body(argument: str, value: Any) -> tuple[Material, str]:
-    """A body and its text.  Raises InputError.
+    """Return a body and its description.  Raises InputError.
 
-    value: a Material, the name of a material, "E, nu", or a pair (E, nu).
+    value: a Material, the name of a material, a string "E, nu", or a pair (E, nu).
     """
     if isinstance(value, Material):
         return value, str(value)
@@ -123,8 +124,8 @@ def read_body(argument: str, value: Any) -> tuple[Material, str]:
 
 
 def read_hardness(value: object) -> Quantity:
-    """Read a hardness as the mean pressure under the indenter, Pa: a pressure, or a text such as
-    "200 HV" or "60 HRC".  Raises ValueError."""
+    """Read a hardness as the mean pressure under the indenter, Pa.  The value is a pressure, or a
+    string such as "200 HV" or "60 HRC".  Raises ValueError."""
     match = SCALES.fullmatch(value.strip()) if isinstance(value, str) else None
     if match is None:
         return read(value, "Pa")

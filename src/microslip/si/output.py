@@ -1,4 +1,5 @@
-"""The outputs of a prediction: one table for text, JSON, CSV files, datasets and reference page."""
+"""The outputs of a prediction.  One table defines the printed text, JSON, CSV files, datasets and
+the reference page."""
 
 from __future__ import annotations
 
@@ -25,8 +26,9 @@ class Output(NamedTuple):
     sentence : str
         Sentence that is printed after the number.
     factors : str
-        Names in predict.factors_of, or attributes of a Contact, whose product is the output.  By
-        default, it is the factor with the name of the output.
+        Names of the factors whose product is the output.  A factor is an item of
+        predict.factors_of, or an attribute of a Contact.  By default, the only factor has the name
+        of the output.
     """
 
     unit: str
@@ -81,16 +83,16 @@ OUTPUTS = {
     "wear_volume_per_cycle": Output("m^3", "wear volume of a body in a period or a turn", "worn"),
     "wear_depth_per_cycle": Output("m", "mean wear depth over the contact", "worn per_area"),
 }
-"""Every output of `predict`, in the order in which they are printed."""
+"""All outputs of `predict`, in the order in which they are printed."""
 PREFIXED = ("m", "N", "Pa", "W", "J", "Hz", "N m", "m/s", "N/m")
 """Units that are printed with metric prefixes."""
 KINDS = ("value", "error", "spread", "low", "high")
 INTERVAL = 0.025, 0.975
-"""Probabilities of the quantiles at the ends of a 95 % interval."""
+"""Probabilities of the quantiles that bound a 95 % interval."""
 WIDTH = 24
 """Width of the name at the start of a line, in characters."""
 TIMES = (("years", 365.25 * 86400.0), ("days", 86400.0), ("h", 3600.0), ("min", 60.0), ("s", 1.0))
-"""Units of long times, s."""
+"""Names of time units, and their lengths in s."""
 TEXTS = ("motion", "pressure", "model", "outcome", "search", "reason", "counterbody")
 """Text columns of a prediction.  The other columns are numbers."""
 OUTCOMES = {
@@ -101,7 +103,7 @@ OUTCOMES = {
 """Sentences about the outcomes, except for a contact that runs away."""
 REASONS = ("mu_static_reason", "displacement_reason")
 LISTS = ("remarks", "warnings", "not_checked")
-"""Lists of texts of a prediction."""
+"""Columns of a prediction that are lists of strings."""
 
 
 @dataclass(frozen=True)
@@ -116,9 +118,9 @@ class Value:
         Numerical error estimate; 0 for a closed form.
     spread : float or None
         Standard uncertainty due to the uncertain inputs.  It is infinite if more than one draw in a
-        thousand has no value, or an infinite one.  None if all inputs are exact.
+        thousand is infinite or has no value.  None if all inputs are exact.
     low, high : float or None
-        Ends of the 95 % interval due to the uncertain inputs.
+        Bounds of the 95 % interval due to the uncertain inputs.
     unit : str
         SI unit, empty for a pure number.
     """
@@ -145,19 +147,20 @@ class Value:
 
 @cache
 def column(name: str, unit: str, kind: str = "value") -> str:
-    """Name of a column in JSON, CSV files and datasets, such as friction_force_error_N."""
+    """Return the name of a column in JSON, CSV files and datasets, such as
+    friction_force_error_N."""
     words = re.findall(r"[a-zA-Z0-9]+", unit.replace("^", ""))
     return "_".join([name, *[kind] * (kind != "value"), *words])
 
 
 @cache
 def _attributes(name: str, unit: str, kind: str) -> dict[str, str]:
-    """Attributes of a column in datasets."""
+    """Return the attributes of a column in datasets."""
     return {"units": unit or "1", "long_name": f"{name.replace('_', ' ')}, {kind}"}
 
 
 def input_column(name: str, unit: str, kind: str = "value") -> str:
-    """Name of the column of an input, such as speed_m_s."""
+    """Return the name of the column of an input, such as speed_m_s."""
     factor = name == "amplitude" and not unit
     return column("amplitude_factor" if factor else name, unit, kind)
 
@@ -166,36 +169,37 @@ def input_column(name: str, unit: str, kind: str = "value") -> str:
 class Prediction:
     """Friction of a vibrated contact in SI units.
 
-    Every column of `to_dict` is an attribute: the value of an output, such as `mu_macro` or
-    `friction_force_N`, its error estimate (`friction_force_error_N`), and with uncertain inputs its
-    standard uncertainty (`..._spread...`) and 95 % interval (`..._low...`, `..._high...`).  A
-    missing number is None.
+    Every column of `to_dict` is also an attribute.  Each output has a value, such as `mu_macro` or
+    `friction_force_N`, and an error estimate, such as `friction_force_error_N`.  If inputs are
+    uncertain, it also has a standard uncertainty (`..._spread...`) and a 95 % interval
+    (`..._low...`, `..._high...`).  A missing number is None.
 
     Attributes
     ----------
     values : dict of Value
-        Outputs by the names in OUTPUTS, in SI units.
+        Outputs in SI units, keyed by their names in OUTPUTS.
     input_values : dict of Value
-        Inputs by name, in SI units.
+        Inputs in SI units, keyed by name.
     inputs : dict of str
         The inputs as the user wrote them.
     motion, pressure : str
         The motion, and the pressure for microslip.solve.
     model : str
-        Contact model, "closed-form" or "map".
+        Name of the contact model, "closed-form" or "map".
     converged, reason : bool, str
         True if the error estimate of mu_macro, or of the speed under a force, is at most the
         tolerance.  Otherwise, `reason` is set.
     outcome : str or None
-        Under a force "moves", "stays", "runs away", or "undecided" if the speed is below its error
-        estimate.  None for a contact at a speed, and if the solver failed.
+        Outcome under a prescribed force: "moves", "stays", "runs away", or "undecided" if the speed
+        is below its error estimate.  None at a prescribed speed, and if the solver failed.
     search : str or None
         Input that a reduction replaces: "amplitude", "speed" or "load".
     mu_static_reason, displacement_reason : str
-        Why the error of mu_static is above its tolerance, and why the displacement is unknown.
+        Reason why the error of mu_static is above its tolerance, and reason why the displacement is
+        unknown.
     remarks, warnings, not_checked : tuple of str
-        Explanations, violated assumptions of the theory, and checks that were skipped because a
-        property is missing.
+        Explanations of outputs, warnings about violated assumptions of the theory, and checks that
+        were skipped because a property is missing.
     """
 
     values: dict[str, Value] = field(default_factory=dict)
@@ -220,9 +224,9 @@ class Prediction:
         return self.inputs["counterbody"]
 
     def columns(self) -> tuple[dict[str, Any], dict[str, dict[str, str]]]:
-        """All columns by name, and the attributes of those with numbers.  The value and the error
-        of every output are present, None if they do not apply; spread, low and high are present if
-        an input is uncertain."""
+        """Return all columns, keyed by name, and the attributes of the columns with numbers.  The
+        value and the error of every output are present; they are None for an output that does not
+        apply.  The columns spread, low and high are present if an input is uncertain."""
         columns = {name: getattr(self, name) for name in (*TEXTS, *REASONS, "converged")}
         columns["inputs"], attributes = dict(self.inputs), {}
         columns |= {name: list(getattr(self, name)) for name in LISTS}
@@ -240,11 +244,12 @@ class Prediction:
         return columns, attributes
 
     def to_dict(self) -> dict[str, Any]:
-        """The columns by name."""
+        """Return the columns, keyed by name."""
         return self.columns()[0]
 
     def to_xarray(self) -> xr.Dataset:
-        """The numbers as variables with units, and the texts as attributes."""
+        """Return a dataset with the numbers as variables with units, and the strings as
+        attributes."""
         import xarray as xr
 
         columns, attributes = self.columns()
@@ -264,7 +269,7 @@ class Prediction:
         raise AttributeError(f"{type(self).__name__} has no column {name!r}")
 
     def __str__(self) -> str:
-        """The lines that `microslip predict` prints."""
+        """Return the lines that `microslip predict` prints."""
         lines = [line(name.replace("_", " "), text) for name, text in self.inputs.items()]
         if name := self.search:
             least = "smallest" if name == "amplitude" else "largest"
@@ -294,11 +299,11 @@ class Prediction:
 
 
 PLAIN = {"u_lim", "mu_macro", "mu_apparent", "mu_static", "mu_static_apparent"}
-"""Outputs that are symbols, whose underscore is printed."""
+"""Outputs whose names are symbols.  Their underscores are printed."""
 
 
 def _names() -> set[str]:
-    """Names of all columns that may contain numbers."""
+    """Return the names of all columns that may contain numbers."""
     units = [(name, one.unit) for name, one in OUTPUTS.items()]
     units += [(name, one.unit) for name, one in INPUTS.items() if one.unit is not None]
     units += [("amplitude", "rad"), ("amplitude_factor", "")]
@@ -306,19 +311,21 @@ def _names() -> set[str]:
 
 
 def line(title: str, text: str) -> str:
-    """A line with its title."""
+    """Format a printed line that begins with a title."""
     return f"{title:<{WIDTH - 1}} {text}"
 
 
 def _scaled(size: float, unit: str) -> tuple[str, float]:
-    """A readable unit for numbers of a size, and the unit in SI units."""
+    """Return a readable unit for numbers of a given size, and the value of this unit in the SI
+    unit."""
     if unit == "s":
         return next((one for one in TIMES if size >= 2.0 * one[1]), ("s", 1.0))
     return prefixed(size, unit) if unit in PREFIXED else (unit, 1.0)
 
 
 def _lines(title: str, one: Value, sentence: str) -> list[str]:
-    """The line of a Value with its error, and the line of its uncertainty due to the inputs."""
+    """Format a Value: a line with its error, and if the inputs are uncertain a line with its
+    uncertainty."""
     value, error = one.value, one.error
     size = max(abs(value), error if abs(value) <= error < math.inf else 0.0)
     name, scale = _scaled(size, one.unit)

@@ -35,20 +35,20 @@ UNKNOWN_THRESHOLD = (
 
 
 def predict(motion: Any, **given: Any) -> Prediction:
-    """Friction of a vibrated contact of two bodies, in SI units.
+    """Predict the friction of a vibrated contact of two bodies, in SI units.
 
-    A quantity is a text of one number and one unit ("5 mm"), a pint quantity, or a number in the SI
-    unit.  A text can include a standard uncertainty ("10 N +- 5 %").
+    A quantity is a string with one number and one unit ("5 mm"), a pint quantity, or a number in
+    the SI unit.  A string can include a standard uncertainty ("10 N +- 5 %").
 
     Parameters
     ----------
     motion : str
         "transverse", "longitudinal", "zigzag", "bore" (the sphere oscillates about the contact
         normal), "continuous-bore" (the sphere spins steadily), "elliptic", "transverse-bore",
-        "normal", "file:FILE" with one period of samples with units, or another translation or
-        rotation of `microslip.solve`.
+        "normal", "file:FILE" (a file with one period of samples, with units), or another
+        translation or rotation of `microslip.solve`.
     **given
-        Inputs; see the table below.
+        Inputs; see Other Parameters below.
 
     Returns
     -------
@@ -78,9 +78,9 @@ predict.__doc__ = f"{predict.__doc__}{_table_of_inputs()}"
 
 
 def checked_contact(motion: Any, **given: Any) -> Contact:
-    """The contact of a prediction.  Raises InputError if the inputs are invalid.
+    """Return the contact for the inputs of `predict`.  Raises InputError if the inputs are invalid.
 
-    A placeholder replaces the input that a search determines.
+    An input that a search will determine has a placeholder value.
     """
     inputs = read_inputs(motion, **given)
     placeholders = {"amplitude": 0.0, "speed": 0.0, "load": LOAD}
@@ -88,7 +88,7 @@ def checked_contact(motion: Any, **given: Any) -> Contact:
 
 
 def predict_contact(contact: Contact) -> Prediction:
-    """The Prediction for a contact of `checked_contact`.  Raises InputError."""
+    """Return the Prediction for a contact from `checked_contact`.  Raises InputError."""
     inputs, search, about = contact.inputs, contact.inputs.search, _about(contact)
     given = about["input_values"]
     if search:
@@ -121,22 +121,22 @@ def predict_contact(contact: Contact) -> Prediction:
 
 
 def unsolved(contact: Contact, reason: str) -> Prediction:
-    """The Prediction for a search without a solution.  It has no outputs."""
+    """Return a Prediction without outputs, for a search that has no solution."""
     about, search = _about(contact), str(contact.inputs.search)
     about["input_values"][search] = Value(math.nan, math.nan, unit=contact.inputs.unit(search))
     return Prediction(**about, reason=reason)
 
 
 def _about(contact: Contact) -> dict[str, Any]:
-    """The inputs of a Prediction."""
+    """Return the fields of a Prediction that describe its inputs."""
     inputs, about = contact.inputs, {"motion": str(contact.kind.name)}
     values = {n: Value(x.si, None, unit=inputs.unit(n)) for n, x in inputs.quantities.items()}
     return about | {"inputs": inputs.texts, "search": inputs.search, "input_values": values}
 
 
 def outputs(contact: Contact, answer: Prediction) -> dict[str, Value]:
-    """Return the outputs of the contact in SI units.  An output without one of its factors is
-    missing."""
+    """Return the outputs for a contact in SI units, keyed by name.  An output is omitted if one of
+    its factors is missing."""
     factors, values = factors_of(contact, answer), {}
     for name, output in OUTPUTS.items():
         names = (output.factors or name).split()
@@ -155,8 +155,8 @@ def outputs(contact: Contact, answer: Prediction) -> dict[str, Value]:
 
 
 def factors_of(contact: Contact, answer: Prediction) -> dict[str, Any]:
-    """Factors of the outputs by name, in SI units, in addition to the attributes of the contact.
-    All formulas accept arrays."""
+    """Return the factors of the outputs in SI units, keyed by name, in addition to the attributes
+    of the contact.  All formulas accept arrays."""
     inputs, known, mean_load = contact.inputs, answer.values, answer.values["mean_load"].value
     friction, velocity, unit = known["friction"], known["velocity"], contact.speed_unit
     still, period = contact.mu * contact.load * mean_load, 2.0 * math.pi / contact.omega
@@ -189,8 +189,8 @@ def factors_of(contact: Contact, answer: Prediction) -> dict[str, Any]:
         total = drag + power
     elif "dissipation" in known:
         whole = known["dissipation"] * (still * contact.u_lim / (period * mean_load))
-        # The balance contains the drag at the velocity of the answer, which is smaller than the
-        # requested one if that is outside the range of the solver.
+        # The balance contains the drag at the velocity of the result.  This velocity is smaller
+        # than the requested velocity if the latter is outside the range of the solver.
         power = whole + friction * velocity * (-still * unit)
         total = replace(drag + power, error=np.maximum(whole.error, drag.error))
     else:
@@ -204,7 +204,7 @@ def factors_of(contact: Contact, answer: Prediction) -> dict[str, Any]:
 
 
 def _remarks(contact: Contact, answer: Prediction) -> list[str]:
-    """Explanations of outputs that could be misread."""
+    """Return explanations of outputs that could be misread."""
     inputs, known, remarks = contact.inputs, answer.values, []
     if inputs.load_amplitude and (inputs.mass is not None or inputs.drive_stiffness is not None):
         remarks.append(REFERENCE_LOADS)

@@ -37,31 +37,32 @@ COLUMNS = {
 class RealResponse(Answer):
     """Forces of a real contact along a path, in SI units.  Each row is a point of the path.
 
-    The columns of COLUMNS, with the unit in the name (force_forward_N), and the names in
-    `attributes` are attributes of the response, too.
+    The columns in COLUMNS are also attributes of the response, with the unit at the end of the
+    name, as in `force_forward_N`.  The items of `attributes` are
+    attributes of the response, too.
 
     Attributes
     ----------
     path : dict of str to np.ndarray
-        Columns of the path in SI units, by name.
+        Columns of the path in SI units, keyed by name.
     columns : dict of str to tuple
-        Unit and values of every column, by name: those of the path, and those of
+        Unit and values of every column, keyed by name: the columns of the path, and the columns of
         `microslip.response` in SI units.
     attributes : dict
         Attributes of the dataset: u_lim_m, the displacement at which the whole contact slides (m);
         contact_radius_m; load_N, the load of the reference state; mu; tolerance, the largest
-        accepted error of a force, relative to mu times the load; reason, why the response is not
-        converged; converged, 0 or 1.
+        accepted error of a force, relative to mu times the load; reason, the reason why the
+        response is not converged; converged, 0 or 1.
     converged : bool
-        Whether every error is within the tolerance.
+        True if every error is within the tolerance.
     """
 
     def to_xarray(self) -> Any:
-        """The columns as an xarray.Dataset over `row`, with units."""
+        """Return the columns as an xarray.Dataset with the dimension `row` and with units."""
         return import_module("microslip.datasets.of_records").to_xarray(self)
 
     def __str__(self) -> str:
-        """The lines that `microslip response` prints."""
+        """Return the lines that `microslip response` prints."""
         return str(import_module("microslip.datasets.of_records").response_text(self))
 
 
@@ -74,7 +75,7 @@ def predict_response(
     progress: Callable[[int, int], None] | None = None,
     **contact: object,
 ) -> RealResponse:
-    """Forces of a contact of two bodies that follows a measured path, in SI units.
+    """Compute the forces of a contact of two bodies along a measured path, in SI units.
 
     Parameters
     ----------
@@ -85,7 +86,7 @@ def predict_response(
         Largest accepted relative error of the forces and the torque.  Force errors are divided by
         mu times the load, torque errors by the torque at full slip.
     decimal, encoding : str
-        Decimal mark and encoding of a file.
+        Decimal mark and encoding of a CSV file.
     progress : callable or None
         Progress callback; see `microslip.response`.
     **contact : quantity
@@ -99,7 +100,7 @@ def predict_response(
     Raises
     ------
     InputError
-        If an argument or a column is invalid.  The message names it.
+        If an argument or a column is invalid.  The message contains its name.
     """
     real = only_contact(contact)
     columns = read_path(path, decimal=decimal, encoding=encoding)
@@ -135,15 +136,15 @@ def predict_response(
 
 
 def only_contact(contact: Mapping[str, object]) -> Contact:
-    """The contact of inputs of the groups "bodies" and "load".  Raises InputError."""
+    """Return the contact for inputs of the groups "bodies" and "load".  Raises InputError."""
     return contact_of(read_inputs(None, **contact))
 
 
 def read_path(path: Any, **form: str) -> dict[str, np.ndarray]:
-    """Columns of a path in SI units.
+    """Read the columns of a path, in SI units.
 
-    form: decimal mark and encoding of a file.  Raises InputError if a column or a line cannot be
-    read.  Lines cannot be skipped, since a path has no gaps.
+    form: decimal mark and encoding of a CSV file.  Raises InputError if a column or a line cannot
+    be read.  Lines cannot be skipped, since a path has no gaps.
     """
     table = table_of("path", path, UNITS, need_units=True, **form)
     cells = {name: one for name, one in table.columns.items() if name not in LABELS}
@@ -168,15 +169,16 @@ def read_path(path: Any, **form: str) -> dict[str, np.ndarray]:
 def predict_iwan(
     *, elements: int | None = None, tolerance: float | None = None, **contact: object
 ) -> Iwan:
-    """Iwan model of a contact of two bodies: parallel springs with sliders, in SI units.
+    """Compute the Iwan model of a contact of two bodies: parallel springs with sliders, in SI
+    units.
 
     Parameters
     ----------
     elements : int or None
         Number of elements.
     tolerance : float or None
-        Largest error due to the number of elements, divided by mu times the load; give either this
-        (1e-3) or `elements`.
+        Largest accepted error due to the number of elements, divided by mu times the load (default
+        1e-3).  Give either `tolerance` or `elements`.
     **contact : quantity
         mu, load, radius, material and the other arguments of `microslip.predict` that describe a
         contact.
@@ -189,7 +191,7 @@ def predict_iwan(
     Raises
     ------
     InputError
-        If an argument is invalid.  The message names it.
+        If an argument is invalid.  The message contains its name.
     """
     real = only_contact(contact)
     from microslip.answer.along import iwan  # late: refusals do not need the solver

@@ -1,4 +1,4 @@
-"""The dimensionless answer for a contact, from the solver or from a map, and the search for the
+"""Dimensionless results for a contact, from the solver or from a map, and a search for the
 amplitude, speed or load that gives a requested reduction of friction."""
 
 from __future__ import annotations
@@ -41,7 +41,8 @@ SIMPLER: dict[str, dict[str, Any]] = {
     "Poisson's ratio matters for u_lim only: with the ratio 0 and the same u_lim, mu_macro differs "
     "by less than its error": {"poisson": 0.0},
 }
-"""Changes of a Problem, keyed by the sentence for changes that do not matter."""
+"""Simplifications of a Problem, keyed by the sentence to print if a simplification changes mu_macro
+by less than its error."""
 RUNS_AWAY = "runs away"
 """First words of the solver's reason for a contact that accelerates without limit."""
 MAP = "map"
@@ -52,11 +53,10 @@ SPEEDS = 1e-9, 1e6
 """Smallest and largest dimensionless velocity of the search.  For a translation with an amplitude
 above 1, the velocity is divided by the amplitude."""
 LOAD = 1e-12
-"""Load, N, at which groups are computed in a search for the load.  It is so small that Hertz's
-theory applies to all bodies."""
+"""Load, N, at which the dimensionless groups are computed in a search for the load.  It is so small
+that Hertz's theory applies to all bodies."""
 STEP = 0.05
-"""Step of the finite difference for the slope of friction.  The difference is taken in the
-logarithm of the unknown."""
+"""Step of the finite difference for the slope of friction, in the logarithm of the unknown."""
 
 
 class NoSolutionError(InputError):
@@ -73,12 +73,13 @@ def answer_of(contact: Contact) -> Prediction:
     Returns
     -------
     Prediction
-        The dimensionless answer.  Its values are friction: mean forward force divided by mu times
-        the mean load; velocity; static: friction in the limit of vanishing velocity; threshold:
-        smallest constant force that moves the contact, divided as the friction; largest_force:
-        smallest force at which it runs away; mean_load divided by the load without oscillation;
-        torque divided by mu F_z a; dissipation per period divided by mu F_z u_lim; displacement
-        until rest in u_lim; cycles until rest.  Unknown values are missing.
+        The dimensionless result.  Its values are: friction, the mean forward force divided by mu
+        times the mean load; velocity; static, the friction in the limit of vanishing velocity;
+        threshold, the smallest constant force that moves the contact, and largest_force, the
+        smallest constant force at which it runs away, both divided by mu times the mean load;
+        mean_load, divided by the load without oscillation; torque, divided by mu F_z a; dissipation
+        per period, divided by mu F_z u_lim; displacement until rest, divided by u_lim; and cycles
+        until rest.  Unknown values are missing.
     """
     forced = contact.inputs.force is not None
     accepted = contact.inputs.tolerance or (TOLERANCE_OF_SPEED if forced else TOLERANCE)
@@ -111,9 +112,9 @@ def answer_of(contact: Contact) -> Prediction:
 def solve_at(contact: Contact, velocity: float | None, tolerance: float, **changes: Any) -> Result:
     """The Result of microslip.solve, or of a map, for a contact.
 
-    velocity: dimensionless velocity; None under a force.  A velocity above the range of the solver
-    is replaced by the largest one, at which the vibration has no effect.  changes: dimensionless
-    force, stiffness, mass and damping.
+    velocity: dimensionless velocity; None under a prescribed force.  A velocity above the range of
+    the solver is replaced by the largest allowed velocity, at which the vibration has no effect.
+    changes: dimensionless force, stiffness, mass and damping.
 
     Raises InputError.  The message names the input of `predict`.
     """
@@ -136,13 +137,13 @@ def solve_at(contact: Contact, velocity: float | None, tolerance: float, **chang
 
 
 def settings_of(contact: Contact) -> dict[str, Any]:
-    """Amplitude, Poisson's ratio and pressure for microslip.solve."""
+    """Return the amplitude, Poisson's ratio and the pressure for microslip.solve."""
     size = None if contact.steady else float(contact.amplitude)
     return {"amplitude": size, "poisson": float(contact.poisson), "pressure": contact.pressure}
 
 
 def static_limit(contact: Contact) -> Result:
-    """mu_macro in the limit of vanishing speed."""
+    """Compute mu_macro in the limit of vanishing speed."""
     tolerance = contact.inputs.tolerance or TOLERANCE
     if contact.inputs.force is not None:  # the tolerance applies to the speed here
         tolerance = min(tolerance, STATIC_TOLERANCE)
@@ -152,12 +153,13 @@ def static_limit(contact: Contact) -> Result:
 
 
 def problem_of(contact: Contact) -> Problem:
-    """The dimensionless Problem in the limit of vanishing speed."""
+    """Return the dimensionless Problem in the limit of vanishing speed."""
     return limits.problem_of(contact.motion, 0.0, **settings_of(contact))
 
 
 def largest_force(contact: Contact) -> float:
-    """Smallest constant force at which the contact runs away, divided by mu times the mean load.
+    """Return the smallest constant force at which the contact runs away, divided by mu times the
+    mean load.
 
     It is 1 for a body with a mass.  Otherwise it is the smallest normal load in a period divided by
     the mean load.
@@ -168,7 +170,7 @@ def largest_force(contact: Contact) -> float:
 
 
 def _threshold(contact: Contact, limit: Result | None) -> Estimate | None:
-    """Smallest constant force that moves the contact, divided by mu times the mean load.
+    """Return the smallest constant force that moves the contact, divided by mu times the mean load.
 
     The threshold equals the static limit if the oscillation exerts no forward force.  Otherwise, a
     contact without mass follows the forward oscillation, and the threshold is the static limit of
@@ -191,7 +193,7 @@ def _threshold(contact: Contact, limit: Result | None) -> Estimate | None:
 def _friction(
     contact: Contact, limit: Result | None, threshold: Estimate | None, tolerance: float
 ) -> Result:
-    """The friction at a prescribed speed, or the velocity under a prescribed force.
+    """Compute the friction at a prescribed speed, or the velocity under a prescribed force.
 
     If the force is below the threshold by more than the threshold's error, the contact comes to
     rest, and no drift is computed.  If the force is within this error of the threshold, the result
@@ -228,7 +230,7 @@ def _friction(
 
 
 def within_range(drive: dict[str, float]) -> dict[str, float]:
-    """The dimensionless drive, reduced to the range of the solver.
+    """Return the dimensionless drive, reduced to the range of the solver.
 
     If the force exceeds this range, the contact runs away.  A body that is too heavy or too stiff
     hardly moves.  Its mass, stiffness and damping are scaled by one factor, which preserves the
@@ -256,10 +258,10 @@ def _outcome(contact: Contact, result: Result) -> str | None:
 
 
 def _rest(contact: Contact) -> tuple[dict[str, Value], str]:
-    """Displacement until the contact rests and number of cycles, or the reason why they are
-    unknown.
+    """Return the displacement and the number of cycles until the contact rests, or the reason why
+    they are unknown.
 
-    They are computed for round contacts only, because other contacts would take minutes.
+    Both are computed for round contacts only, because other contacts would take minutes.
     """
     drive = contact.drive(contact.mean_load)
     if set(drive) != {"force"}:
@@ -279,11 +281,12 @@ def _rest(contact: Contact) -> tuple[dict[str, Value], str]:
 
 
 def simplifications(contact: Contact, answer: Prediction) -> list[str]:
-    """Return the sentences of SIMPLER that hold for a contact: the simpler contact has the same
-    friction at the same speed, within the error of the answer.
+    """Return the sentences of SIMPLER that are true for a contact.  The simpler contact must have
+    the same friction at the same speed, within the error of the result.
 
-    A contact counts as simpler if another model is chosen for it.  The list is empty for a contact
-    under a force, and for an answer that is a closed form, comes from a map or is not converged.
+    A contact counts as simpler only if the solver chooses another model for it.  The list is empty
+    for a contact under a prescribed force, and for a result that is a closed form, comes from a map
+    or is not converged.
     """
     inputs, friction, sentences = contact.inputs, answer.values["friction"], []
     if inputs.force is not None or not answer.converged or answer.model not in MODELS:
@@ -303,7 +306,7 @@ def simplifications(contact: Contact, answer: Prediction) -> list[str]:
 
 
 class FrictionMap:
-    """Friction from the dataset of a sweep, through its accessor (see datasets.accessor).
+    """Interpolator of friction in the dataset of a sweep; see datasets.accessor.
 
     Parameters
     ----------
@@ -332,8 +335,8 @@ class FrictionMap:
     def at(
         self, velocity: Any, amplitude: Any, poisson: float | None
     ) -> tuple[np.ndarray, np.ndarray]:
-        """Friction and its error bound at points.  Raises InputError about `nu`, and ValueError for
-        points outside the map."""
+        """Return the friction and its error bound at points.  Raises InputError for an invalid
+        `nu`, and ValueError for points outside the map."""
         try:
             answer = self.dataset.microslip.at(velocity, amplitude, poisson=poisson)
         except InputError as error:
@@ -341,8 +344,8 @@ class FrictionMap:
         return answer.mu_macro.values, answer.mu_macro_error.values
 
     def solve(self, velocity: float, amplitude: float | None, poisson: float, tol: float) -> Result:
-        """The answer of the map as a Result of microslip.solve.  It is not converged if the error
-        bound is above the tolerance, or if the point is outside the map."""
+        """Return the interpolated friction as a Result of microslip.solve.  The result is not
+        converged if its error bound is above the tolerance, or if the point is outside the map."""
         value, error = math.nan, math.inf
         try:
             value, error = (float(one) for one in self.at(velocity, amplitude, poisson))
@@ -362,12 +365,12 @@ class FrictionMap:
 
 
 def find_reduction(inputs: Inputs) -> tuple[Contact, Value]:
-    """The contact with the smallest amplitude, the largest speed or the largest load that gives the
-    reduction, and this quantity in its SI unit.
+    """Find the smallest amplitude, the largest speed or the largest load that gives the reduction.
+    Returns the contact and this quantity in its SI unit.
 
-    If the solver fails, the contact is that at which it failed, and the error is NaN.  Raises
-    NoSolutionError if the reduction is outside the range of the search, and InputError if an input
-    is invalid.
+    If the solver fails at a contact, this contact is returned, and the error of the quantity is
+    NaN.  Raises NoSolutionError if the reduction is outside the range of the search, and InputError
+    if an input is invalid.
     """
     from scipy.optimize import brentq
 
@@ -379,11 +382,11 @@ def find_reduction(inputs: Inputs) -> tuple[Contact, Value]:
     error, reductions = 0.0, []
 
     def size(place: float) -> float:
-        """The unknown in its SI unit."""
+        """Return the unknown in its SI unit."""
         return scale * math.exp(power * place)
 
     def excess(place: float) -> float:
-        """mu_macro minus the requested mu_macro."""
+        """Return mu_macro minus the requested mu_macro."""
         nonlocal last, error
         last = Contact(inputs.at(**{name: size(place)}))
         answer = solve_at(last, last.velocity, tolerance)
@@ -441,7 +444,7 @@ def _check_share(inputs: Inputs, share: float, tolerance: float) -> None:
 
 
 def _line(inputs: Inputs, name: str, share: float) -> tuple[float, float, float, float, float]:
-    """The unknown as scale * exp(power * place), along which friction decreases with the place.
+    """Express the unknown as scale * exp(power * place).  Friction decreases with increasing place.
 
     Returns
     -------

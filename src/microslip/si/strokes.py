@@ -1,4 +1,4 @@
-"""Samples of motions in SI units: one period of a stroke, such as "file:stroke.csv", and records.
+"""Reading of motions with units: files with one period, such as "file:stroke.csv", and records.
 
 time [ms],lateral [um],load [N]
 0,0,10
@@ -25,8 +25,9 @@ from microslip.scene.files import COLUMNS, FORM, UNITS, columns_of, read_period
 from microslip.scene.samples import NORMAL, PLANE, Sampled
 
 USUAL_ROWS, MOST_ROWS = 2_000, 10_000
-"""Largest number of rows in a period without a hint to `microslip fold`, and at all.  With more
-rows, a prediction can take minutes, and the file may be a record of many periods."""
+"""Largest number of rows in a period without a hint to use `microslip fold`, and largest allowed
+number of rows.  With more than USUAL_ROWS rows, a prediction can take minutes, and the file may be
+a record of many periods."""
 FOLD = "for a record of many periods, `microslip fold` writes the mean period"
 
 
@@ -43,8 +44,9 @@ class Stroke:
     frequency, mean_load : float or None
         Frequency from the column `time`, Hz, and mean of the load, N; None without such a column.
     reach, pace : tuple of float
-        Largest tangential displacement from the mean, m, and largest rotation, rad; and their
-        largest speeds, divided by the angular frequency.
+        `reach` contains the largest tangential displacement from the mean, m, and the largest
+        rotation, rad.  `pace` contains the largest speeds of both, divided by the angular
+        frequency.
     hint : str
         Hint for a period with many rows; empty for other periods.
     """
@@ -58,19 +60,20 @@ class Stroke:
     hint: str
 
     def deviations(self, contact: Any) -> dict[str, np.ndarray]:
-        """The columns in the units of `microslip.Sampled`, without the mean load or indentation,
-        which is 1."""
+        """Return the columns in the units of `microslip.Sampled`.  The mean load or indentation,
+        which is 1, is subtracted."""
         units = scales(contact, self.columns)
         return {name: one / units[name] - (name in NORMAL) for name, one in self.columns.items()}
 
     def sampled(self, contact: Any, size: float) -> Sampled:
-        """The motion for microslip.solve, with deviations divided by `size`."""
+        """Return the motion for microslip.solve, with deviations divided by `size`."""
         deviations = self.deviations(contact).items()
         return Sampled.of_columns({n: one / size + (n in NORMAL) for n, one in deviations})
 
 
 def scales(contact: Any, columns: dict[str, np.ndarray]) -> dict[str, float]:
-    """The unit of each column in `microslip.response` and `microslip.Sampled`, in SI units."""
+    """Return the unit of each column in `microslip.response` and `microslip.Sampled`, in SI
+    units."""
     if "indentation" in columns and not math.isfinite(contact.indentation):
         allowed = "allowed is a load: the indentation under this pressure is not known"
         raise InputError("indentation", None, allowed)
@@ -84,8 +87,8 @@ def scales(contact: Any, columns: dict[str, np.ndarray]) -> dict[str, float]:
 
 
 def factors(units: Mapping[str, str | None]) -> dict[str, float]:
-    """The unit of each column divided by the SI unit, 1 without a unit.  Raises ValueError for a
-    wrong unit."""
+    """Return the unit of each column divided by its SI unit; 1 for a column without a unit.  Raises
+    ValueError for a wrong unit."""
     result = {}
     for name, unit in units.items():
         try:
@@ -125,7 +128,8 @@ def read_stroke(name: str) -> Stroke:
 
 
 def read_record(path: str, **form: str) -> tuple[np.ndarray, dict[str, np.ndarray], dict[str, str]]:
-    """Read a record for `microslip.fold`: the times in s, the columns, and their units.
+    """Read a record for `microslip.fold`.  Returns the times in s, the columns, and the units of
+    all columns.
 
     The columns are in the units of the file.  form: decimal mark and encoding of the file.
     `microslip.fold` checks the times.  Raises InputError if the file cannot be read, or has no

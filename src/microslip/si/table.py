@@ -1,4 +1,4 @@
-"""Tables, curves and grids of contacts: predictions of many inputs, as a dataset and as text."""
+"""Predictions for many contacts, as a table, a curve or a grid, in a dataset or as text."""
 
 from __future__ import annotations
 
@@ -49,25 +49,25 @@ MISSING: tuple[dict[str, Any], dict[str, dict[str, str]]] = {"converged": False}
 
 @dataclass(frozen=True)
 class Cases:
-    """Many contacts.
+    """A table or a grid of contacts.
 
     Attributes
     ----------
     motion : str
         Motion of all contacts.
     columns : dict of list
-        Inputs and labels that differ between the contacts, by name.
+        Inputs and labels that differ between the contacts, keyed by name.
     shared : dict
         Inputs that all contacts share.
     names : list of str
         Name of each contact in messages, such as "line 3".
     starts : dict of list
-        First columns of the printed table, by heading.
+        First columns of the printed table, keyed by their headings.
     errors : dict of str
-        Messages about unreadable contacts, by index.
+        Error messages about contacts that cannot be read, keyed by the index of the contact.
     axes : dict of tuple
-        Name of the input, SI unit, and values in SI units of each axis of a grid, by the name of
-        the coordinate.  Empty for a table.
+        For each axis of a grid, keyed by the name of the coordinate: the name of the input, its SI
+        unit, and its values in this unit.  Empty for a table.
     """
 
     motion: str
@@ -79,7 +79,7 @@ class Cases:
     axes: dict[str, tuple[str, str, list[float]]] = field(default_factory=dict)
 
     def given(self, case: int) -> dict[str, Any]:
-        """Inputs of a contact."""
+        """Return the inputs of a contact."""
         own = {n: values[case] for n, values in self.columns.items() if n not in LABELS}
         return {**self.shared, **own}
 
@@ -96,16 +96,16 @@ def predict_table(
     encoding: str = "utf-8",
     **shared: object,
 ) -> xr.Dataset:
-    """Predictions for a table of contacts.
+    """Predict the friction of a table of contacts.
 
     Parameters
     ----------
     motion : str
         Motion of all contacts; see `microslip.predict`.
     cases : mapping, pandas DataFrame or path of a CSV file
-        Sequences of equal length, keyed by input of `predict`, as in {"load": ["1 N", "10 N"]} or
-        {"load [N]": [1, 10]}.  None and NaN are missing values.  Columns named label, name, id,
-        sample or comment are copied to the dataset.
+        Sequences of equal length, keyed by the names of the inputs of `predict`, as in {"load": ["1
+        N", "10 N"]} or {"load [N]": [1, 10]}.  None and NaN are missing values.  Columns named
+        label, name, id, sample or comment are copied to the dataset.
     decimal, encoding : str
         Decimal mark of the file, "." or ",", and its encoding, such as "cp1252".
     shared
@@ -114,9 +114,10 @@ def predict_table(
     Returns
     -------
     xarray.Dataset
-        Every column of a Prediction, over the dimension `case`, with units.  Missing values are
-        NaN.  Lists of texts are joined with semicolons.  `case_NAME` contains the input column
-        NAME.  `error` is the error message of a case without a prediction, else empty.
+        Every column of a Prediction, with units, along the dimension `case`.  Missing values are
+        NaN.  Lists of strings are joined with semicolons.  `case_NAME` contains the input column
+        NAME.  `error` contains the error message of a case without a prediction, and is empty for
+        the other cases.
 
     Raises
     ------
@@ -129,23 +130,24 @@ def predict_table(
 
 
 def predict_grid(motion: str, **given: Any) -> xr.Dataset:
-    """Predictions over ranges of quantities: a curve, a map, or a table of more dimensions.
+    """Predict friction over ranges of quantities, as a curve, a map, or a grid of more dimensions.
 
     Parameters
     ----------
     motion : str
         Motion of all contacts, as for `microslip.predict`.
     **given
-        Inputs of `microslip.predict`.  A quantity can be a range: "0..2 um" has 11 values in equal
-        steps, "0..2 um, 21" has 21, and "0.1..10 mm/s, 21, log" has 21 in equal ratios.  It can
-        also be a sequence of quantities.
+        Inputs of `microslip.predict`.  A quantity can be a range: "0..2 um" gives 11 equally spaced
+        values, "0..2 um, 21" gives 21, and "0.1..10 mm/s, 21, log" gives 21 logarithmically spaced
+        values.  It can also be a sequence of quantities.
 
     Returns
     -------
     xarray.Dataset
         Every column of a Prediction, with units.  Each range is a dimension, in the order of the
         arguments.  The name of a dimension is the input with its SI unit, such as speed_m_s.
-        `error` is the error message of a point without a prediction, and empty for other points.
+        `error` contains the error message of a point without a prediction, and is empty for the
+        other points.
 
     Raises
     ------
@@ -164,7 +166,7 @@ def read_cases(
     decimal: str = ".",
     encoding: str = "utf-8",
 ) -> Cases:
-    """The contacts of a table.  Raises InputError."""
+    """Read the contacts of a table.  Raises InputError."""
     path = isinstance(source, str | os.PathLike)
     units = {name: one.unit for name, one in INPUTS.items() if name != "map"}
     argument = "table" if path else "cases"
@@ -184,7 +186,7 @@ def read_cases(
 
 
 def values_of(name: str, text: str) -> list[str]:
-    """The values of a range as texts with the unit of the range.  Raises InputError."""
+    """Return the values of a range as strings with the unit of the range.  Raises InputError."""
     match = RANGE.fullmatch(text.strip())
     counts = [] if match is None else [int(one) for one in (match[4], match[6]) if one]
     if match is None or len(counts) > 1:
@@ -197,7 +199,8 @@ def values_of(name: str, text: str) -> list[str]:
 
 
 def grid_of(motion: str, given: Mapping[str, Any]) -> Cases:
-    """All combinations of the values of ranges and sequences; the last axis changes fastest.
+    """Return all combinations of the values of ranges and sequences.  The last axis changes
+    fastest.
 
     Raises InputError if a range is invalid, if there is no range, or if there are too many
     combinations.
@@ -228,7 +231,7 @@ def grid_of(motion: str, given: Mapping[str, Any]) -> Cases:
 
 
 def _short(text: Any) -> str:
-    """A quantity with at most four digits."""
+    """Format a quantity with at most four digits."""
     number, _, unit = str(text).partition(" ")
     try:
         return f"{float(number):.4g} {unit}".strip()
@@ -242,7 +245,7 @@ def predictions(cases: Cases, *, need_all: bool = False) -> Iterator[Prediction 
     All contacts are checked before the first one is solved.  A search without a solution gives a
     Prediction that is not converged.
 
-    need_all: If True, any invalid contact raises InputError.
+    need_all: if True, raise InputError if any contact is invalid.
     """
     checked: list[Contact | InputError | str] = []
     for case in range(len(cases.names)):
@@ -273,7 +276,8 @@ def _prediction(contact: Contact | InputError | str) -> Prediction | InputError 
 
 
 def dataset_of(cases: Cases, answers: Answers) -> xr.Dataset:
-    """The predictions as a dataset over the dimension `case`, or over the axes of a grid."""
+    """Return the predictions as a dataset with the dimension `case`, or with the dimensions of a
+    grid."""
     import xarray as xr
 
     axes: dict[str, Any] = {
@@ -302,14 +306,15 @@ def dataset_of(cases: Cases, answers: Answers) -> xr.Dataset:
 
 
 def _cell(value: Any, is_number: bool) -> Any:
-    """Value of a column in a dataset: NaN or an empty text for None, texts of a list joined."""
+    """Convert the value of a column for a dataset: None becomes NaN or an empty string, and a list
+    of strings becomes one string."""
     if value is None:
         return math.nan if is_number else ""
     return "; ".join(value) if isinstance(value, list) else value
 
 
 def table_text(cases: Cases, answers: Answers) -> str:
-    """The printed table, with a row for each contact and remarks below."""
+    """Return the printed table, with a row for each contact and remarks below."""
     predicted = [one for one in answers if isinstance(one, Prediction)]
     rows = [one.input_values | one.values for one in predicted]  # the speed is one of them
     columns = {title: [row.get(name) for row in rows] for name, title in PRINTED.items()}
@@ -346,7 +351,7 @@ def table_text(cases: Cases, answers: Answers) -> str:
 
 
 def _digits(one: Value | None) -> tuple[str, str, str]:
-    """Texts of a value, its error and its standard uncertainty."""
+    """Format a value, its error and its standard uncertainty."""
     if one is None or math.isnan(one.value):
         return "", "", ""
     number, _, error = number_text(one.value, one.error or 0.0).partition(SEPARATOR)
@@ -358,10 +363,12 @@ def _digits(one: Value | None) -> tuple[str, str, str]:
 
 
 def interpolation_errors(values: xr.DataArray) -> dict[str, float | None]:
-    """Largest difference between a value and the linear interpolation of its neighbours, by axis.
+    """Return the largest difference between a value and the linear interpolation of its neighbours,
+    for each axis.
 
-    The difference is None for an axis with fewer than three values.  If the values are smooth,
-    linear interpolation between them has an error of a quarter of the sum over the axes.
+    The difference is None for an axis with fewer than three values.  If the values are smooth, the
+    error of linear interpolation between them is a quarter of the sum of these differences over the
+    axes.
     """
     errors: dict[str, float | None] = {}
     for name in map(str, values.dims):

@@ -1,12 +1,14 @@
-"""Uncertain inputs: draws of all outputs, and the probability of each outcome under a force.
+"""Propagation of uncertain inputs: draws of all outputs, and the probability of each outcome under
+a prescribed force.
 
 The uncertain inputs are independent and normally distributed.  The draws form a low-discrepancy
 sequence, so that equal inputs have equal draws.  A draw outside the range of its input is replaced
-by the closest value of the range.  All closed forms are evaluated for each draw.  The answer of the
+by the closest value of the range.  All closed forms are evaluated for each draw.  The result of the
 solver depends on the draw through a few dimensionless groups.  If the groups of all draws lie on a
-line, the solver computes the answer at a few of its points, and the answer is interpolated.  In
-general, the changes along several lines are added: the principal axes of the groups, or the axes of
-the inputs if there are at most as many.
+line, the solver computes the result at a few points of this line, and the result is interpolated
+between them.  In general, the changes along several lines are added.  The lines are the principal
+axes of the groups, or the axes of the inputs if the inputs are not more numerous than the principal
+axes.
 """
 
 from __future__ import annotations
@@ -31,7 +33,8 @@ DRAWS = 2**15
 """Number of draws.  The error of a probability is about 1e-3."""
 LEVELS = (-3.0, -1.5, 1.5, 3.0)
 """Points along a line at which the solver computes the answer, in standard deviations.  Draws
-beyond the ends count as ends, which reduces a standard deviation by 0.25 % (1.1 % with 2.5)."""
+beyond the outermost points are replaced by these points, which reduces a standard deviation by
+0.25 % (1.1 % with points at 2.5)."""
 STATIC_LEVELS = (-3.0, -1.96, -1.3, -0.65, 0.65, 1.3, 1.96, 3.0)
 """Points along a line at which the static limit is computed.  The ends of a 95 % interval are at
 1.96."""
@@ -41,12 +44,13 @@ REFINEMENTS = 3
 """Number of bisections for the smallest amplitude with a static limit of 0, and number of further
 points with a static limit close to the force."""
 VANISHING = 1e-3
-"""Static limit that counts as 0 in this search."""
+"""Largest static limit that counts as 0 in the bisection."""
 CLOSEST = 64
-"""One draw in 64 counts as close to the force."""
+"""One draw in CLOSEST counts as close to the force: the draws whose static limits are closest to
+it."""
 NEGLIGIBLE = 1e-3
-"""Standard deviation of the groups along an axis, relative to that along the first axis, below
-which the axis is ignored.  Also the fraction of draws without a finite value from which on a
+"""Largest standard deviation of the groups along an axis that is ignored, divided by the standard
+deviation along the first axis.  Also the fraction of draws without a finite value above which a
 standard uncertainty is infinite."""
 SMALLEST = 5e-324
 """Smallest positive number.  It replaces 0 for an input that must be above 0."""
@@ -63,9 +67,9 @@ class _Line(NamedTuple):
         Coordinate of each draw along the line, and its distance from the centre in standard
         deviations.
     at : callable
-        at(level) -> Inputs and coordinate.
+        at(level) returns the Inputs and the coordinate at a level.
     nodes : list
-        Level, place and values by name of each node.
+        Level, coordinate, and values (keyed by name) of each node.
     """
 
     places: np.ndarray
@@ -85,8 +89,8 @@ class _Line(NamedTuple):
                     continue
 
     def values(self, name: str) -> np.ndarray:
-        """Values of all draws: interpolated between the nodes, constant outside, and NaN where the
-        nearest node has no value."""
+        """Return the values of all draws.  They are interpolated between the nodes, constant beyond
+        the outermost nodes, and NaN where the nearest node has no value."""
         from scipy.interpolate import PchipInterpolator
 
         pairs = {place: values.get(name, math.nan) for _, place, values in self.nodes}
@@ -102,19 +106,19 @@ class _Line(NamedTuple):
 
 
 class Draws:
-    """Draws of uncertain inputs, and the contact and the answer for each of them.
+    """Draws of uncertain inputs, with the contact and the prediction for each draw.
 
     Parameters
     ----------
     inputs : Inputs
-        The inputs, of which at least one is uncertain.
+        The inputs.  At least one of them is uncertain.
     contact, answer : Contact, Prediction
-        The contact and the answer for the central values.
+        The contact and the prediction for the central values.
 
     Attributes
     ----------
     contact, answer : Contact, Prediction
-        The contact and the answer of all draws, with arrays of shape (DRAWS,).
+        The contact and the prediction for all draws, with arrays of shape (DRAWS,).
     """
 
     def __init__(self, inputs: Inputs, contact: Contact, answer: Prediction):
@@ -147,8 +151,8 @@ class Draws:
         self.answer = replace(answer, values=values)
 
     def _drawn(self, normal: np.ndarray) -> dict[str, Any]:
-        """Values of the uncertain inputs within their ranges, from standard normal numbers of shape
-        (..., inputs)."""
+        """Return values of the uncertain inputs within their ranges.  normal: standard normal
+        numbers, an array of shape (..., inputs)."""
         drawn = {}
         for k, (name, one) in enumerate(self._inputs.uncertain.items()):
             low, high = INPUTS[name].low, INPUTS[name].high
@@ -159,8 +163,8 @@ class Draws:
         return drawn
 
     def _static(self, central: float) -> np.ndarray:
-        """The static limit for all draws.  Points are added where it vanishes and where it is close
-        to the force."""
+        """Compute the static limit for all draws.  Nodes are added where it vanishes and where it
+        is close to the force."""
         lines = self._lines({"static": central}, static=True)
         force = self.contact.drive().get("force") if len(lines) == 1 else None
 
@@ -185,7 +189,8 @@ class Draws:
         return np.clip(_total({"static": central}, lines)["static"], 0.0, 1.0)
 
     def _groups(self, contact: Contact, static: bool) -> np.ndarray:
-        """Groups of a contact relative to the centre, shape (draws, groups)."""
+        """Return the groups of a contact relative to the centre, as an array of shape
+        (draws, groups)."""
         central, columns = self._centre.coordinates, []
         for name, value in contact.coordinates.items():
             if static and name in DRIVEN:
@@ -197,9 +202,9 @@ class Draws:
         return np.nan_to_num(np.stack(np.broadcast_arrays(*columns), axis=-1))
 
     def _lines(self, central: dict[str, float], static: bool = False) -> list[_Line]:
-        """The lines along which the answer, or the static limit, varies: the principal axes of the
-        groups, or the axes of the inputs if there are at most as many.  The first node of each line
-        is at the centre."""
+        """Return the lines along which the result, or the static limit, varies.  These are the
+        principal axes of the groups, or the axes of the inputs if the inputs are not more numerous.
+        The first node of each line is at the centre."""
         normal, count = self._normal, len(self._inputs.uncertain)
         groups = self._groups(self.contact, static)
         if len(groups) == 1:
@@ -232,7 +237,7 @@ class Draws:
 
 
 def _total(central: dict[str, float], lines: list[_Line]) -> dict[str, np.ndarray]:
-    """The central values and their changes along all lines."""
+    """Return the sum of the central values and their changes along all lines."""
     return {
         name: np.full(DRAWS, value) + sum(line.values(name) - value for line in lines)
         for name, value in central.items()
@@ -240,13 +245,14 @@ def _total(central: dict[str, float], lines: list[_Line]) -> dict[str, np.ndarra
 
 
 def _numbers(contact: Contact, answer: Prediction, search: str | None) -> dict[str, float]:
-    """The values of an answer, and as "root" the logarithm of the result of a search."""
+    """Return the values of a prediction.  With a search, "root" is the logarithm of its result."""
     values = {name: one.value for name, one in answer.values.items()}
     return values | ({"root": math.log(getattr(contact.inputs, search))} if search else {})
 
 
 def _solution(inputs: Inputs) -> dict[str, float]:
-    """The numbers of the answer; empty if a search has no solution.  Raises InputError."""
+    """Solve a contact, and return the values; empty if a search has no solution.  Raises
+    InputError."""
     try:
         contact = find_reduction(inputs)[0] if inputs.search else contact_of(inputs)
     except NoSolutionError:
@@ -255,10 +261,10 @@ def _solution(inputs: Inputs) -> dict[str, float]:
 
 
 def normal_numbers(count: int) -> np.ndarray:
-    """Draws of independent standard normal numbers, shape (DRAWS, count), with mean 0 and variance
-    1.
+    """Return draws of independent standard normal numbers with mean 0 and variance 1, as an array
+    of shape (DRAWS, count).
 
-    They form a Kronecker sequence.  Its irrational numbers are powers of the root of
+    The draws form a Kronecker sequence.  Its irrational numbers are powers of the root of
     x^(count + 1) = x + 1.
     """
     from scipy.special import ndtri
@@ -272,8 +278,8 @@ def normal_numbers(count: int) -> np.ndarray:
 
 
 def with_interval(one: Value, draws: Any) -> Value:
-    """A Value with the standard uncertainty and the 95 % interval of its draws.  A draw without a
-    value counts as infinite."""
+    """Return a Value with the standard uncertainty and the 95 % interval of its draws.  A draw
+    without a value counts as infinite."""
     drawn = np.broadcast_to(np.asarray(draws, dtype=float), (DRAWS,))
     drawn = np.where(np.isnan(drawn), math.inf, drawn)
     low, high = np.quantile(drawn, INTERVAL, method="nearest")
@@ -287,13 +293,14 @@ def with_interval(one: Value, draws: Any) -> Value:
 
 
 def probabilities(contact: Contact, answer: Prediction) -> dict[str, Value]:
-    """Probability of each outcome under a force, with its error estimate; empty without a force.
+    """Return the probability of each outcome under a prescribed force, with its error estimate.
+    Without a force, the result is empty.
 
     The error estimate follows from the error of the threshold, or from the difference between the
     even and the odd draws. It is at least log(DRAWS) / DRAWS, the order of the sequence's
     discrepancy.
 
-    contact, answer: those of Draws.
+    contact, answer: the attributes of Draws.
     """
     if contact.inputs.force is None:
         return {}

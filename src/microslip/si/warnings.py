@@ -1,4 +1,4 @@
-"""Warnings if a contact violates an assumption of the theory.
+"""Warnings about contacts that violate an assumption of the theory.
 
 A measure is a named number that describes a contact.  A rule has limits for measures, and a warning
 for contacts beyond these limits.  The explorer's web page evaluates the same rules.
@@ -44,11 +44,12 @@ STEEP = 0.2
 smaller radius, or by the radius R of relative curvature.  Hertz's theory assumes a << R1, R2 and a
 << R (K. L. Johnson, Contact Mechanics, 4.2)."""
 AGREES = 0.01
-"""Largest relative difference between two sizes or loads that count as equal.  This ratio allows
-for rounding to two or three digits."""
+"""Largest relative difference between two sizes or loads that count as equal.  It allows for
+rounding to two or three digits."""
 RADII = np.geomspace(1e-3, 1e3, 3001)
-"""Contact radii, divided by that under the load, among which the contact pulls off.  Neighbours
-differ by 0.5 %, which changes the largest force by less than a digit that is printed."""
+"""Contact radii at which the adhesive force is evaluated, divided by the contact radius under the
+load.  The largest force is the pull-off force.  Neighbouring radii differ by 0.5 %, which changes
+the largest force by less than the last printed digit."""
 
 
 ADHERES = (
@@ -59,7 +60,7 @@ ATOMS = "less than the distance between atoms, where the theory of continua fail
 
 
 class Rule(NamedTuple):
-    """A condition under which an assumption is violated, and the warning.
+    """Conditions under which an assumption is violated, together with the warning for this case.
 
     Attributes
     ----------
@@ -68,7 +69,7 @@ class Rule(NamedTuple):
         of a measure.  The rule applies if all conditions are true.  A condition on a missing
         measure is false.
     text : str
-        The sentence, with measures as in {load:.2g} N; see MEASURE.
+        The warning, with measures as in {load:.2g} N; see MEASURE.
     """
 
     where: tuple[tuple, ...]
@@ -80,10 +81,11 @@ MEASURE = re.compile(r"\{(\w+):\.(\d+)g\}(?: (Pa|N|m)\b)?")
 
 
 def _checks(text: str) -> tuple[tuple[Rule, ...], ...]:
-    """Groups of rules.
+    """Parse groups of rules.
 
     text: a line "condition; condition: sentence" for each rule, and an empty line between groups.
-    A condition is "left > right" or "left > number right", of measures or numbers.
+    A condition is "left > right" or "left > number right", where left and right are measures or
+    numbers.
     """
 
     def side(word: str) -> float | str:
@@ -160,12 +162,13 @@ DISAGREES = (
 
 
 def warnings_of(contact: Contact, speed: float) -> list[str]:
-    """The warnings for a contact that moves at a speed, m/s."""
+    """Return the warnings for a contact that moves at a speed, m/s."""
     return [*_contradictions(contact), *broken_rules(measures(contact, speed))]
 
 
 def broken_rules(values: Mapping[str, float | None]) -> list[str]:
-    """The warnings for measures by name.  Rules about other measures do not apply."""
+    """Return the warnings for the given measures, keyed by name.  Rules about other measures do not
+    apply."""
 
     def value(side: float | str) -> float | None:
         return values.get(side) if isinstance(side, str) else side
@@ -183,7 +186,7 @@ def broken_rules(values: Mapping[str, float | None]) -> list[str]:
 
 
 def unchecked(contact: Contact) -> list[str]:
-    """Texts for the checks that are skipped because a property is missing."""
+    """Return a message for each check that is skipped because a property is missing."""
     sides, texts = list(zip(SIDES, contact.bodies, strict=True)), []
     for name, what in PROPERTIES.items():
         whose = [side for side, b in sides if getattr(b, name) is None and not b.rigid]
@@ -193,7 +196,8 @@ def unchecked(contact: Contact) -> list[str]:
 
 
 def measures(contact: Contact, speed: float) -> dict[str, float | None]:
-    """Measures of a contact by name.  A measure that is unknown or does not apply is None.
+    """Compute the measures of a contact, keyed by name.  A measure that is unknown or does not
+    apply is None.
 
     Pressures and the contact radius are those at the largest load in a period.
     """
@@ -243,15 +247,15 @@ def measures(contact: Contact, speed: float) -> dict[str, float | None]:
 
 
 def _pull_off(contact: Contact) -> tuple[float | None, float | None]:
-    """Tabor's number of a paraboloid, and pull-off force, N; None if it is not known.
+    """Return Tabor's number of a paraboloid, and the pull-off force, N.  Unknown values are None.
 
-    A paraboloid pulls off as a sphere whose radius is the geometric mean of both radii of relative
-    curvature.  This is exact in the DMT theory (B. V. Derjaguin, Kolloid-Z. 69, 1934).  In the JKR
-    theory it is an upper bound, which slender ellipses do not reach (K. L. Johnson and J. A.
-    Greenwood, J. Phys. D 38, 2005).  Another indenter of revolution pulls off with the largest
-    sqrt(8 pi E* w c^3) - F(c), where F(c) is the load without adhesion at the contact radius c (D.
-    Maugis, Contact, Adhesion and Rupture of Elastic Solids, 4.2).  For a flat punch, this is
-    Kendall's force (J. Phys. D 4, 1971).
+    A paraboloid pulls off at the same force as a sphere whose radius is the geometric mean of its
+    two radii of relative curvature.  This is exact in the DMT theory (B. V. Derjaguin, Kolloid-Z.
+    69, 1934).  In the JKR theory it is an upper bound, which slender ellipses do not reach (K. L.
+    Johnson and J. A. Greenwood, J. Phys. D 38, 2005).  Another indenter of revolution pulls off
+    with the largest sqrt(8 pi E* w c^3) - F(c), where F(c) is the load without adhesion at the
+    contact radius c (D. Maugis, Contact, Adhesion and Rupture of Elastic Solids, 4.2).  For a flat
+    punch, this is Kendall's force (J. Phys. D 4, 1971).
     """
     shape, crack = contact.shape, 8.0 * math.pi * contact.E_star * ADHESION
     if shape.hertzian:
@@ -266,7 +270,8 @@ def _pull_off(contact: Contact) -> tuple[float | None, float | None]:
 
 
 def _contradictions(contact: Contact) -> list[str]:
-    """Messages about a size or a load that differs from the value in a pressure file with units.
+    """Return messages about a size or a load that differs from the value in a pressure file with
+    units.
 
     Differences within the file's reading error are accepted; see AGREES.
     """
