@@ -14,7 +14,7 @@ from typing import Any
 
 
 def register() -> None:
-    """Register the accessors now, or when xarray is imported."""
+    """Register the accessor now, or when xarray is imported."""
     if "xarray" in sys.modules:
         _register(sys.modules["xarray"])
     else:
@@ -22,7 +22,7 @@ def register() -> None:
 
 
 class _AfterXarray:
-    """Import finder that registers the accessors after the import of xarray."""
+    """Import finder that registers the accessor after the import of xarray."""
 
     def find_spec(self, name: str, path: object = None, target: object = None) -> ModuleSpec | None:
         if name != "xarray":

@@ -1,4 +1,5 @@
-"""Canonical texts of values, and hashes of these texts. Equal values have equal texts and hashes.
+"""Canonical strings of values, and hashes of these strings.  Equal values have equal strings and
+hashes.
 
 The module imports only the standard library, since every start of the workflow imports it.
 """
@@ -10,7 +11,7 @@ from typing import Any
 
 
 def number(value: float) -> str:
-    """Canonical decimal string of a finite number, such as 1 (for 1.0), 0.001 or 1e-8.
+    """Return the canonical decimal string of a finite number, such as 1 (for 1.0), 0.001 or 1e-8.
 
     The number is rounded to 12 significant digits, so that 0.1 + 0.2 and 0.3 are the same
     coordinate. Raises ValueError unless the value is a finite number.
@@ -39,15 +40,16 @@ def plain(value: object) -> Any:
 
 
 def canonical_json(value: object) -> str:
-    """JSON with sorted keys and no white space. Raises ValueError for NaN and infinities."""
+    """Return a JSON string with sorted keys and no white space.  Raises ValueError for NaN and
+    infinities."""
     return json.dumps(value, sort_keys=True, separators=(",", ":"), allow_nan=False)
 
 
 def sha256(text: str) -> str:
-    """SHA-256 of a string, in hexadecimal."""
+    """Return the SHA-256 of a string, in hexadecimal."""
     return hashlib.sha256(text.encode()).hexdigest()
 
 
 def fingerprint(*parts: object) -> str:
-    """First 32 digits of the SHA-256 of `parts`. The parts must be convertible to JSON."""
+    """Return the first 32 digits of the SHA-256 of `parts`, which must be convertible to JSON."""
     return sha256(canonical_json(parts))[:32]

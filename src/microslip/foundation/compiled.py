@@ -63,7 +63,8 @@ REPORTED = "MICROSLIP_SAID_UNSTORED"
 
 
 def _usable_folder() -> Path | None:
-    """Folder for the compiled code of the running sources; None if no folder is usable."""
+    """Return the folder for the compiled code of the running sources, or None if no folder is
+    usable."""
     chosen = os.environ.get("NUMBA_CACHE_DIR")
     places = [LOADED.folder / "__pycache__", user_cache_path("microslip")]
     problems: list[str] = []
@@ -86,7 +87,7 @@ def _usable_folder() -> Path | None:
 
 
 def _report(problem: str, remedy: str = "each process compiles it again") -> None:
-    """Name the folders that cannot be used, once for this process and its jobs."""
+    """Print which folders cannot be used, once for this process and its jobs."""
     if not os.environ.get(REPORTED):
         os.environ[REPORTED] = "1"
         line = f"compiled code cannot be stored in {problem}; {remedy}"
@@ -94,12 +95,12 @@ def _report(problem: str, remedy: str = "each process compiles it again") -> Non
 
 
 class Locator(getattr(caching, "UserProvidedCacheLocator", object)):  # type: ignore[misc]
-    """Numba's locator for a given folder, in which the path of the package does not count, so that
-    a copy of the package uses the same compiled code.  Old versions of Numba do not use it."""
+    """Numba's locator for a given folder of compiled code.  It ignores the path of the package, so
+    that copies of the package share the compiled code.  Old versions of Numba do not use it."""
 
     @classmethod
     def get_suitable_cache_subpath(cls, py_file: str) -> str:
-        """Name of the folder for a file with kernels."""
+        """Return the name of the folder for a file with kernels."""
         return Path(py_file).parent.name
 
 
@@ -178,12 +179,13 @@ event.register("numba:compile", _LISTENER)
 
 
 def compile_seconds() -> float:
-    """Seconds that this process has spent on compiling kernels and on loading compiled code."""
+    """Return the seconds that this process has spent on compiling kernels and on loading compiled
+    code."""
     return _LISTENER.seconds
 
 
 def kernel(function: Callable | None = None, **options: object) -> Callable:
-    """Decorator for functions that Numba compiles at their first call, and stores on disk.
+    """Decorate a function so that Numba compiles it at its first call and stores the code on disk.
 
     options: arguments of numba.njit in addition to OPTIONS, as in `@kernel(inline="always")`.
     """

@@ -35,7 +35,8 @@ PURE = ("", "1", "-")
 HEADING = re.compile(r"(\w+)\s*(?:\[([^\]]*)\]|\(([^()]*)\))?")
 NUMBER = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?|[+-]?(nan|inf|infinity)", re.I | re.A)
 NO_ROW = re.compile(r"[\s,;\"]*|\s*#(?!(N/A|NV|[A-Z/0]+[!?])).*")
-"""Pattern of a line without cells and of a comment.  #N/A and #DIV/0! are cells of spreadsheets."""
+"""Pattern of a comment, or of a line without cells.  #N/A and #DIV/0! are cells of spreadsheets,
+not comments."""
 SEPARATOR_LINE = re.compile(r"\s*\"?sep=.\"?\s*", re.I)
 EXAMPLES = ("speed [mm/s]", "forward [um]")
 """Headings that messages show as an example."""
@@ -43,11 +44,13 @@ UNIT = re.compile(r"[\[(]?[^\W\d_][^\s,;]*[\])]?")
 """Pattern of a cell that may be a unit."""
 DECIMAL_COMMA = re.compile(r"(?<=[0-9]),(?=[0-9])|^([+-]?),(?=[0-9])")
 GROUPED = re.compile(r"[+-]?[1-9]\d{0,2}(\.\d{3})*", re.A)
-"""Pattern of a number such as 1.100, where the point can be a thousands separator, or 900."""
+"""Pattern of a number in which a point can be a thousands separator, such as 1.100, or that has no
+point, such as 900."""
 Heads = list[tuple[str, str | None]]
 """Name and unit of each column."""
 Rows = Iterator[tuple[int, list[str]]]
-"""Line number and cells of each row; no cells if its quotes are not in pairs."""
+"""Line number and cells of each row.  There are no cells if the quotes of the row are not in
+pairs."""
 UTF_8 = "allowed: UTF-8, which spreadsheets call CSV UTF-8, or the encoding of the file by name"
 SOURCES = "allowed is a path, a DataFrame of pandas, or a mapping of names to sequences"
 
@@ -59,14 +62,15 @@ class Table:
     Attributes
     ----------
     cells : dict of list
-        Cells of each column, keyed by its name in lower case.  Cells of a file are texts with
+        Cells of each column, keyed by its name in lower case.  Cells of a file are strings with
         decimal points.  An empty cell is None.
     units : dict of str or None
         Unit of each column: "" for a pure number, None for a heading without brackets.
     lines : list of int
         Line number of each row, starting at 1; empty without a file.
     errors : dict of str
-        Error messages of invalid rows, keyed by the index of the row.  Their cells are None.
+        Error messages of invalid rows, keyed by the index of the row.  The cells of these rows are
+        None.
     """
 
     cells: dict[str, list[Any]]
@@ -76,7 +80,7 @@ class Table:
 
     @property
     def columns(self) -> dict[str, list[Any]]:
-        """The cells with the units of their headings, such as "10 N"."""
+        """The cells with the units of the headings, such as "10 N"."""
         return {n: [_with_unit(c, self.units[n]) for c in one] for n, one in self.cells.items()}
 
     @property
@@ -84,10 +88,10 @@ class Table:
         return {name: cells for name, cells in self.cells.items() if name in LABELS}
 
     def numbers(self, least: Mapping[str, float] | None = None) -> dict[str, list[float]]:
-        """The cells of each column as finite numbers.
+        """Return the cells of each column as finite numbers.
 
-        least: smallest allowed number of a column, keyed by its name.  Raises ValueError about an
-        invalid row.
+        least: smallest allowed number of a column, keyed by its name.  Raises ValueError if a row
+        is invalid.
         """
         for problem in self.errors.values():
             raise ValueError(problem)
@@ -103,7 +107,7 @@ def _with_unit(cell: Any, unit: str | None) -> Any:
 
 
 def source_name(source: Any) -> str | list:
-    """Name of a table for messages: the path, or the names of the columns."""
+    """Return the name of a table for messages: the path, or the names of the columns."""
     return str(source) if isinstance(source, str | os.PathLike) else list(source)
 
 
@@ -128,7 +132,7 @@ def table_of(argument: str, source: Any, names: Mapping[str, str | None], **form
     source : path, mapping or pandas DataFrame
         A file, or columns with headings such as "load [N]".
     names, form
-        See `read_table`.  Other columns than `names` are allowed without a file.
+        See `read_table`.  If the source is not a file, columns other than `names` are allowed.
 
     Raises
     ------
@@ -189,20 +193,20 @@ def read_table(
     content : bytes
         Content of the file.
     names : mapping of str or None
-        SI unit of each allowed column: "" for pure numbers, None for texts.  The columns in LABELS
-        are always allowed.
+        SI unit of each allowed column, keyed by name: "" for pure numbers, None for text.  The
+        columns in LABELS are always allowed.
     need_units : bool
-        True if the heading of a quantity must have a unit.
+        If True, the heading of every quantity must have a unit.
     complete : str
-        Description of the heading if all columns are required, for messages.
+        Description of the heading, for messages.  If it is not empty, all columns are required.
     decimal, encoding : str
         Decimal mark, "." or ",", and encoding.
 
     Raises
     ------
     ValueError
-        If the content is no text, if the heading is invalid, if units are below the heading, or if
-        points may separate thousands.  The message begins with the line number.
+        If the content is not text, if the heading is invalid, if units are below the heading, or if
+        points may be thousands separators.  The message begins with the line number.
     """
     lines = lines_of(content, encoding)
     if SEPARATOR_LINE.fullmatch(lines[0]):
@@ -253,7 +257,8 @@ def read_table(
 
 
 def lines_of(content: bytes, encoding: str) -> list[str]:
-    """Lines of a file.  Raises ValueError if the content is not text in this encoding."""
+    """Return the lines of a file.  Raises ValueError if the content is not text in this
+    encoding."""
     try:
         text = content.decode(encoding).removeprefix("\ufeff")
     except UnicodeDecodeError as error:
@@ -269,8 +274,8 @@ def lines_of(content: bytes, encoding: str) -> list[str]:
 
 
 def _heading(lines: list[str], index: int, decimal: str) -> tuple[str, Heads, Rows]:
-    """The separator, the heading that begins in a line, and the rows below.  The heading is empty
-    if the line is not one."""
+    """Return the separator, the heading that begins in a line, and the rows below it.  The heading
+    is empty if the line is not a heading."""
     for separator in sorted(SEPARATORS, key=decimal.__eq__):  # the comma last if it is decimal
         rows = _rows(lines, index, separator)
         titles = next(rows, (0, []))[1]
@@ -283,8 +288,9 @@ def _heading(lines: list[str], index: int, decimal: str) -> tuple[str, Heads, Ro
 
 
 def _rows(lines: list[str], index: int, separator: str) -> Rows:
-    """Line number and cells of each row from a line on.  The lines of a quoted cell, which ends in
-    the next line with an odd number of quotes, are joined by spaces."""
+    """Yield the line number and the cells of each row, beginning with a given line.  A quoted cell
+    can have several lines, which are joined by spaces.  It ends in the next line with an odd number
+    of quotes."""
     while index < len(lines):
         where, text, cells = index + 1, lines[index], _cells(lines[index], separator)
         if not cells and text.count('"') % 2:
@@ -299,7 +305,7 @@ def _rows(lines: list[str], index: int, separator: str) -> Rows:
 
 
 def _cells(text: str, separator: str) -> list[str]:
-    """Cells of a row; empty if the quotes are not in pairs around whole cells."""
+    """Return the cells of a row; none if the quotes are not in pairs around whole cells."""
     rows = csv.reader([text], delimiter=separator, strict=True, skipinitialspace=True)
     try:
         return [cell.strip() for cell in next(rows, [])]
@@ -310,7 +316,7 @@ def _cells(text: str, separator: str) -> list[str]:
 def _heading_problem(
     line: str, heads: Heads, names: Mapping[str, str | None], need_units: bool, complete: str
 ) -> str:
-    """What is wrong with the heading of a table, and what is allowed."""
+    """Return a message about an invalid heading of a table; empty if the heading is valid."""
     columns = [name for name, _ in heads]
     how = "each with its unit" if need_units else "with a unit or without"
     shown = next((f", as in {one}" for one in EXAMPLES if one.split()[0] in names), "")
@@ -331,8 +337,8 @@ def _heading_problem(
 
 
 def _name_and_unit(title: str) -> tuple[str, str | None] | None:
-    """Name in lower case and unit of a heading: "" for a pure number, None without brackets.  None
-    for another text."""
+    """Return the name in lower case and the unit in a heading.  The unit is "" for a pure number,
+    and None without brackets.  If the string is not a heading, the result is None."""
     match = HEADING.fullmatch(title)
     if match is None:
         return None
@@ -341,7 +347,8 @@ def _name_and_unit(title: str) -> tuple[str, str | None] | None:
 
 
 def _count_problem(where: int, count: int, columns: int, separator: str) -> str:
-    """What is wrong with a row of `count` cells; 0 for open quotes."""
+    """Return a message about a row with a wrong number of cells.  count: number of cells; 0 for
+    open quotes."""
     what = f"{count} cells" if count else "a double quote is open or inside a cell"
     hint = "; for decimal commas in quotes give decimal = ','" if count > columns else ""
     allowed = (
@@ -351,8 +358,8 @@ def _count_problem(where: int, count: int, columns: int, separator: str) -> str:
 
 
 def _with_point(where: int, name: str, cell: str, decimal: str) -> str:
-    """Text of a cell with decimal points and hyphens for minus signs.  Raises ValueError if the
-    decimal mark of a number differs from the declared one."""
+    """Return the string of a cell with decimal points, and with hyphens as minus signs.  Raises
+    ValueError if the decimal mark of a number differs from the declared one."""
     cell = cell.strip("'").strip().replace("−", "-")
     if decimal == "." and re.match(r"[+-]?\d*,\d", cell, re.ASCII):
         allowed = "allowed: a decimal point, or decimal = ','"

@@ -18,7 +18,7 @@ class InputError(ValueError):
     """An invalid argument.
 
     The message is one line, "argument = value: what is allowed".  Other layers use the attributes
-    to replace the argument with the name of an option, or the value with a quantity as text.
+    to replace the argument with the name of an option, or the value with the string of a quantity.
 
     Attributes
     ----------
@@ -56,7 +56,7 @@ class CacheError(RuntimeError):
 
 
 def shown(value: object) -> str:
-    """Text of a value for messages: the shortened repr, or the type if repr fails."""
+    """Return the string of a value for messages: the shortened repr, or the type if repr fails."""
     try:
         text = repr(value)
     except Exception as error:  # an integer of thousands of digits, or a user's class
@@ -66,7 +66,7 @@ def shown(value: object) -> str:
 
 
 def described(error: BaseException, path: str | os.PathLike) -> str:
-    """One line with the type of an error, the line number in the file at `path`, and the
+    """Describe an error in one line: its type, the line number in the file at `path`, and the
     message."""
     from traceback import extract_tb  # late, since its import takes a while
 

@@ -5,11 +5,11 @@ from __future__ import annotations
 from importlib.util import find_spec
 
 EXTRAS = {"matplotlib": "plot", "snakemake": "workflow"}
-"""Package -> extra in pyproject.toml that installs it."""
+"""Extra in pyproject.toml that installs a package, keyed by the package."""
 
 
 def missing(package: str) -> str:
-    """Instruction to install a package of EXTRAS, or "" if it is already installed."""
+    """Return an instruction to install a package of EXTRAS, or "" if it is already installed."""
     if find_spec(package) is not None:
         return ""
     return f"needs {package}; allowed after: pip install 'microslip[{EXTRAS[package]}]'"

@@ -20,8 +20,8 @@ _PARTIAL: set[Path] = set()
 
 
 def content_of(path: str | os.PathLike, most: int = MOST_BYTES) -> bytes:
-    """Read the content of a file.  Raises OSError, and ValueError for more than `most` bytes or a
-    device that never ends."""
+    """Read the content of a file.  Raises OSError if the file cannot be read, and ValueError if it
+    has more than `most` bytes or is a device that never ends."""
     with open(path, "rb") as file:
         content = file.read(most + 1)
     if len(content) > most:
@@ -113,7 +113,7 @@ def check_room(folder: Path) -> None:
 
 
 def clear_abandoned(folder: Path) -> list[Path]:
-    """Remove partial files of killed processes.  Returns their paths.
+    """Remove partial files of killed processes, and return the paths of these files.
 
     Files younger than an hour are not removed, since a process may be writing them.
     """
@@ -148,8 +148,8 @@ def _advice(verb: str, path: Path) -> Iterator[None]:
 
 
 def advice(verb: str, path: str | Path, error: Exception) -> str:
-    """Message for an operating system error, with the failed action, the path, the reason and the
-    remedy."""
+    """Return the message for an operating system error, with the failed action, the path, the
+    reason and the remedy."""
     reason = getattr(error, "strerror", None) or error
     return (
         f"cannot {verb} {path}: {reason}; make room or set permissions there, or choose another "

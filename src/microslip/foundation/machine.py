@@ -14,8 +14,8 @@ CPU_LIST = Path("/proc/cpuinfo")
 
 @functools.cache
 def cpu_model() -> str:
-    """Model name of the processor, such as "AMD EPYC 7B13", or the architecture if the model is
-    unknown."""
+    """Return the model name of the processor, such as "AMD EPYC 7B13", or the architecture if the
+    model is unknown."""
     lines = []
     with suppress(OSError):
         lines = CPU_LIST.read_text(encoding="utf-8", errors="replace").splitlines()
@@ -24,8 +24,8 @@ def cpu_model() -> str:
 
 
 def describe() -> dict[str, str | int]:
-    """Processor (cpu), name of the computer (host), and number of threads that a linear algebra
-    call may use (threads)."""
+    """Return the processor (cpu), the name of the computer (host), and the number of threads that a
+    linear algebra call may use (threads)."""
     variables = (os.environ.get(f"{name}_NUM_THREADS", "") for name in ("OPENBLAS", "OMP"))
     threads = next((int(text) for text in variables if text.isdigit() and int(text)), None)
     host, count = platform.node(), threads or os.cpu_count() or 1

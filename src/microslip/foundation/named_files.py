@@ -1,11 +1,11 @@
-"""Texts that name motions and pressures, and files with data or classes.
+"""Names of motions and pressures, and of files with data or classes.
 
     bore, elliptic:phase=90          a class of the package, with the numbers of its fields
     mine/soft_square.py:share=0.5    the class in a Python file
     file:pad.csv,grid=samples        a data file, with options
 
 A result depends on the content of a file and not on its folder.  So the name of a motion or a
-pressure contains a digest: "soft_square.py:sha256=0123456789abcdef,share=0.5" or
+pressure from a file contains a digest: "soft_square.py:sha256=0123456789abcdef,share=0.5" or
 "file:sha256=0123456789abcdef,grid=samples".  The digest of a Python file covers the files that it
 imports from its folder.  A process stores the path for each digest.  `remember` stores paths from
 another process.
@@ -51,10 +51,10 @@ HINT = (
 )
 PACKED = {b"\x1f\x8b": "gzip", b"PK\x03\x04": "zip, as spreadsheets are", b"BZh": "bzip2"}
 PACKED[b"\xfd7zXZ"] = "xz"
-"""First bytes of a compressed file -> its format."""
+"""Formats of compressed files, keyed by the first bytes of the file."""
 
 PLACES: dict[str, Path] = {}
-"""Paths of files by digest."""
+"""Paths of files, keyed by digest."""
 
 
 @dataclass(frozen=True)
@@ -70,7 +70,7 @@ class NamedFile:
     digest : str
         First DIGITS hexadecimal digits of the SHA-256 of the content.  It is empty if unknown.
     numbers : str
-        Numbers for the class in a Python file, such as "share=0.5".
+        Parameters of the class in a Python file, such as "share=0.5".
     grid, pitch : str
         Meaning of the values of a grid, and distance between the cells of a matrix; see
         pressures.grid_file.
@@ -94,13 +94,13 @@ class NamedFile:
 
     @property
     def name(self) -> str:
-        """The name in results.  It does not contain the folder, so that files with equal content
-        have equal names."""
+        """The name of the file in results.  It does not contain the folder, so that files with
+        equal content have equal names."""
         return self._text(os.path.basename(self.path) if self.is_code else "")
 
     @property
     def placed(self) -> str:
-        """The name with the path and the digest, for another process that reads the file."""
+        """The name with the path and the digest, for other processes that read the file."""
         return self._text(self.path)
 
     def _text(self, path: str) -> str:
@@ -114,7 +114,8 @@ class NamedFile:
 def parse(name: object, argument: str = "file") -> NamedFile | None:
     """Parse the name of a data file or of a Python file.
 
-    Returns None for another text.  Raises InputError about the argument for invalid options.
+    Returns None if the name is of neither kind.  Raises InputError about the argument if options
+    are invalid.
     """
     if not isinstance(name, str):
         return None
@@ -142,8 +143,7 @@ def parse(name: object, argument: str = "file") -> NamedFile | None:
 def read(
     file: NamedFile, argument: str, folders: Iterable[str | os.PathLike] = ()
 ) -> tuple[NamedFile, bytes]:
-    """Read a file.  Returns two values: the NamedFile, which contains the absolute path and the
-    digest, and the content.
+    """Read a file.  Returns the NamedFile, with the absolute path and the digest, and the content.
 
     Parameters
     ----------
@@ -201,7 +201,7 @@ def remember(names: Iterable[str]) -> None:
 
 
 def base_name(name: str) -> str:
-    """Base name of a file, for messages; "" if this process has not stored the path."""
+    """Return the base name of a file, for messages; "" if this process has not stored the path."""
     file = parse(name)
     return Path(file.path or PLACES.get(file.digest, "")).name if file else ""
 
@@ -214,7 +214,8 @@ def read_object(named: NamedFile, argument: str, create: Callable[[NamedFile, by
     named, argument : NamedFile, str
         The file, and the name of the argument for messages.
     create : callable
-        create(file, content) -> object.  Raises ValueError for content in another format.
+        create(file, content) returns the object.  It raises ValueError for content in another
+        format.
 
     Raises
     ------
@@ -236,7 +237,8 @@ def read_object(named: NamedFile, argument: str, create: Callable[[NamedFile, by
 
 
 def _imports_of(path: Path) -> tuple[Sources, set[str]]:
-    """The files of a folder; and the names of a file and of the files there that it imports."""
+    """Return the Sources of the folder of a file, and the names of this file and of the files in
+    the folder that it imports."""
     from microslip.foundation.source_digest import Sources  # late, since it imports ast
 
     sources = Sources(path.parent, "")
@@ -273,7 +275,8 @@ def _run(path: Path, name: str) -> ModuleType:
 
 @lru_cache(maxsize=32)
 def _class_in(file: NamedFile, base: type) -> type:
-    """The subclass of `base` in a Python file.  Raises ImportError unless there is one."""
+    """Return the subclass of `base` in a Python file.  Raises ImportError unless there is exactly
+    one."""
     path = Path(file.path)
     name = f"microslip_{file.digest}_{path.stem}"
     try:
@@ -295,7 +298,7 @@ def _class_in(file: NamedFile, base: type) -> type:
 
 
 class Family(Generic[T]):
-    """Motions or pressures by their texts.
+    """A function that returns a motion or a pressure for a name.
 
     The most recent objects of data files are stored, so that files with equal content share one
     object.
@@ -309,12 +312,12 @@ class Family(Generic[T]):
     classes : iterable of types
         Classes of the package, in the order in which they are listed to users.
     create : callable
-        create(file, content) -> object, for data files; see read_object.
+        create(file, content) returns the object for a data file; see read_object.
 
     Attributes
     ----------
     classes : dict of str to type
-        Classes of the package by name.
+        Classes of the package, keyed by name.
     """
 
     def __init__(
@@ -328,13 +331,13 @@ class Family(Generic[T]):
         self.classes = {spec.name_of(one): one for one in classes}
 
     def __call__(self, text: str) -> T:
-        """Return the object for a text such as "power:exponent=1" or "file:measured.csv".
+        """Return the object for a name such as "power:exponent=1" or "file:measured.csv".
 
         Raises
         ------
         InputError
-            If the name is unknown, if its file cannot be used, or if the class lacks a parameter or
-            refuses its value.
+            If the name is unknown, if its file cannot be used, or if the class does not have a
+            parameter or refuses its value.
         """
         named, path = parse(text, self.argument), ""
         if named is not None and not named.is_code:
@@ -364,6 +367,6 @@ class Family(Generic[T]):
 
 @lru_cache(maxsize=128)
 def _shared_object(cls: Callable[..., T], *numbers: tuple[str, float]) -> T:
-    """Return the object for these numbers.  Equal numbers share one object, including its cached
-    properties."""
+    """Return the object of a class with these parameters.  Calls with equal parameters share one
+    object, including its cached properties."""
     return cls(**dict(numbers))

@@ -1,5 +1,4 @@
-"""Conversion of numbers and their error estimates to text, with as many digits as the error
-allows."""
+"""Conversion of numbers and error estimates to text, with as many digits as the error allows."""
 
 from __future__ import annotations
 
@@ -74,7 +73,7 @@ def _text(value: float, error: float, digits: int) -> str:
 
 
 def _plain(value: float, digits: int, zeros: bool = False) -> str:
-    """Format a number with `digits` significant digits.  zeros: True to keep trailing zeros."""
+    """Format a number with `digits` significant digits.  zeros: if True, keep trailing zeros."""
     number = _rounded(value, digits)
     if not zeros or not number:
         return _short(number.normalize())
@@ -126,8 +125,8 @@ def interval_text(low: float, high: float, unit: str = "", *, error: float = 0.0
 
 
 def prefixed(value: float, unit: str) -> tuple[str, float]:
-    """The unit with the largest metric prefix that leaves the value at least 1, and its size.  For
-    0, the unit has no prefix."""
+    """Return the unit with the largest metric prefix for which the value is at least 1, and the
+    size of this prefix.  For 0, the unit has no prefix."""
     size = abs(value) or 1.0
     prefix, factor = next((one for one in PREFIXES.items() if size >= one[1]), ("p", 1e-12))
     return f"{prefix}{unit}", factor

@@ -1,10 +1,11 @@
 """Digests of the code that computes results and makes products.
 
-The name of a result contains the digest of the solver. It covers the code of all rooms that make
-numbers, and the file of a comparison method.  The name of a dataset, page or figure contains the
-digest of its builder: its modules, and what they import from the outer rooms.  The name of a motion
-or a pressure in a user's file contains the digest of this file and of what it imports from its
-folder. Comments, docstrings and layout do not count, and messages count only for products.
+The name of a result contains the digest of the solver. It covers the code of all subpackages that
+compute results, and the file of a comparison method.  The name of a dataset, page or figure
+contains the digest of its builder: the modules that make it, and the modules that they import from
+the subpackages in OUTER (except foundation).  The name of a motion or a pressure in a user's file
+contains the digest of this file and of what it imports from its folder. Comments, docstrings and
+layout do not change a digest.  Messages change only the digests of builders.
 
 Files are read when a digest is first needed.
 """
@@ -25,7 +26,7 @@ from microslip.foundation.files import write_atomically
 
 PACKAGE = Path(__file__).parents[1]
 OUTER = {"app", "bundle", "config", "datasets", "foundation", "report", "si", "studies", "sweeps"}
-"""Rooms that do not make numbers, except for the files in NUMBERS."""
+"""Subpackages that do not compute results, except for the files in NUMBERS."""
 NUMBERS = {"foundation/compiled.py", "sweeps/evaluate.py", "sweeps/period_codec.py"}
 """Files in OUTER on which results depend: compilation, and conversion of the solver's output."""
 METHODS = "periodic/methods/"
@@ -42,7 +43,7 @@ class Sources:
     folder : path
         Folder of the files.
     prefix : str or None
-        Beginning of the names of its modules; the default is the name of the folder and a point.
+        Beginning of the names of the modules; the default is the name of the folder and a point.
     """
 
     def __init__(self, folder: str | Path = PACKAGE, prefix: str | None = None):
@@ -60,7 +61,7 @@ class Sources:
         return sorted(name for name, words in parts.items() if all(map(str.isidentifier, words)))
 
     def digest(self, names: Iterable[str]) -> str:
-        """SHA-256 of the paths and the code of files, in hexadecimal."""
+        """Return the SHA-256 of the paths and the code of files, in hexadecimal."""
         code = [(name, self._parsed(name)[0]) for name in sorted(names)]
         if self.prefix and self._is_new:
             self._is_new = False
@@ -69,7 +70,8 @@ class Sources:
         return _sha256(json.dumps(code).encode())
 
     def closure(self, names: Iterable[str], inside: Callable[[str], bool] = bool) -> set[str]:
-        """Paths of these files and of all modules that they import directly or indirectly.
+        """Return the paths of these files and of all modules that they import directly or
+        indirectly.
 
         A table module.csv belongs to the module module.py.
 
@@ -85,7 +87,7 @@ class Sources:
 
     @property
     def solver(self) -> set[str]:
-        """Paths of the files of all rooms that make numbers."""
+        """Paths of the files of all subpackages that compute results."""
         return {n for n in self.names if is_physics(n) and not n.startswith(METHODS)}
 
     @property
@@ -96,7 +98,8 @@ class Sources:
         return self.closure(kernels, is_physics)
 
     def builder(self, *files: str) -> set[str]:
-        """Paths of the modules that make a product, besides the physics and the foundation.
+        """Return the paths of the modules that make a product, besides the physics and the
+        foundation.
 
         A table that has the name of a module, such as variables.csv, belongs to the module.
 
@@ -106,7 +109,8 @@ class Sources:
         return self.closure(starts, lambda n: not (is_physics(n) or n.startswith("foundation/")))
 
     def _imports(self, modules: Iterable[str]) -> list[str]:
-        """Paths of the modules with these names and of the packages that contain them."""
+        """Return the paths of the modules with these names and of the packages that contain
+        them."""
         inside = (n.removeprefix(self.prefix) for n in modules if n.startswith(self.prefix))
         parts = [name.split(".") for name in inside]
         paths = {"/".join(one[:end]) for one in parts for end in range(1, len(one) + 1)}
@@ -116,7 +120,7 @@ class Sources:
     # Parsing takes a second for the package, so the results are stored in __pycache__.
 
     def _read_parsed(self, name: str) -> tuple[str, list[str]]:
-        """Digest of the code of a file, and the names of the modules that it imports."""
+        """Return the digest of the code of a file, and the names of the modules that it imports."""
         if not name.endswith(".py"):
             return _sha256(self.content(name)), []
         messages = bool(self.prefix) and not is_physics(name)
@@ -135,11 +139,12 @@ class Sources:
 
 
 _READER = Path(__file__).read_bytes()
-"""This file.  Stored parse results of another version of it are not used."""
+"""Content of this file.  Parse results that another version of this file has stored are not
+used."""
 
 
 def is_physics(name: str) -> bool:
-    """True for files that influence results.  name: path inside the package."""
+    """Return True for files that influence results.  name: path inside the package."""
     room, slash, _ = name.partition("/")
     return name in NUMBERS or bool(slash) and room not in OUTER
 
@@ -149,9 +154,9 @@ def _sha256(content: bytes) -> str:
 
 
 def parse(content: bytes, messages: bool) -> tuple[str, list[str]]:
-    """Digest of the code of a module, and the names of all modules that it imports.
+    """Return the digest of the code of a module, and the names of all modules that it imports.
 
-    messages: True if messages count, see `_text`.
+    messages: if True, messages change the digest; see `_text`.
     """
     try:
         tree = ast.parse(content)
@@ -165,11 +170,11 @@ def parse(content: bytes, messages: bool) -> tuple[str, list[str]]:
 
 
 def _text(node: object, messages: bool) -> str:
-    """Text of a syntax tree, without docstrings, line numbers and empty fields.
+    """Return the text of a syntax tree, without docstrings, line numbers and empty fields.
 
-    messages: False leaves out the messages.  A string with a blank is a message, unless an
-    attribute of it is used, as in "a b".split().  All versions of Python give the same text, unlike
-    ast.dump.
+    messages: if False, messages are omitted.  A string with a blank is a message, unless an
+    attribute of the string is used, as in "a b".split().  All versions of Python give the same
+    text, unlike ast.dump.
     """
     if isinstance(node, list):
         return f"[{''.join(_text(item, messages) for item in node)}]"
@@ -196,37 +201,37 @@ LOADED = Sources()
 
 
 def of_request(request: dict) -> str:
-    """Digest of the code that influences the result of a request."""
+    """Return the digest of the code that influences the result of a request."""
     return of_solver((request.get("method") or "").partition(":")[0].replace("-", "_"))
 
 
 @cache
 def of_solver(method: str = "") -> str:
-    """Digest of the physics, and of the file of a comparison method."""
+    """Return the digest of the physics and of the file of a comparison method."""
     files = {f"{METHODS}{method}.py"}.intersection(LOADED.names)
     return LOADED.digest(LOADED.solver | LOADED.closure(files, is_physics))
 
 
 def is_edited() -> bool:
-    """True if the code of the physics on disk differs from the code that was read."""
+    """Return True if the code of the physics on disk differs from the code that was read."""
     now = Sources()
     return now.digest(now.solver) != of_solver()
 
 
 @cache
 def of_builder(*files: str) -> str:
-    """Digest of the modules and folders that make a product, see Sources.builder."""
+    """Return the digest of the modules and folders that make a product; see Sources.builder."""
     return LOADED.digest(LOADED.builder(*files))
 
 
 def workflow_file(name: str) -> Path:
-    """Path of a file of the workflow: in the folder `bundle` of an installed package, or else at
-    the top of a source tree, which can lack it."""
+    """Return the path of a file of the workflow: in the folder `bundle` of an installed package, or
+    else at the top of a source tree.  The file may be missing there."""
     bundled = PACKAGE / "bundle" / name
     return bundled if bundled.is_file() else PACKAGE.parents[1] / name
 
 
 def of_script(name: str) -> str:
-    """Digest of a script of the workflow; empty if there is none."""
+    """Return the digest of a script of the workflow; empty if the script does not exist."""
     path = workflow_file(name)
     return parse(path.read_bytes(), messages=True)[0] if path.is_file() else ""

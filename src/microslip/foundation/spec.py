@@ -1,4 +1,5 @@
-"""Names with parameters: "elliptic:forward=0.5,phase=90" is the name elliptic with two numbers."""
+"""Names with parameters: "elliptic:forward=0.5,phase=90" is the name elliptic with two
+parameters."""
 
 from __future__ import annotations
 
@@ -22,7 +23,7 @@ HALVES = {"diameter": "radius", "stroke": "amplitude", "peak_to_peak": "amplitud
 
 
 def read(argument: str, text: str, whole: bool = False) -> float | int:
-    """Read a number in Python notation from a text.
+    """Read a number in Python notation from a string.
 
     Spaces around the number and a typographic minus are accepted.  Underscores, digits of other
     scripts and decimal commas are not accepted.
@@ -32,14 +33,14 @@ def read(argument: str, text: str, whole: bool = False) -> float | int:
     argument
         Name of the argument, for messages.
     text
-        Text of the number, which can be infinite or NaN.
+        String with the number, which can be infinite or NaN.
     whole
-        True to accept only integers, and to return an int.
+        If True, accept only integers, and return an int.
 
     Raises
     ------
     InputError
-        If the text is not such a number, or the number is outside the range of floats.
+        If the string is not such a number, or the number is outside the range of floats.
     """
     plain = text.strip().replace(MINUS, "-", 1)
     if not (WHOLE if whole else NUMBER).fullmatch(plain):
@@ -60,8 +61,8 @@ def read(argument: str, text: str, whole: bool = False) -> float | int:
 
 
 def near_miss(name: object, names: Iterable[str]) -> str:
-    """'did you mean NAME? ' for the most similar name, or '' if there is none.  If the name is
-    twice an argument, the text says so."""
+    """Return 'did you mean NAME? ' for the most similar name, or '' if no name is similar.  If the
+    quantity is twice an argument, as a diameter is twice a radius, the hint says so."""
     word = str(name).lstrip("-").replace("-", "_")
     half = re.sub("|".join(HALVES), lambda match: HALVES[match[0]], word)
     for one in names:
@@ -74,8 +75,8 @@ def near_miss(name: object, names: Iterable[str]) -> str:
 
 
 def split(text: str, what: str, names: Iterable[str]) -> tuple[str, str | None]:
-    """Split a text such as "elliptic:phase=90" into the name and the text of its numbers, which is
-    None without a colon.
+    """Split a string such as "elliptic:phase=90" into the name and the part with the parameters,
+    which is None without a colon.
 
     Raises InputError about the argument `what` if `names` does not contain the name.
     """
@@ -89,10 +90,11 @@ def split(text: str, what: str, names: Iterable[str]) -> tuple[str, str | None]:
 def numbers_in(
     part: str | None, text: str, what: str, name: str, parameters: Iterable[str] | None = None
 ) -> dict[str, float]:
-    """Numbers by name in a part of a text, such as "forward=0.5,phase=90"; none if it is None.
+    """Read the parameters in the part of a string after the name, such as "forward=0.5,phase=90".
+    Returns the numbers, keyed by name; empty if the part is None.
 
     If the part cannot be read, or if a number is not in `parameters`, raises InputError about the
-    argument `what`.  The message contains the whole text, and an example with the name.
+    argument `what`.  The message contains the whole string, and an example with the name.
     """
     numbers: dict[str, float] = {}
     for one in [] if part is None else part.split(","):
@@ -141,18 +143,18 @@ def refuse_outside(
 
 
 def name_of(cls: type) -> str:
-    """Name of a class in texts, such as "continuous-bore" for ContinuousBore.  A class in a user's
-    file has the attribute `text_name`."""
+    """Return the name of a class in strings, such as "continuous-bore" for ContinuousBore.  A class
+    in a user's file has the attribute `text_name`."""
     name = re.sub(r"(?<=[a-z0-9])(?=[A-Z])", "-", cls.__name__).lower()
     return vars(cls).get("text_name", name)
 
 
 class Named:
-    """Base class of dataclasses of numbers, such as motions and pressures."""
+    """Base class of dataclasses whose fields are numbers, such as motions and pressures."""
 
     @cached_property
     def name(self) -> str:
-        """Name of the class, followed by the numbers that differ from their defaults, with 12
+        """Name of the class, followed by the parameters that differ from their defaults, with 12
         digits."""
         record: Any = self
         name, values = name_of(type(self)), ((f, getattr(self, f.name)) for f in fields(record))
@@ -165,7 +167,7 @@ class Named:
 
 
 class NamedByText(Named):
-    """Base class of objects with arrays.  Objects whose texts are equal are equal.
+    """Base class of objects with arrays.  Objects with equal names are equal.
 
     Attributes
     ----------

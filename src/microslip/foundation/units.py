@@ -1,9 +1,9 @@
 """Quantities: one number, one unit, and possibly a standard uncertainty, converted to SI units.
 
-A text has the form NUMBER UNIT or NUMBER UNIT +- NUMBER UNIT.  A number has the digits 0 to 9, a
+A string has the form NUMBER UNIT or NUMBER UNIT +- NUMBER UNIT.  A number has the digits 0 to 9, a
 decimal point and an exponent.  A unit is a product of the units in UNITS with integer exponents, as
-in "kg/m^3".  Division is read from left to right.  Every other text is refused.  Factors are exact
-fractions, so that equal quantities are equal floats: "1 um" and "1e-3 mm".
+in "kg/m^3".  Division is read from left to right.  Every other string is refused.  Factors are
+exact fractions, so that equal quantities are equal floats: "1 um" and "1e-3 mm".
 """
 
 from __future__ import annotations
@@ -63,11 +63,13 @@ HINTS = {
     "N": {"kg": ", of a mass; for its weight write gf or kgf, as in '500 gf'"},
     "m/s": {"rpm": ", of a rotation; its speed is the rate in rad/s times a radius"},
 }
-"""Hint about a wrong unit, by the SI unit and a unit of the kind of the wrong one."""
+"""Hints about wrong units, keyed by the SI unit, and then by a unit of the same kind as the wrong
+unit."""
 
 
 class Unit(NamedTuple):
-    """Factor to the product of base units, and exponents of m, kg, s, rad and K."""
+    """A unit: the factor to the product of its base units, and the exponents of m, kg, s, rad and
+    K."""
 
     factor: Fraction
     powers: tuple[int, ...]
@@ -82,7 +84,8 @@ class Quantity:
     si : float
         Value in the SI unit.
     text : str
-        The text of the user, with the SI value if the unit is of another kind, such as turns.
+        The string of the user, followed by the SI value if the unit is of another kind, such as
+        turns.
     deviation : float
         Standard uncertainty in the SI unit; 0 for an exact value.
     """
@@ -138,7 +141,7 @@ def read(value: Any, si: str) -> Quantity:
     Parameters
     ----------
     value : object
-        A text such as "10 N" or "10 N +- 5 %", a quantity of pint, a DataArray of one value, or a
+        A string such as "10 N" or "10 N +- 5 %", a quantity of pint, a DataArray of one value, or a
         number in the SI unit.
     si : str
         SI unit; empty for a pure number, which can also be in per cent.  Hz and rad/s accept
@@ -147,7 +150,7 @@ def read(value: Any, si: str) -> Quantity:
     Raises
     ------
     ValueError
-        If the value is not a quantity in this unit.  The message says what is allowed.
+        If the value is not a quantity in this unit.  The message contains the allowed values.
     """
     try:
         if isinstance(value, str):
@@ -191,7 +194,8 @@ def plain_number(value: Any) -> float:
 
 
 def _from_text(text: str, si: str, units: bool = False) -> Quantity:
-    """The Quantity for a text.  units: True to accept units of a pure number, such as N/kN."""
+    """Return the Quantity for a string.  units: if True, accept units of a pure number, such as
+    N/kN."""
     centre, *rest = UNCERTAINTY.split(text.strip())
     if len(rest) > 1:
         raise ValueError("it has more than one uncertainty")
@@ -211,7 +215,8 @@ def _from_text(text: str, si: str, units: bool = False) -> Quantity:
 
 
 def _number(text: str, si: str, units: bool) -> tuple[float, bool]:
-    """SI value of a number with a unit, and whether its unit is of the kind of the SI unit."""
+    """Return the SI value of a number with a unit, and True if the unit is of the same kind as the
+    SI unit."""
     text = text.replace("−", "-").strip()
     match = NUMBER.match(text)
     if not text or re.match(r"[+-]?(inf|nan)", text, re.I):
@@ -249,7 +254,8 @@ def _number(text: str, si: str, units: bool) -> tuple[float, bool]:
 
 
 def _hint(digits: str, rest: str) -> str:
-    """The likely meaning of the text at which reading stopped, after the digits of a number."""
+    """Return a hint about the likely meaning of the string at which reading stopped, after the
+    digits of a number."""
     if digits and (fraction := re.fullmatch(r"/\s*([1-9]\d*)\s*(.*)", rest, re.S)):
         value = float(Fraction(Decimal(digits)) / int(fraction[1]))
         return f" (did you mean {f'{value!r} {fraction[2]}'.strip()!r}?)"

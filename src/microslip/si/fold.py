@@ -246,8 +246,8 @@ def _check_repeats(frequency: float, parts: np.ndarray, order: int, column: int)
 
 def _phases(parts: np.ndarray) -> tuple[float, float, float, int, int]:
     """Return the relative correction of the frequency, its standard error, the variance of the slow
-    phase drift in periods squared, and the order and the column of the strongest harmonic, from
-    whose phases they follow."""
+    phase drift in periods squared, and the order and the column of the strongest harmonic.  The
+    first three follow from the phases of this harmonic."""
     power = np.mean(np.abs(parts) ** 2, axis=0)
     share = power / np.maximum(power.sum(axis=0), 1e-300)
     column = int(np.argmax(share[1:].max(axis=0)))
