@@ -1,1 +1,2 @@
-"""Closed forms and bounds for friction. This package does not use the solver, files or plots."""
+"""Closed forms and bounds for friction. The subpackage depends neither on the solver nor on files
+or plots."""

@@ -1,40 +1,43 @@
-"""What is known about friction without a run: upper bounds, closed forms, and kinks.
+"""Results about friction without simulation: upper bounds, closed forms and kinks.
 
-Bounds on the reduction of friction by vibration.  Over a period, all work of the contact forces is
-dissipated, because the elastic energy is periodic. Every point slips forward by velocity times
-period, and the length of its slip path is at least this distance.  This gives a lower bound on the
-dissipation.  With the force F (|F| <= 1) and d = 1 - mu, it follows that:
+Upper bounds limit the reduction of friction by vibration. Over a period, all work of the contact
+forces is dissipated, because the elastic energy is periodic. Every point slips forward by velocity
+times period, and the length of its slip path is at least this distance. This distance gives a lower
+bound on the dissipation.  With the force F (|F| <= 1) and d = 1 - mu, it follows that:
 
-- transverse (forward v t, lateral y sin t): v mu + y <F_lateral cos t> >= v, where by Schwarz and
-  Jensen <F_lateral cos t>^2 <= (1 - mu^2) / 2 = d (1 - d/2).  Hence d <= 1 / ((v/y)^2 + 1/2).
-- bore (forward v phi t, angle phi sin t): the work of the torque replaces the work of the lateral
-  force.  Forward tractions contribute at most phi d, and lateral tractions at most phi sqrt(d/5);
-  1/5 is the second moment of Hertz pressure about a diameter.  Hence d <= 1 / (5 (v - 1)^2) for
-  v > 1.
+- transverse (forward v t, lateral y sin t): v mu + y <F_lateral cos t> >= v, where by the
+  inequalities of Schwarz and Jensen <F_lateral cos t>^2 <= (1 - mu^2) / 2 = d (1 - d/2). Hence
+  d <= 1 / ((v/y)^2 + 1/2).
+- bore (forward v phi t, angle phi sin t): the work of the torque takes the place of the work of the
+  lateral force. To the mean power of the torque, forward tractions contribute at most phi d, and
+  lateral tractions at most phi sqrt(d/5), where 1/5 is the second moment of Hertz pressure about a
+  diameter. Hence d <= 1 / (5 (v - 1)^2) for v > 1.
 - longitudinal (forward v t + x sin t): the sphere never moves backward if v >= x, so d = 0.
 
-The dissipated energy per radian of the transverse motion is the work v mu + y <F_lateral cos t>.
-It is at least v and at most v (1 - d) + y sqrt(d), hence at most v + y^2 / (4 v).  For the bore,
-the energy divided by phi is between v and v + 1 / (20 (v - 1)).  With the bound b on d, both
-energies are at most v (1 + b / (4 - 2 b)).  The same bound applies to longitudinal motions with
-v >= x.
+For the transverse motion, the dissipated energy per radian is the work v mu + y <F_lateral cos t>.
+It is at least v and at most v (1 - d) + y sqrt(d), hence at most v + y^2 / (4 v). For the bore, the
+dissipated energy per radian, divided by phi, is between v and v + 1 / (20 (v - 1)). If b is the
+upper bound on d, both energies are at most v (1 + b / (4 - 2 b)). The same bound applies to
+longitudinal motions with v >= x.
 
-The bounds hold for any nu and any stiffness.  The arguments are the paper's dimensionless groups.
+The bounds apply to any nu and any stiffness. The arguments of the functions are the dimensionless
+groups of the paper.
 
-Friction never decreases as the forward velocity increases.  Coulomb's law at a given pressure is
-monotone, and the half-space is elastic.  So (mu1 - mu2)(v1 - v2) >= 0 for periodic states of the
-same oscillation at the velocities v1 and v2.  Friction is odd in the velocity if the oscillation
-reverses its forward motion half a period later under the same load (Motion.propels).  So it is
-never negative for v > 0.  Other motions can propel the contact (Motion.propels).
+Friction never decreases as the forward velocity increases, because Coulomb's law at a given
+pressure is monotone, and the half-space is elastic. Therefore (mu1 - mu2)(v1 - v2) >= 0 for
+periodic states of the same oscillation at the velocities v1 and v2. If the forward oscillation is
+reversed half a period later, under the same load, friction is an odd function of the velocity, and
+thus never negative for v > 0. Other motions can propel the contact (Motion.propels).
 
-Closed forms replace simulations of some motions under Hertz pressure.  Stored results depend on
+For some motions under Hertz pressure, closed forms replace simulations. Stored results depend on
 this file and on the functions that it uses, but not on datasets/catalogue.py, which contains the
 names of these and other formulas.
 
-Kinks of friction as a function of velocity and amplitude need a border in interpolations. At two
-places, friction is continuous, but its slope or curvature is not. One is the amplitude above which
-no point sticks during slow sliding. The other is the velocity above which no point ever sticks. A
-border need not be exact, because the samples of friction resolve the remaining part of the kink.
+As a function of velocity and amplitude, friction can have kinks, where it is continuous but its
+slope or curvature is not. One kink is at the amplitude above which no point sticks during slow
+sliding. Another kink is at the velocity above which no point ever sticks. Interpolations need a
+border between cells at a kink. The border need not be exact, because the samples of friction
+resolve the remaining part of the kink.
 """
 
 from __future__ import annotations
@@ -49,7 +52,8 @@ from microslip.theory import paper
 
 
 def largest_drop_transverse(velocity: float, amplitude: float) -> float:
-    """Upper bound on 1 - mu_macro (dimensionless) for velocity >= 0 and amplitude >= 0."""
+    """Return an upper bound on 1 - mu_macro under transverse oscillation, for velocity and
+    amplitude >= 0."""
     if amplitude == 0.0:
         return 0.0
     ratio = velocity / amplitude
@@ -57,7 +61,7 @@ def largest_drop_transverse(velocity: float, amplitude: float) -> float:
 
 
 def largest_drop_bore(velocity: float, amplitude: float) -> float:
-    """Upper bound on 1 - mu_macro (dimensionless) for velocity >= 0 and any amplitude > 0."""
+    """Return an upper bound on 1 - mu_macro under bore, for velocity >= 0 and amplitude >= 0."""
     if amplitude == 0.0:
         return 0.0
     excess = velocity - 1.0
@@ -67,8 +71,8 @@ def largest_drop_bore(velocity: float, amplitude: float) -> float:
 
 
 def largest_drop_longitudinal(velocity: float, amplitude: float) -> float:
-    """Upper bound on 1 - mu_macro (dimensionless) for velocity >= 0 and amplitude >= 0.  It is 0 or
-    1."""
+    """Return an upper bound on 1 - mu_macro, which is 0 or 1, for velocity >= 0 and amplitude >=
+    0."""
     return 0.0 if velocity >= amplitude else 1.0
 
 
@@ -78,9 +82,10 @@ class StaticLimit(NamedTuple):
     Attributes
     ----------
     function : callable
-        Friction as a function of an array of amplitudes, dimensionless.
+        Function that returns the friction for an array of dimensionless amplitudes.
     any_poisson : bool
-        True if the limit applies to every Poisson's ratio; otherwise it applies to 0 only.
+        Whether the limit applies to every Poisson's ratio; otherwise it applies to the ratio 0
+        only.
     """
 
     function: Callable
@@ -100,27 +105,28 @@ LARGEST_DROPS = {
     "transverse": largest_drop_transverse,
     "bore": largest_drop_bore,
 }
-"""Upper bounds on 1 - mu_macro as functions of velocity and amplitude (floats)."""
+"""For each motion, a function of velocity and amplitude (floats) that returns an upper bound on 1 -
+mu_macro."""
 
 
 LOOP = "elliptic"
-"""Name of the motions that oscillate in two directions. A parameter that is not in the name is
-1."""
-LOAD = "normal"
-"""Name of the motions whose normal load or indentation oscillates. A load that is not in the name
+"""Name of the motions that oscillate in two directions. A parameter that is not given in the name
 is 1."""
+LOAD = "normal"
+"""Name of the motions whose normal load or indentation oscillates. A load that is not given in the
+name is 1."""
 
 
 class Kinks(NamedTuple):
-    """Amplitudes and velocity of the kinks of friction, dimensionless.
+    """Dimensionless amplitudes and velocity at which friction has kinks.
 
     Attributes
     ----------
     amplitudes : tuple of float
         Amplitudes at which friction has a kink if the velocity is below the kink velocity.
     velocity : tuple of float
-        Kink velocity: empty if there is none, (v,) if it is v at all amplitudes, and (n0, n1, c0,
-        c1, c2) if it is (n0 + n1 A + A^2) / (c0 + c1 A + c2 A^2) at the amplitude A.
+        Kink velocity: () if there is none, (v,) if it is v at all amplitudes, and (n0, n1, c0, c1,
+        c2) if it is (n0 + n1 A + A^2) / (c0 + c1 A + c2 A^2) at the amplitude A.
     """
 
     amplitudes: tuple[float, ...] = ()
@@ -130,42 +136,46 @@ class Kinks(NamedTuple):
 KINKS = {
     # The centre of rotation leaves the contact at the velocity 1.
     "bore": Kinks((), (1.0,)),
-    # Contact is lost at the amplitude 1. At smaller amplitudes, friction is full above a certain
-    # velocity, because springs are then stretched faster than their friction bounds grow. This
-    # velocity is the maximum over t of A sin t / (1.5 (1 - A cos t)^(1/3)), here up to 2 % larger.
+    # Contact is lost from the amplitude 1 on. At smaller amplitudes, there is full friction above a
+    # certain velocity, at which the springs are stretched faster than their friction bounds grow.
+    # This velocity is the maximum over t of A sin t / (1.5 (1 - A cos t)^(1/3)). The formula here
+    # exceeds it by up to 2 %.
     "normal": Kinks((1.0,), (0.0, 1.0, 1.5, 1.25, 0.0)),
 }
-"""Name of a motion -> its kinks under Hertz pressure."""
+"""Kinks under Hertz pressure, by name of the motion."""
 UNDER_ANY = {
-    # The whole contact slides sideways at the amplitude 1. Above the kink velocity a part of the
-    # contact no longer sticks at the turning points. The curve is fitted to jumps in the second
-    # differences of friction under Hertz pressure: 0.030, 0.113, 0.30, 0.56 and 0.69 at the
-    # amplitudes 0.2, 0.5, 1, 2 and 3. It passes a little above them, because this deforms the
-    # neighbouring cells less. Under other pressures it saves a tenth to a quarter of the points.
+    # From the amplitude 1 on, the whole contact slides sideways. Above the kink velocity, a part of
+    # the contact no longer sticks at the turning points. The curve is fitted to the velocities of
+    # jumps in the second differences of friction under Hertz pressure: 0.030, 0.113, 0.30, 0.56 and
+    # 0.69 at the amplitudes 0.2, 0.5, 1, 2 and 3. The curve is slightly above these velocities,
+    # because this choice deforms the neighbouring cells less. Under other pressures, it saves a
+    # tenth to a quarter of the points.
     "transverse": Kinks((1.0,), (0.004, 0.12, 1.69, 0.975, 0.965)),
-    # Friction is full at velocities above A, because the contact never moves backward. Above the
-    # amplitude 1 the whole contact also slides backward.
+    # There is full friction at velocities above A, because the contact never moves backward. Above
+    # the amplitude 1, there are times at which the whole contact slides backward.
     "longitudinal": Kinks((1.0,), (0.0, 1.0, 1.0, 1.0, 0.0)),
-    # All springs in contact are pressed in at the same velocity. Contact is lost at
-    # the amplitude 1.
+    # All springs in contact are compressed at the same velocity. Contact is lost from the amplitude
+    # 1 on.
     "normal:indentation=1": Kinks((1.0,), (0.0, 1.0, 1.0, 1.0, 0.0)),
 }
-"""Name of a motion -> its kinks under any pressure, in the units of that pressure."""
+"""Kinks under any pressure, by name of the motion, in the units of the pressure."""
 
 
 def kinks_of(motion: str, pressure: str = "hertz") -> Kinks:
-    """Kinks for a motion and a pressure, both given by name. Most motions have no kinks."""
+    """Return the kinks for a motion and a pressure, both given by name. Most motions have no
+    kinks."""
     known = UNDER_ANY | (KINKS if pressure == "hertz" else {})
     return known[motion] if motion in known else _of_family(motion)
 
 
 def _of_family(motion: str) -> Kinks:
-    """Kinks of loops, and of motions that combine an oscillating load with another component.
+    """Return the kinks of loops, and of motions that combine an oscillating load with other
+    components.
 
-    The velocity of a loop is the largest velocity of its forward oscillation. At larger velocities,
-    the loop never moves backward. Friction has no kink there, but it changes on this scale of
-    velocities at all amplitudes. Under an oscillating load, the scale is the amplitude, and contact
-    is lost above a certain amplitude.
+    The kink velocity of a loop is the largest velocity of the forward oscillation. At larger
+    velocities, the contact never moves backward. Friction has no kink there, but it changes on this
+    scale of velocities at all amplitudes. Under an oscillating load, the scale is the amplitude,
+    and contact is lost above a certain amplitude.
     """
     name, _, rest = motion.partition(":")
     if name not in (LOOP, LOAD):
@@ -179,8 +189,10 @@ def _of_family(motion: str) -> Kinks:
 
 
 def kink_velocity(kinks: Kinks, amplitude: np.ndarray | float) -> np.ndarray:
-    """Kink velocity at each amplitude >= 0. The result has the shape of `amplitude`.
-    `kinks.velocity` must not be empty."""
+    """Return the kink velocity at each amplitude >= 0, as an array with the shape of `amplitude`.
+
+    `kinks.velocity` must not be empty.
+    """
     first, *rest = kinks.velocity
     amplitude = np.asarray(amplitude, float)
     if not rest:

@@ -1,15 +1,15 @@
-"""Constants and closed forms of one Hertz contact: normal load, tangential load and torsion.
+"""Constants and closed forms of a Hertz contact under normal load, tangential load and torsion.
 
 Unless a docstring states otherwise, quantities are in working units: contact radius a = 1, mu*F_z =
 1 and u_lim = 1 (the displacement at which the whole contact slides). In these units, the reduced
 shear modulus is 3/4. Tractions are in mu*F_z/a^2, torques are in mu*F_z*a, and angles are in
 u_lim/a.
 
-Every function takes floats or arrays and broadcasts. It raises ValueError if an argument is not
-finite, or is outside its range.
+Every function accepts floats or arrays and broadcasts them. It raises ValueError if an argument is
+not finite or is outside its range.
 
-Names in subpackages of SciPy are written in full (`scipy.special.ellipe`), so that each subpackage
-is imported only when it is first used.
+Functions of SciPy are written with their full names (`scipy.special.ellipe`), so that each
+subpackage of SciPy is imported only when it is first used.
 """
 
 from functools import cache
@@ -21,18 +21,22 @@ import scipy
 Numbers = np.ndarray | float
 """A number, or an array of any shape."""
 IndenterPressure = Any
-"""Pressure under an axisymmetric indenter: the attributes and methods G_star, stiffness, bound,
-depth, radius, of_load, load, loading and total of pressure.Pressure."""
+"""Pressure under an axisymmetric indenter: any object with the attributes and methods G_star,
+stiffness, bound, depth, radius, of_load, load, loading and total of pressure.Pressure."""
 G_STAR = 0.75
-"""Reduced shear modulus 4G/(2-nu), dimensionless (from u_lim = 3 mu F_z / (4 G* a))."""
+"""Reduced shear modulus 4G/(2-nu) in working units, which follows from u_lim = 3 mu F_z / (4 G*
+a)."""
 TORQUE_FULL_SLIP = 3 * np.pi / 16
 """Torque of a contact that rotates about its centre and slips everywhere, in mu*F_z*a."""
 
 
 @cache
 def unit_rule(count: int) -> tuple[np.ndarray, np.ndarray]:
-    """Gauss-Legendre nodes and weights on 0..1.  They are computed at the first use, since this
-    takes as long as the import of a module."""
+    """Return Gauss-Legendre nodes and weights on 0..1.
+
+    They are computed at the first use, because the computation takes as long as the import of a
+    module.
+    """
     nodes, weights = np.polynomial.legendre.leggauss(count)
     return (nodes + 1) / 2, weights / 2
 
@@ -44,7 +48,7 @@ def checked(
     high: float = np.inf,
     low_open: bool = False,
 ) -> np.ndarray:
-    """Return `values` as a float array.
+    """Return `values` as a float array, after a check of the range.
 
     Raises ValueError unless all values are finite with low <= value <= high (low < value if
     `low_open`).
@@ -60,17 +64,17 @@ def checked(
 
 
 def friction_bound(r: Numbers) -> Numbers:
-    """Friction bound under Hertz pressure, g(r) = mu p(r) = 3/(2 pi) sqrt(1 - r^2).
+    """Return the friction bound under Hertz pressure, g(r) = mu p(r) = 3/(2 pi) sqrt(1 - r^2).
 
-    r: distance from the centre, any shape. Raises ValueError unless r >= 0. The result is
-    dimensionless and 0 outside the contact.
+    r: distance from the centre, as an array of any shape. Raises ValueError unless r >= 0. The
+    result is dimensionless and 0 outside the contact.
     """
     r = checked("r", r)
     return 1.5 / np.pi * np.sqrt(np.maximum((1 - r) * (1 + r), 0.0))
 
 
 def load_inside(r: Numbers) -> Numbers:
-    """Fraction of the normal load within radius r under Hertz pressure, 1 - (1 - r^2)^(3/2).
+    """Return the fraction of the Hertz load within the radius r, 1 - (1 - r^2)^(3/2).
 
     Raises ValueError unless r >= 0; the argument can have any shape. The result is dimensionless
     and 1 for r >= 1.
@@ -79,33 +83,35 @@ def load_inside(r: Numbers) -> Numbers:
 
 
 def ring_bounds(edges: np.ndarray) -> np.ndarray:
-    """Mean friction bound of each ring between consecutive radii.
+    """Compute the mean friction bound of each ring between consecutive radii.
 
     edges: n + 1 radii. Raises ValueError unless they are strictly increasing between 0 and 1.
-    Returns n dimensionless values. The sum of values times ring areas is the load between the first
-    and the last edge.
+    Returns n dimensionless values. The sum of the values times the ring areas is the load between
+    the first and the last edge.
     """
     edges = checked("edges", edges, high=1.0)
     if edges.ndim != 1 or edges.size < 2 or not np.all(np.diff(edges) > 0):
         raise ValueError(f"edges = {edges}: allowed is one row of at least two increasing radii")
-    # With y = sqrt(1 - r^2) the mean is (y1^3 - y2^3) / (pi (y1^2 - y2^2)). The common factor
-    # y1 - y2 is cancelled, so that thin rings lose no digits.
+    # With y = sqrt(1 - r^2), the mean is (y1^3 - y2^3) / (pi (y1^2 - y2^2)). The common factor y1 -
+    # y2 is cancelled, so that thin rings lose no digits.
     y = np.sqrt((1 - edges) * (1 + edges))
     inner, outer = y[:-1], y[1:]
     return (inner**2 + inner * outer + outer**2) / (np.pi * (inner + outer))
 
 
 def D(c: Numbers) -> Numbers:
-    """Difference K(k) - E(k) of elliptic integrals at the modulus k = sqrt(1 - c^2) (Eqs 25, 26).
+    """Return the difference of elliptic integrals K(k) - E(k) at the modulus k = sqrt(1 - c^2) (Eqs
+    25, 26).
 
     Raises ValueError unless 0 < c <= 1; the argument can have any shape. The result is
-    dimensionless. D falls from infinity, where it is about ln(4/c) - 1, to D(1) = 0.
+    dimensionless. For small c, D is about ln(4/c) - 1, and thus tends to infinity; it decreases to
+    D(1) = 0.
     """
     return _D_of_log(np.log(checked("c", c, high=1.0, low_open=True)))[()]
 
 
 def _D_of_log(log_c: np.ndarray) -> np.ndarray:
-    """D as a function of ln c <= 0, accurate also for c near 1 and for c that underflows."""
+    """Return D as a function of ln c <= 0, accurate also if c is near 1 or underflows."""
     k_squared = 0.0 - np.expm1(2 * log_c)
     near = k_squared / 3 * scipy.special.elliprd(0.0, np.exp(2 * np.maximum(log_c, -20.0)), 1.0)
     return np.where(log_c < -20.0, np.log(4.0) - 1 - log_c, near)
@@ -118,7 +124,7 @@ def D_half() -> float:
 
 
 def lubkin_angle(stick_radius: Numbers, poisson: float = 0.0) -> Numbers:
-    """Angle of pure torsion from rest as a function of the stick radius (Eq 24).
+    """Return the angle of pure torsion from rest as a function of the stick radius (Eq 24).
 
     Raises ValueError unless 0 < stick_radius <= 1 and 0 <= poisson <= 0.5; the arguments are
     broadcast. Returns an angle in u_lim/a.
@@ -128,27 +134,28 @@ def lubkin_angle(stick_radius: Numbers, poisson: float = 0.0) -> Numbers:
 
 
 def lubkin_stick_radius(angle: Numbers, poisson: float = 0.0) -> Numbers:
-    """Stick radius after pure torsion from rest by `angle` (inverse of Eq 24).
+    """Return the stick radius after pure torsion from rest by `angle` (inverse of Eq 24).
 
     Raises ValueError unless angle >= 0 in u_lim/a and 0 <= poisson <= 0.5; the arguments are
-    broadcast. Returns a radius above 0 and at most 1; it is 1 at angle 0. The centre never slips,
-    so a radius that would underflow is replaced by the smallest normal float.
+    broadcast. Returns a radius above 0 and at most 1; it is 1 at the angle 0. Because the centre
+    never slips, a radius that would underflow is replaced by the smallest normal float.
     """
     target = checked("angle", angle) / _twist_unit(poisson)
-    # Newton's method in ln c. D has the slope -E(k), between -pi/2 and -1, and is concave. So the
-    # iterates that start from the tangent at c = 1 approach the root from one side.
+    # Newton's method in ln c. As a function of ln c, D is concave and has the slope -E(k), between
+    # -pi/2 and -1. Therefore, iterates that start from the tangent at c = 1 approach the root from
+    # one side.
     log_c = -2 / np.pi * target
     for _ in range(30):
         slope = scipy.special.ellipe(-np.expm1(2 * log_c))
         change = (_D_of_log(log_c) - target) / slope
         log_c = np.minimum(log_c + change, 0.0)
         if np.all(np.abs(change) <= 1e-8 * np.abs(log_c)):
-            break  # the error of the next iterate is the square of this one
+            break  # convergence is quadratic
     return np.maximum(np.exp(log_c), np.finfo(float).tiny)
 
 
 def bore_angle(amplitude: Numbers, poisson: float = 0.0) -> Numbers:
-    """Angle for a bore amplitude, phi0 = phi~ phi_lk(1/2) (Eq 27).
+    """Convert a bore amplitude to an angle, phi0 = phi~ phi_lk(1/2) (Eq 27).
 
     Raises ValueError unless amplitude >= 0 and 0 <= poisson <= 0.5; the arguments are broadcast.
     Returns an angle in u_lim/a.
@@ -157,7 +164,8 @@ def bore_angle(amplitude: Numbers, poisson: float = 0.0) -> Numbers:
 
 
 def bore_amplitude(angle: Numbers, poisson: float = 0.0) -> Numbers:
-    """Bore amplitude for an angle, phi~ = phi0 / phi_lk(1/2) (Eq 27, inverse of bore_angle).
+    """Convert an angle to a bore amplitude, phi~ = phi0 / phi_lk(1/2) (Eq 27, inverse of
+    bore_angle).
 
     Raises ValueError unless angle >= 0 in u_lim/a and 0 <= poisson <= 0.5; the arguments are
     broadcast. Returns a dimensionless array.
@@ -166,15 +174,16 @@ def bore_amplitude(angle: Numbers, poisson: float = 0.0) -> Numbers:
 
 
 def _twist_unit(poisson: Numbers) -> np.ndarray:
-    """Factor between D and the angle: torsion depends on G, but u_lim depends on G* = 4G/(2-nu)."""
+    """Return the ratio of the angle to D: torsion depends on G, but u_lim depends on G* =
+    4G/(2-nu)."""
     return 4 / (np.pi * (2 - checked("poisson", poisson, high=0.5)))
 
 
 def mindlin_force(u: Numbers) -> Numbers:
-    """Tangential force divided by mu*F_z after the displacement u from rest, 1 - (1 - u)^(3/2).
+    """Return the tangential force after the displacement u from rest, 1 - (1 - u)^(3/2).
 
-    Raises ValueError unless u >= 0 in u_lim; the argument can have any shape. The result is
-    dimensionless and 1 for u >= 1. This is the formula of Cattaneo and Mindlin.
+    This is the formula of Cattaneo and Mindlin. The force is divided by mu*F_z, and is 1 for u >=
+    1. Raises ValueError unless u >= 0 in u_lim; the argument can have any shape.
     """
     u = np.minimum(checked("u", u), 1.0)
     with np.errstate(divide="ignore"):  # ln 0 = -inf gives the force 1 of full sliding
@@ -182,7 +191,7 @@ def mindlin_force(u: Numbers) -> Numbers:
 
 
 def mindlin_stick_radius(u: Numbers) -> Numbers:
-    """Stick radius after the displacement u from rest, sqrt(1 - u) (Eq 8).
+    """Return the stick radius after the displacement u from rest, sqrt(1 - u) (Eq 8).
 
     Raises ValueError unless u >= 0 in u_lim; the argument can have any shape. The radius is in
     units of a, and 0 for u >= 1.
@@ -191,36 +200,36 @@ def mindlin_stick_radius(u: Numbers) -> Numbers:
 
 
 def mindlin_traction(r: Numbers, u: Numbers) -> Numbers:
-    """Shear traction at radius r after the displacement u from rest (Cattaneo and Mindlin).
+    """Return the shear traction at the radius r after the displacement u from rest.
 
-    It is g - g_c in the stick zone and g outside. Here g_c = 3/(2 pi) sqrt(c^2 - r^2) is the bound
-    of an inner contact of radius c = sqrt(1 - u). The formula is exact for nu = 0. Raises
-    ValueError unless r >= 0 and u >= 0 in u_lim; the arguments are broadcast. The result is
-    dimensionless.
+    The traction is g - g_c in the stick zone and g outside (Cattaneo and Mindlin). Here g_c = 3/(2
+    pi) sqrt(c^2 - r^2) is the friction bound of an inner contact of radius c = sqrt(1 - u). The
+    formula is exact for nu = 0. Raises ValueError unless r >= 0 and u >= 0 in u_lim; the arguments
+    are broadcast. The result is dimensionless.
     """
     r, u = np.broadcast_arrays(checked("r", r), np.minimum(checked("u", u), 1.0))
     gap = 1 - u - r * r
     sticks = gap > 0
-    # The difference of two roots, in a form that loses no digits at small u.
+    # This form of the difference of two roots loses no digits at small u.
     roots = np.sqrt(np.where(sticks, gap + u, 1.0)) + np.sqrt(np.where(sticks, gap, 0.0))
     return np.where(sticks, 1.5 / np.pi * u / roots, friction_bound(r))[()]
 
 
 def lubkin_share(r: Numbers, stick_radius: Numbers) -> Numbers:
-    """Fraction tau/g of the friction bound that pure torsion from rest uses at radius r.
+    """Return the ratio tau/g of traction to friction bound at the radius r in pure torsion from
+    rest.
 
     Raises ValueError unless r >= 0 and 0 <= stick_radius <= 1; the arguments are broadcast. The
-    stick radius is 0 if all points slip. The fraction is between 0 and 1, equals 1 outside the
-    stick radius, and is independent of Poisson's ratio. The formula is the closed form of a
-    superposition of punches with the radii s from c to 1, each rotated by -d phi_lk(s) (Lubkin
-    1951).
+    stick radius is 0 if all points slip. The ratio is between 0 and 1, equals 1 outside the stick
+    radius, and is independent of Poisson's ratio. The formula is the closed form of a superposition
+    of punches with the radii s from c to 1, each rotated by -d phi_lk(s) (Lubkin 1951).
     """
     r, c = np.broadcast_arrays(checked("r", r), checked("stick_radius", stick_radius, high=1.0))
     sticks = r < c
     c = np.where(sticks, c, 0.5)
     rho = np.where(sticks, r, 0.0) / c
-    # The sum is 1 - Lambda0 (Heuman), with incomplete integrals of modulus c at the angle
-    # arcsin(rho). Of the two complementary angles, this one is exact at r = 0.
+    # The ratio is 1 - Lambda0 (Heuman), with incomplete integrals of the modulus c at the angle
+    # arcsin(rho). Of the two complementary angles, arcsin(rho) is the one that is exact at r = 0.
     cos2, delta2 = (1 - rho) * (1 + rho), (1 - c * rho) * (1 + c * rho)
     first = rho * scipy.special.elliprf(cos2, delta2, 1.0)
     rest = rho**3 / 3 * scipy.special.elliprd(cos2, delta2, 1.0) + rho * np.sqrt(cos2 / delta2)
@@ -231,7 +240,7 @@ def lubkin_share(r: Numbers, stick_radius: Numbers) -> Numbers:
 
 
 def lubkin_traction(r: Numbers, stick_radius: Numbers) -> Numbers:
-    """Circumferential traction at radius r in pure torsion from rest.
+    """Return the circumferential traction at the radius r in pure torsion from rest.
 
     Raises ValueError unless r >= 0 and 0 <= stick_radius <= 1; the arguments are broadcast. The
     result is dimensionless and equals the friction bound in the slip annulus. See lubkin_share.
@@ -240,16 +249,17 @@ def lubkin_traction(r: Numbers, stick_radius: Numbers) -> Numbers:
 
 
 def lubkin_torque(stick_radius: Numbers) -> Numbers:
-    """Torque of pure torsion from rest as a function of the stick radius.
+    """Return the torque of pure torsion from rest as a function of the stick radius.
 
     Raises ValueError unless 0 <= stick_radius <= 1; the argument can have any shape. The torque is
-    in mu*F_z*a. It is 0 at stick radius 1 and TORQUE_FULL_SLIP at 0, independent of Poisson's
-    ratio. It is the integral of lubkin_traction, and also the sum of the torques (16/3) G s^3 (-d
-    phi_lk(s)) of punches from s = c to 1 (Lubkin 1951).
+    in mu*F_z*a. It is 0 at the stick radius 1 and TORQUE_FULL_SLIP at the stick radius 0,
+    independent of Poisson's ratio. The torque is the integral of lubkin_traction, and equals the
+    sum of the torques (16/3) G s^3 (-d phi_lk(s)) of punches with radii from s = c to 1 (Lubkin
+    1951).
     """
     c = checked("stick_radius", stick_radius, high=1.0)[..., None]
-    # With dD/ds = -E(k)/s the integrand is s^2 E(k). After s = t^2 its only singularity, s^4 ln s
-    # at 0, is weak enough for a fixed Gauss rule.
+    # With dD/ds = -E(k)/s, the integrand is s^2 E(k). After the substitution s = t^2, its only
+    # singularity, s^4 ln s at 0, is weak enough for a fixed Gauss rule.
     start = np.sqrt(c)
     length = (1 - c) / (1 + start)
     nodes, weights = unit_rule(48)

@@ -1,11 +1,12 @@
-"""Formulas for any axisymmetric indenter or pressure, by quadrature.
+"""Formulas for any axisymmetric indenter or pressure, evaluated by quadrature.
 
 The static limits and the torsion of an indenter are accurate to about 1e-8. The limit for
-transverse oscillation applies at Poisson's ratio 0, the limit for bore at any ratio. For a sphere,
-they agree with the closed forms of `paper`, which are faster. Quantities are dimensionless as in
-`paper`.
+transverse oscillation applies to Poisson's ratio 0, and the limit for bore applies to any ratio.
+For a sphere, both agree with the closed forms of `paper`, which are faster. Quantities are
+dimensionless as in `paper`.
 
-Eqs 9, 17 and 18 of the paper, for any axisymmetric pressure, are evaluated by adaptive quadrature.
+Eqs 9, 17 and 18 of the paper apply to any axisymmetric pressure. They are evaluated by adaptive
+quadrature.
 """
 
 from __future__ import annotations
@@ -24,9 +25,9 @@ SMALLEST_STICK_RADIUS = 1e-6
 
 
 def static_transverse(pressure: IndenterPressure, amplitude: float) -> float:
-    """Static friction under transverse oscillation for v -> 0 and nu = 0.
+    """Compute the static friction under transverse oscillation, for v -> 0 and nu = 0.
 
-    It is the integral of sqrt(g^2 - (g - g_c)^2) over the stick zone, see
+    The static friction is the integral of sqrt(g^2 - (g - g_c)^2) over the stick zone; see
     paper.static_limit_transverse.
 
     Parameters
@@ -39,7 +40,7 @@ def static_transverse(pressure: IndenterPressure, amplitude: float) -> float:
     Returns
     -------
     float
-        Friction divided by mu F_z, 0 to 1.
+        Friction divided by mu F_z, from 0 to 1.
     """
     if amplitude >= 1.0:
         return 0.0
@@ -53,7 +54,7 @@ def static_transverse(pressure: IndenterPressure, amplitude: float) -> float:
 
 
 def torsion_angle(pressure: IndenterPressure, stick_radius: float, poisson: float = 0.0) -> float:
-    """Angle of pure torsion from rest as a function of the stick radius (Eq 24 for a sphere).
+    """Compute the angle of pure torsion from rest for a stick radius (Eq 24 for a sphere).
 
     Torsion is a superposition of rotating flat punches. Abel's inversion gives
     phi = 1/(2 G) Integral_c^1 g / sqrt(r^2 - c^2) dr.
@@ -65,7 +66,7 @@ def torsion_angle(pressure: IndenterPressure, stick_radius: float, poisson: floa
     stick_radius : float
         Stick radius divided by the contact radius, above 0 and at most 1.
     poisson : float
-        Poisson's ratio, 0 to 0.5.
+        Poisson's ratio, from 0 to 0.5.
 
     Returns
     -------
@@ -73,14 +74,14 @@ def torsion_angle(pressure: IndenterPressure, stick_radius: float, poisson: floa
         Angle in u_lim / a.
     """
     end = np.arccosh(1.0 / stick_radius)
-    eta = end * np.sin(0.5 * np.pi * _NODES)  # the bound has a square-root edge
+    eta = end * np.sin(0.5 * np.pi * _NODES)  # the bound decreases like a square root at the edge
     step = end * 0.5 * np.pi * np.cos(0.5 * np.pi * _NODES) * _WEIGHTS
     bound = pressure.bound(np.minimum(stick_radius * np.cosh(eta), 1.0), 1.0)
     return 2.0 / ((2.0 - poisson) * pressure.G_star) * float(np.sum(step * bound))
 
 
 def torsion_stick_radius(pressure: IndenterPressure, angle: float, poisson: float = 0.0) -> float:
-    """Stick radius after pure torsion from rest, the inverse of torsion_angle.
+    """Compute the stick radius after pure torsion from rest (inverse of torsion_angle).
 
     Parameters
     ----------
@@ -89,7 +90,7 @@ def torsion_stick_radius(pressure: IndenterPressure, angle: float, poisson: floa
     angle : float
         Angle in u_lim / a, >= 0.
     poisson : float
-        Poisson's ratio, 0 to 0.5.
+        Poisson's ratio, from 0 to 0.5.
 
     Returns
     -------
@@ -97,7 +98,7 @@ def torsion_stick_radius(pressure: IndenterPressure, angle: float, poisson: floa
         Stick radius divided by the contact radius. Values below SMALLEST_STICK_RADIUS are replaced
         by 0.
     """
-    from scipy.optimize import brentq  # takes long to import
+    from scipy.optimize import brentq  # imported here, as this is slow
 
     if angle <= 0.0:
         return 1.0
@@ -110,7 +111,7 @@ def torsion_stick_radius(pressure: IndenterPressure, angle: float, poisson: floa
 
 
 def torsion_traction(pressure: IndenterPressure, r: np.ndarray, stick_radius: float) -> np.ndarray:
-    """Circumferential traction of pure torsion inside the stick circle.
+    """Compute the circumferential traction of pure torsion inside the stick circle.
 
     The superposition of rotating punches gives (2 r/pi) Integral g(t)/t d(theta) with
     t^2 = c^2 + (c^2 - r^2) tan^2 theta.
@@ -120,7 +121,7 @@ def torsion_traction(pressure: IndenterPressure, r: np.ndarray, stick_radius: fl
     pressure : pressure.Pressure
         Pressure of an axisymmetric indenter.
     r : array_like
-        Radii below the stick radius, divided by the contact radius, any shape.
+        Radii below the stick radius, divided by the contact radius, as an array of any shape.
     stick_radius : float
         Stick radius divided by the contact radius.
 
@@ -139,12 +140,12 @@ def torsion_traction(pressure: IndenterPressure, r: np.ndarray, stick_radius: fl
 
 
 def torsion_energy(pressure: IndenterPressure, angle: float, poisson: float = 0.0) -> float:
-    """Dissipated energy per period of an oscillating torsion without sliding.
+    """Compute the dissipated energy per period of an oscillating torsion without sliding.
 
-    By Masing's rules, it is 8 W - 4 T phi, with the work W of the first loading.  The torque T is
-    the sum of the torques (16/3) G s^3 (-d phi(s)) of punches of all radii s.  Integration by parts
-    gives 64 G Integral_c^1 s^2 phi(s) (phi(c) - phi(s)) ds.  For a sphere, this is the formula of
-    Lubkin and Deresiewicz.
+    By Masing's rules, the energy is 8 W - 4 T phi, where W is the work of the first loading. The
+    torque T is the sum of the torques (16/3) G s^3 (-d phi(s)) of punches of all radii s.
+    Integration by parts gives 64 G Integral_c^1 s^2 phi(s) (phi(c) - phi(s)) ds.  For a sphere,
+    this result is the formula of Lubkin and Deresiewicz.
 
     Parameters
     ----------
@@ -153,7 +154,7 @@ def torsion_energy(pressure: IndenterPressure, angle: float, poisson: float = 0.
     angle : float
         Amplitude of the rotation in u_lim / a, >= 0.
     poisson : float
-        Poisson's ratio, 0 to 0.5.
+        Poisson's ratio, from 0 to 0.5.
 
     Returns
     -------
@@ -164,7 +165,7 @@ def torsion_energy(pressure: IndenterPressure, angle: float, poisson: float = 0.
     middle = min(max(_kink(pressure), c), 1.0)
     total = 0.0
     for start, end in ((c, middle), (middle, 1.0)):
-        half = 0.5 * np.pi * _NODES  # the angle has square-root ends
+        half = 0.5 * np.pi * _NODES  # the angle behaves like a square root at both ends
         radii = start + (end - start) * np.sin(half) ** 2
         step = 0.5 * np.pi * (end - start) * np.sin(2.0 * half) * _WEIGHTS
         turned = np.array([torsion_angle(pressure, s, poisson) for s in radii])
@@ -173,9 +174,9 @@ def torsion_energy(pressure: IndenterPressure, angle: float, poisson: float = 0.
 
 
 def static_bore(pressure: IndenterPressure, angle: float, poisson: float = 0.0) -> float:
-    """Static friction under oscillating bore for v -> 0.
+    """Compute the static friction under oscillating bore, for v -> 0.
 
-    It is 4 Integral_0^c g arccos(tau / g) r dr, see paper.static_limit_bore.
+    The static friction is 4 Integral_0^c g arccos(tau / g) r dr; see paper.static_limit_bore.
 
     Parameters
     ----------
@@ -184,12 +185,12 @@ def static_bore(pressure: IndenterPressure, angle: float, poisson: float = 0.0) 
     angle : float
         Amplitude of the rotation in u_lim / a, >= 0.
     poisson : float
-        Poisson's ratio, 0 to 0.5.
+        Poisson's ratio, from 0 to 0.5.
 
     Returns
     -------
     float
-        Friction divided by mu F_z, 0 to 1.
+        Friction divided by mu F_z, from 0 to 1.
     """
     c = torsion_stick_radius(pressure, angle, poisson)
     if c in (0.0, 1.0):
@@ -204,7 +205,7 @@ def static_bore(pressure: IndenterPressure, angle: float, poisson: float = 0.0) 
 
 
 def _kink(pressure: IndenterPressure) -> float:
-    """Radius of an indenter's flat end, where the pressure has a kink; 0 if there is no flat
+    """Return the radius of an indenter's flat end, where the pressure has a kink; 0 without a flat
     end."""
     return float(pressure.radius(1e-300))
 
@@ -212,8 +213,10 @@ def _kink(pressure: IndenterPressure) -> float:
 def _over_the_circle(
     function: Callable[[np.ndarray], np.ndarray], radius: float, kink: float
 ) -> float:
-    """Integrate a function of the radius over a circle. The function behaves like a square root at
-    the edge."""
+    """Integrate a function of the radius over a circle.
+
+    The function should behave like a square root at the edge.
+    """
     total = 0.0
     for start, end in ((0.0, min(kink, radius)), (min(kink, radius), radius)):
         r = end - (end - start) * _NODES**4
@@ -223,14 +226,15 @@ def _over_the_circle(
 
 
 def static_stick_zone_of(pressure: Callable[[float], float], stick_radius: Numbers) -> Numbers:
-    """Fraction of the load inside the stick radius (Eq 9).
+    """Compute the fraction of the load inside the stick radius (Eq 9).
 
     Parameters
     ----------
     pressure : callable
-        Pressure, in any unit, as a function of the radius divided by the contact radius (0 to 1).
+        Function that returns the pressure, in any unit, for a radius divided by the contact radius
+        (0 to 1).
     stick_radius : array_like
-        Stick radius divided by the contact radius, 0 to 1, any shape.
+        Stick radius divided by the contact radius, from 0 to 1, as an array of any shape.
 
     Raises
     ------
@@ -243,20 +247,20 @@ def static_stick_zone_of(pressure: Callable[[float], float], stick_radius: Numbe
 
 
 def bore_of(pressure: Callable[[float], float], velocity: Numbers) -> tuple[Numbers, Numbers]:
-    """Force and torque of the steady continuous bore (Eqs 17 and 18).
+    """Compute the force and the torque of the steady continuous bore (Eqs 17 and 18).
 
     Parameters
     ----------
     pressure : callable
-        Pressure, in any unit, as a function of the radius divided by the contact radius (0 to 1).
+        Function that returns the pressure, in any unit, for a radius divided by the contact radius
+        (0 to 1).
     velocity : array_like
-        Velocity divided by omega a, above 0, any shape.
+        Velocity divided by omega a, above 0, as an array of any shape.
 
     Returns
     -------
     forward, torque : np.ndarray
-        Forward friction and torque under this pressure, normalised as in paper.bore_forward and
-        paper.bore_torque.
+        Forward friction and torque, normalised as in paper.bore_forward and paper.bore_torque.
 
     Raises
     ------
@@ -292,7 +296,7 @@ def _total(pressure: Callable[[float], float], power: int) -> float:
 
 
 def _integral(function: Callable[[float], float], start: float, end: float) -> float:
-    from scipy.integrate import quad  # takes a third of a second to import
+    from scipy.integrate import quad  # the import takes a third of a second
 
     return quad(function, start, end, epsabs=0.0, epsrel=1e-11, limit=200)[0]
 

@@ -1,27 +1,29 @@
-"""Masing's rules: friction under longitudinal oscillation in closed form, and the Iwan model.
+"""Masing's rules: closed-form friction under longitudinal oscillation, and the Iwan model.
 
 If the sphere moves along a line, the tangential force depends only on the history of its
-displacement. The force of the first loading is F(d), with d in u_lim and F in mu F_z. For a sphere
-it is 1 - (1 - d)^(3/2) (Cattaneo and Mindlin). After each turn, the force follows the same curve at
-twice the scale until it reaches the previous turn. Then it follows the older branch. This is exact
-for Poisson's ratio 0. Quantities are dimensionless as in `paper`.
+displacement. During the first loading, the force is F(d), with d in u_lim and F in mu F_z. For a
+sphere, it is 1 - (1 - d)^(3/2) (Cattaneo and Mindlin). After each turning point, the force follows
+the same curve at twice the scale until the previous turning point is reached. Then it continues on
+the older branch. These rules are exact for Poisson's ratio 0. Quantities are dimensionless as in
+`paper`.
 
-An Iwan model consists of parallel Jenkins elements, each a spring in series with a slider.  Let F
-be the force of the first loading along one line at nu = 0.  It is 1 minus the load at the
-indentation depth 1 - u.  Its slope is 2 G* c, where c is the contact radius at this depth.  If an
-Iwan model has sliders with the density rho over the slip displacement phi, its slope is
-Integral_u^1 rho dphi.  So
+An Iwan model consists of parallel Jenkins elements, each of which is a spring in series with a
+slider. Let F(u) be the force of the first loading along one line at nu = 0. It is 1 minus the load
+at the indentation depth 1 - u. The slope of F is 2 G* c, where c is the contact radius at this
+depth. In an Iwan model whose elements have the stiffness rho dphi for slip displacements from phi
+to phi + dphi, the slope is Integral_u^1 rho dphi. Hence
 
     rho(phi) = -F''(phi) = 2 G* / h'(c)    at the depth h(c) = 1 - phi,
 
 which is 3/4 (1 - phi)^(-1/2) for a sphere.  The model is exact for every history of the
-displacement, because the model and the contact follow Masing's rules.  Under a punch, the sliders
+displacement, because both the model and the contact follow Masing's rules. For a punch, the sliders
 below the flat end slip together at phi = 1.
 
-The discrete model divides the contact radius into intervals.  In each interval, one element
-replaces all sliders.  It has their total stiffness and their total limit force.  So the model has
-the initial stiffness of the contact and the correct force at full slip.  The first loading of the
-model consists of tangents of F at the ends of the intervals, so the force is never below F.
+In the discrete model, the contact radius is divided into intervals. One element replaces all
+elements of an interval, and has the sum of their stiffnesses and the sum of their limit forces.
+Hence the model has the initial stiffness of the contact and the correct force at full slip. In the
+first loading, the force of the model follows tangents of F at the ends of the intervals, so it is
+never below F.
 """
 
 from __future__ import annotations
@@ -41,14 +43,18 @@ _HALVINGS = 60
 
 @cache
 def clustered_rule(count: int) -> tuple[np.ndarray, np.ndarray]:
-    """Gauss rule (nodes, weights) on 0..1, clustered at both ends, for half-integer powers."""
+    """Return a Gauss rule (nodes, weights) on 0..1, clustered at both ends, for half-integer
+    powers."""
     nodes, weights = np.polynomial.legendre.leggauss(count)
     angles = 0.25 * np.pi * (nodes + 1.0)
     return np.sin(angles) ** 2, 0.25 * np.pi * weights * np.sin(2.0 * angles)
 
 
 def last_true(condition: Function, low: np.ndarray, high: np.ndarray) -> np.ndarray:
-    """Points between low and high where a condition changes from true to false, shape (n,)."""
+    """Return the points between low and high at which a condition changes from true to false.
+
+    All arrays have the shape (n,).
+    """
     low, high = low.copy(), high.copy()
     for _ in range(_HALVINGS):
         middle = 0.5 * (low + high)
@@ -60,14 +66,14 @@ def last_true(condition: Function, low: np.ndarray, high: np.ndarray) -> np.ndar
 def longitudinal(
     velocity: Numbers, amplitude: Numbers, curve: Callable = mindlin_force
 ) -> np.ndarray:
-    """Mean forward friction under an oscillation along the direction of sliding, nu = 0.
+    """Compute the mean friction at nu = 0 under an oscillation along the direction of sliding.
 
     Parameters
     ----------
     velocity : array_like
         Velocity divided by omega u_lim, >= 0. The value 0 gives the static limit.
     amplitude : array_like
-        Amplitude in u_lim, >= 0. It is broadcast with the velocity.
+        Amplitude in u_lim, >= 0. It is broadcast against the velocity.
     curve : callable
         Force divided by mu F_z as a function of the displacement from rest. The default is the
         curve of a sphere.
@@ -75,8 +81,8 @@ def longitudinal(
     Returns
     -------
     np.ndarray
-        Friction divided by mu F_z, by quadrature with an error of about 1e-10. It is 1 if the
-        motion never turns back (velocity >= amplitude), and 1 - curve(amplitude) at velocity 0.
+        Friction divided by mu F_z, computed by quadrature with an error of about 1e-10. It is 1 if
+        the motion never turns back (velocity >= amplitude), and 1 - curve(amplitude) at velocity 0.
 
     Raises
     ------
@@ -95,10 +101,11 @@ def longitudinal(
 def longitudinal_energy(
     velocity: float, amplitude: float, curve: Callable = mindlin_force
 ) -> float:
-    """Dissipated energy per period of the motion in `longitudinal`, divided by mu F_z u_lim.
+    """Compute the dissipated energy per period of the motion in `longitudinal`.
 
-    The sphere slides forward over its net advance, and the backward and forward strokes form a
-    loop. The arguments have the same meaning as for `longitudinal`, but must be floats.
+    The energy is divided by mu F_z u_lim. The sphere slides forward over the net advance per
+    period, and the backward and forward strokes form a loop. The arguments have the same meaning as
+    for `longitudinal`, but must be floats.
     """
     stroke = 0.0
     if velocity < amplitude:
@@ -108,15 +115,15 @@ def longitudinal_energy(
 
 
 def loop_energy(amplitude: Numbers, curve: Callable = mindlin_force) -> Numbers:
-    """Dissipated energy of a loop of force against displacement, 8 W(A) - 4 A F(A).
+    """Compute the dissipated energy of a force-displacement loop, 8 W(A) - 4 A F(A).
 
-    W is the work of the first loading, the integral of the curve F from 0 to the amplitude A. For a
-    sphere, this is the formula of Mindlin and Deresiewicz.
+    W is the work of the first loading, that is, the integral of the curve F from 0 to the amplitude
+    A. For a sphere, the result is the formula of Mindlin and Deresiewicz.
 
     Parameters
     ----------
     amplitude : array_like
-        Half the distance between the turns, in u_lim, >= 0.
+        Half the distance between the turning points, in u_lim, >= 0.
     curve : callable
         Force divided by mu F_z as a function of the displacement from rest.
 
@@ -129,25 +136,26 @@ def loop_energy(amplitude: Numbers, curve: Callable = mindlin_force) -> Numbers:
     partial = np.minimum(amplitude, 1.0)
     force = curve(partial)
 
-    def rise(u: np.ndarray) -> np.ndarray:  # no cancellation in the sum 8 W - 4 A F
+    def rise(u: np.ndarray) -> np.ndarray:  # avoids cancellation in 8 W - 4 A F
         return curve(u) - u / np.where(partial > 0.0, partial, 1.0) * force
 
-    # beyond full sliding, both strokes add their length
+    # beyond full sliding, both strokes add the sliding distance
     loop = 8.0 * _integral(rise, np.zeros_like(partial), partial)
     return (loop + 4.0 * force * (amplitude - partial))[()]
 
 
 def _mean(v: np.ndarray, x: np.ndarray, curve: Function) -> np.ndarray:
-    """Mean force for 0 < v < x, where the motion turns back; shape (n,)."""
+    """Return the mean force for 0 < v < x, where the motion turns back, as an array of shape
+    (n,)."""
 
     def travel(phase: np.ndarray) -> np.ndarray:
         return v * phase + x * np.sin(phase)
 
-    back = np.arccos(-v / x)  # phases of the two turns: back, and forth
+    back = np.arccos(-v / x)  # phases of the backward and the forward turn
     forth = 2.0 * np.pi - back
     end = back + 2.0 * np.pi
     stroke = travel(back) - travel(forth)
-    # The loop closes when the sphere returns to the position of its last backward turn.
+    # The loop closes when the sphere returns to the position of the last backward turn.
     closed = last_true(lambda phase: travel(phase) < travel(back), forth, end)
 
     def backward(phase: np.ndarray) -> np.ndarray:
@@ -164,7 +172,8 @@ def _mean(v: np.ndarray, x: np.ndarray, curve: Function) -> np.ndarray:
 
 
 def _turned(curve: Function, travel: np.ndarray) -> np.ndarray:
-    """Change of the force since a turn. It is the curve of the first loading at twice the scale."""
+    """Return the change of force since a turning point: the first loading curve at twice the
+    scale."""
     return 2.0 * curve(np.maximum(0.5 * travel, 0.0))
 
 
@@ -176,18 +185,18 @@ def _integral(function: Function, start: np.ndarray, end: np.ndarray) -> np.ndar
 
 
 _GRID = 1.0 - np.linspace(0.0, 1.0, 4097)
-"""Contact radii in the table from which the ends of the intervals are interpolated."""
+"""Contact radii in the table that is used to interpolate the ends of the intervals."""
 LOOP_ERRORS = 3.0
-"""Largest error on loops, divided by the largest error e on the first loading.  A branch of a loop
-is F(u_max) - 2 F(x) + 2 F(y), and every F has an error from 0 to e."""
+"""Largest error on loops, divided by the largest error e on the first loading. The force on a
+branch of a loop is F(u_max) - 2 F(x) + 2 F(y), where each value of F has an error from 0 to e."""
 
 
 @dataclass(frozen=True, eq=False)
 class Iwan:
     """Parallel Jenkins elements whose forces add up to the tangential force.
 
-    In dimensionless form, displacements are divided by u_lim, forces by mu F_z and stiffnesses by
-    mu F_z / u_lim.  `microslip.predict_iwan` uses m, N and N/m.
+    In the dimensionless form, displacements are divided by u_lim, forces by mu F_z and stiffnesses
+    by mu F_z / u_lim. `microslip.predict_iwan` returns a model in m, N and N/m.
 
     Attributes
     ----------
@@ -199,8 +208,9 @@ class Iwan:
         Largest error of the force on the first loading near the slip displacement of each element,
         due to the finite number of elements.
     poisson_error : float
-        Largest difference in force from the full contact due to Poisson's ratio, on a first loading
-        and on a loop between full slip in both directions.  It is 0 for nu = 0.
+        Largest difference in force between the model and the full contact that is due to Poisson's
+        ratio, on an initial loading and on a loop between full slip in both directions. It is 0 for
+        nu = 0.
     """
 
     stiffness: np.ndarray
@@ -210,30 +220,32 @@ class Iwan:
 
     @property
     def error(self) -> float:
-        """Error of the force on a first loading and on loops between any two displacements.
+        """Error of the force on an initial loading and on loops between any two displacements.
 
-        It is never above the error on any path, which is the smaller one with a single element.
+        It is never above `error_on_any_path`, which is the smaller estimate if there is a single
+        element.
         """
         on_loops = LOOP_ERRORS * float(self.force_error.max()) + self.poisson_error
         return min(on_loops, self.error_on_any_path)
 
     @property
     def error_on_any_path(self) -> float:
-        """Error of the force on any path, which can have many nested loops.
+        """Error of the force on any path, including paths with many nested loops.
 
-        The force of a slider is a Lipschitz function of its slip displacement, with the
-        constant 1.  Hence the error is at most the total variation of the error on the first
+        The force of a slider is a Lipschitz function of the slip displacement, with the constant 1.
+        Hence the error on any path is at most the total variation of the error on the first
         loading.
         """
         return 2.0 * float(self.force_error.sum()) + self.poisson_error
 
     def force(self, displacement: np.ndarray) -> np.ndarray:
-        """Force along a path that begins at the displacement 0, without tangential force.
+        """Compute the force along a path that begins at zero displacement and zero tangential
+        force.
 
         Parameters
         ----------
         displacement : array_like, shape (rows,)
-            Displacement at each row.  It changes linearly between rows.
+            Displacement at each row; between rows, it changes linearly.
 
         Returns
         -------
@@ -261,7 +273,8 @@ class Iwan:
     def scaled(self, force: float, displacement: float) -> Iwan:
         """Return a copy in other units.
 
-        force, displacement: the present units of force and displacement, in the new units.
+        force, displacement: the present units of force and displacement, expressed in the new
+        units.
         """
         return Iwan(
             self.stiffness * (force / displacement),
@@ -272,9 +285,9 @@ class Iwan:
 
 
 def with_elements(pressure: IndenterPressure, count: int) -> Iwan:
-    """Iwan model of an axisymmetric indenter at nu = 0 with `count` elements.
+    """Create an Iwan model of an axisymmetric indenter at nu = 0 with `count` elements.
 
-    The intervals have nearly equal errors.  An interval with the stiffness k and the width w in
+    All intervals have nearly equal errors.  An interval with the stiffness k and the width w in
     slip displacement has the error k w / 8, so sqrt(k w) is divided into equal parts.  The flat end
     of a punch is a separate interval.
     """
@@ -289,14 +302,16 @@ def with_elements(pressure: IndenterPressure, count: int) -> Iwan:
     slip, slope = 1.0 - pressure.depth(c), 2.0 * pressure.G_star * c
     force = pressure.loading(slip)
     stiffness, limit = -np.diff(slope), np.diff(force - slip * slope)
-    own = limit / stiffness  # slip displacement of an element
+    own = limit / stiffness  # slip displacement of each element
     tangents = force[:-1] + slope[:-1] * (own - slip[:-1])
     return Iwan(stiffness, limit, np.maximum(tangents - pressure.loading(own), 0.0))
 
 
 def with_tolerance(pressure: IndenterPressure, tolerance: float) -> Iwan:
-    """Create an Iwan model for nu = 0 whose `error` is at most the tolerance, with almost as few
-    elements as possible."""
+    """Create an Iwan model for nu = 0 whose `error` is at most the tolerance.
+
+    The number of elements is close to the smallest possible number.
+    """
     model = with_elements(pressure, 1)
     while model.error > tolerance:  # the error is proportional to count^-2
         count = len(model.stiffness)

@@ -1,22 +1,22 @@
-"""Friction of forward sliding under an oscillating normal load or indentation, in closed form.
+"""Closed-form friction of forward sliding under an oscillating normal load or indentation.
 
 A contact that moves along a line exerts the same force as independent springs at |x| < c(d) (Popov,
 Popov and Popov, Mater. Res. 4, 2017). Here d is the indentation divided by its mean, and c is the
-contact radius. Let h(x) be the indentation at which the contact radius is x; h(x) = x^2 for a
-sphere. A spring at x yields at the stretch d - h(x) in u_lim. The stretch of a spring that came
-into contact at the time T is
+contact radius. Let h(x) be the indentation at which the contact radius is x; for a sphere, h(x) =
+x^2. A spring at x slides at the stretch d - h(x) in u_lim. The stretch of a spring that came into
+contact at the time T is
 
     min over tau from T to t of  v (t - tau) + d(tau) - h(x),
 
-because at every tau the stretch is at most the yield stretch. Let phi(t) = d(t) - v t. Below the
-yield stretch, the stretch at any x is phi(t) - min phi. The mean over the springs is an integral
-over T. This is exact for Poisson's ratio 0. Quantities are dimensionless, in the working units of
-an indenter's pressure.Pressure.
+because at every time tau, the stretch is at most the stretch at which the spring slides. With
+phi(t) = d(t) - v t, the stretch at any x is smaller than this limit by phi(t) - min phi. The mean
+over the springs is an integral over T. The result is exact for Poisson's ratio 0. Quantities are
+dimensionless, in the working units of an indenter's pressure.Pressure.
 
 A contact of constant stiffness under a sinusoidal indentation, for example a flat end, acts as a
-single spring. M. Popov (Front. Mech. Eng. 6:69, 2020) gives two empirical formulas, Eqs 37 and 38.
-Both depend on the ratio of the velocity to the amplitude. If the ratio is above 1, the contact
-slides all the time.
+single spring. M. Popov (Front. Mech. Eng. 6:69, 2020) gives two empirical formulas for its
+friction, Eqs 37 and 38. Both depend on the ratio of velocity to amplitude. If this ratio is above
+1, the contact slides all the time.
 """
 
 from __future__ import annotations
@@ -31,18 +31,18 @@ from microslip.theory.hertz import IndenterPressure
 from microslip.theory.masing import clustered_rule, last_true
 
 _NODES = 64
-"""Number of nodes of a Gauss rule."""
+"""Number of nodes of each Gauss rule."""
 _SAMPLES = 2001
 """Number of points in half a period at which the sign of phi' is computed."""
 
 
 def mean_load(amplitude: float, by_load: bool, pressure: IndenterPressure) -> float:
-    """Mean normal load divided by the load at the mean indentation or load.
+    """Compute the mean normal load, divided by the load without oscillation.
 
     Parameters
     ----------
     amplitude : float
-        Amplitude of the load or of the indentation, divided by the mean, >= 0.
+        Amplitude of the load or of the indentation, divided by the mean value, >= 0.
     by_load : bool
         True if the load oscillates, False if the indentation oscillates.
     pressure : pressure.Pressure
@@ -52,14 +52,15 @@ def mean_load(amplitude: float, by_load: bool, pressure: IndenterPressure) -> fl
     loss = np.pi - motion.touch
     if by_load:
         return float(loss + amplitude * np.sin(loss)) / np.pi
-    # near loss of contact the load has the power 3/2, so the nodes are clustered twice
+    # near the loss of contact, the load behaves like a power of 3/2, so the nodes are clustered
+    # twice
     nodes, weights = clustered_rule(_NODES)
     t = np.pi - loss * nodes**2
     return float(loss * (2.0 * nodes * weights) @ pressure.total(motion.depth(t))) / np.pi
 
 
 def friction(velocity: float, amplitude: float, by_load: bool, pressure: IndenterPressure) -> float:
-    """Mean forward friction divided by mu times the mean normal load.
+    """Compute the mean forward friction, divided by mu times the mean normal load.
 
     Parameters
     ----------
@@ -81,8 +82,8 @@ def friction(velocity: float, amplitude: float, by_load: bool, pressure: Indente
     for i, (low, high) in enumerate(rises):
         later = rises[i + 1 :]
         start, end = (float(pressure.radius(motion.depth(np.array(t)))) for t in (low, high))
-        # springs that are always in contact, or come into contact while phi falls, have the same
-        # phi - min phi as springs that come into contact at the next minimum of phi
+        # springs that are always in contact, or come into contact while phi decreases, have the
+        # same phi - min phi as springs that come into contact at the next minimum of phi
         lacking += (start - before) * motion.lack(np.array([low]), high, later)[0]
         for one, other in pairwise([start, *motion.kinks(low, high, later), end]):
             width = other - one
@@ -110,7 +111,7 @@ class _Motion:
         return self.depth(t) - self.velocity * t
 
     def touched(self, radius: np.ndarray) -> np.ndarray:
-        """Time at which the growing contact has a given radius."""
+        """Return the time at which the growing contact has a given radius."""
         load = self.pressure.load(radius, radius)
         height = load if self.by_load else self.pressure.depth(radius)
         return np.arccos(np.clip((1.0 - height) / self.amplitude, -1.0, 1.0))
@@ -118,13 +119,13 @@ class _Motion:
     def _climbs(self, t: np.ndarray) -> np.ndarray:
         """Return values that have the sign of phi' and are finite where contact begins."""
         height = np.maximum(1.0 - self.amplitude * np.cos(t), 0.0)
-        if self.by_load:  # the load grows with the present stiffness of the contact
+        if self.by_load:  # the rate of load is proportional to the present stiffness
             radius = self.pressure.radius(self.pressure.of_load(height))
             return self.amplitude * np.sin(t) - self.velocity * self.pressure.stiffness * radius
         return self.amplitude * np.sin(t) - self.velocity
 
     def rises(self) -> list[tuple[float, float]]:
-        """Time intervals (low, high) in which the contact grows and phi rises."""
+        """Return the time intervals (low, high) in which the contact grows and phi rises."""
         t = self.touch + (np.pi - self.touch) * np.sin(np.linspace(0.0, np.pi / 2, _SAMPLES)) ** 2
         up = self._climbs(t) > 0.0
         up[-1] = False
@@ -137,23 +138,26 @@ class _Motion:
     def kinks(
         self, low: float, high: float, later: Sequence[tuple[float, float]]
     ) -> Iterator[float]:
-        """Contact radii at which phi equals one of its later minima. The intervals `later` begin at
-        these minima."""
+        """Yield the contact radii at which phi equals one of its later minima.
+
+        The intervals `later` begin at these minima.
+        """
         for other, _ in later:
             if self.phi(np.array(low)) < self.phi(np.array(other)) < self.phi(np.array(high)):
                 at = self.reached(self.phi(np.array([other])), np.array([low]), np.array([high]))
                 yield float(self.pressure.radius(self.depth(at))[0])
 
     def reached(self, level: np.ndarray, low: np.ndarray, high: np.ndarray) -> np.ndarray:
-        """Time between low and high at which the rising phi reaches a level."""
+        """Return the time between low and high at which the rising phi reaches a level."""
         return last_true(lambda t: self.phi(t) < level, low, high)
 
     def lack(
         self, start: np.ndarray, high: float, later: Sequence[tuple[float, float]]
     ) -> np.ndarray:
-        """Integrals of phi - min phi over time, from the times `start`; shape (n,).
+        """Integrate phi - min phi over time, from each of the times `start`.
 
-        phi rises from `start` to `high`, and again in the intervals `later`.
+        The function phi rises from `start` to `high`, and again in the intervals `later`. The
+        result has the shape (n,).
         """
         level = self.phi(start)
         last = later[-1][1] if later else high
@@ -176,7 +180,7 @@ def sum_of_powers(amplitude: ArrayLike, velocity: ArrayLike) -> np.ndarray:
     Parameters
     ----------
     amplitude : array_like
-        Amplitude of the indentation divided by its mean, 0 to 1.
+        Amplitude of the indentation divided by its mean, from 0 to 1.
     velocity : array_like
         Velocity divided by omega u_lim, where omega is the angular frequency.
     """

@@ -5,12 +5,12 @@ Amplitudes are in u_lim (transverse, y~0) or in phi_lk(1/2) (bore, phi~). Veloci
 u_lim (transverse), a omega (continuous bore) or Omega phi0 a (oscillating bore). Forward is the
 direction of the macroscopic velocity, and lateral is perpendicular to it.
 
-Every function takes floats or arrays, broadcasts, and raises ValueError for an argument that is not
-finite or outside its range.
+Every function accepts floats or arrays and broadcasts them. It raises ValueError if an argument is
+not finite or is outside its range.
 
-The mean velocities of a contact under a constant force apply at large amplitude. At each instant, a
-massless rigid contact moves at the velocity at which friction balances the force. So its velocity
-is proportional to the velocity of the vibration.
+The mean velocities of a contact under a constant force apply to large amplitudes. At each instant,
+a massless rigid contact moves at the velocity at which friction balances the force. Therefore, its
+velocity is proportional to the velocity of the vibration.
 """
 
 from __future__ import annotations
@@ -25,14 +25,14 @@ from microslip.theory.hertz import Numbers, checked, unit_rule
 
 # Transverse oscillation
 def large_amplitude_transverse(velocity: Numbers, amplitude: Numbers) -> Numbers:
-    """Friction of a rigid slider under transverse oscillation, the large-amplitude limit (Eq 6).
+    """Return the friction of a rigid slider under transverse oscillation (Eq 6).
 
-    It is (2/pi) K(m = -(amplitude/velocity)^2). It is 1 at amplitude 0. At velocity 0, it is 0 for
-    every amplitude above 0. Raises ValueError unless velocity >= 0 and amplitude >= 0; the
-    arguments are broadcast.
+    This is the large-amplitude limit of the contact. The friction is (2/pi) K(m =
+    -(amplitude/velocity)^2). It is 1 at amplitude 0, and 0 at velocity 0 for every amplitude above
+    0. Raises ValueError unless velocity >= 0 and amplitude >= 0; the arguments are broadcast.
     """
     velocity, amplitude = checked("velocity", velocity), checked("amplitude", amplitude)
-    # K(-m) = q K'(q) with q = v/sqrt(v^2 + A^2), accurate for every ratio v/A.
+    # K(-m) = q K'(q) with q = v/sqrt(v^2 + A^2) is accurate for every ratio v/A.
     total = np.hypot(velocity, amplitude)
     q = np.where(amplitude > 0, velocity / np.where(total > 0, total, 1.0), 1.0)
     positive = np.maximum(q, np.finfo(float).tiny)
@@ -43,7 +43,7 @@ def large_amplitude_transverse(velocity: Numbers, amplitude: Numbers) -> Numbers
 
 
 def static_slider(amplitude: Numbers) -> Numbers:
-    """Static friction of a slider on a spring, sqrt(1 - amplitude^2) (Eq 7).
+    """Return the static friction of a slider on a spring, sqrt(1 - amplitude^2) (Eq 7).
 
     Raises ValueError unless amplitude >= 0; the argument can have any shape. The friction is 0 for
     amplitude >= 1.
@@ -53,7 +53,7 @@ def static_slider(amplitude: Numbers) -> Numbers:
 
 
 def stick_radius_transverse(amplitude: Numbers) -> Numbers:
-    """Stick radius under transverse oscillation alone, sqrt(1 - amplitude) (Eq 8).
+    """Return the stick radius under transverse oscillation alone, sqrt(1 - amplitude) (Eq 8).
 
     Raises ValueError unless amplitude >= 0; the argument can have any shape. The radius is 0 for
     amplitude >= 1.
@@ -62,7 +62,7 @@ def stick_radius_transverse(amplitude: Numbers) -> Numbers:
 
 
 def static_stick_zone(stick_radius: Numbers) -> Numbers:
-    """Fraction of the Hertz load inside the stick radius, 1 - (1 - c^2)^(3/2) (Eq 10).
+    """Return the fraction of the Hertz load inside the stick radius, 1 - (1 - c^2)^(3/2) (Eq 10).
 
     Raises ValueError unless 0 <= stick_radius <= 1; the argument can have any shape.
     """
@@ -70,17 +70,17 @@ def static_stick_zone(stick_radius: Numbers) -> Numbers:
 
 
 def static_transverse(amplitude: Numbers) -> Numbers:
-    """The paper's static friction under transverse oscillation, 1 - amplitude^(3/2) (Eq 11).
+    """Return the paper's static friction under transverse oscillation, 1 - amplitude^(3/2) (Eq 11).
 
     Raises ValueError unless amplitude >= 0; the argument can have any shape. The friction is 0 for
-    amplitude >= 1. The exact limit is static_limit_transverse.
+    amplitude >= 1. For the exact limit, see static_limit_transverse.
     """
     return 1 - np.minimum(checked("amplitude", amplitude), 1.0) ** 1.5
 
 
 # Continuous bore
 def rotation_centre(velocity: Numbers, time: Numbers = 0.0) -> tuple:
-    """Instantaneous centre of rotation (lateral, forward) in the frame at rest (Eq 14).
+    """Return the instantaneous centre of rotation (lateral, forward) in the frame at rest (Eq 14).
 
     Raises ValueError unless velocity >= 0 and time t~ = t v0/a >= 0; the arguments are broadcast.
     Returns the pair of arrays (-velocity, time). The paper writes t/(v0 a) in Eq 13, which is not
@@ -91,12 +91,13 @@ def rotation_centre(velocity: Numbers, time: Numbers = 0.0) -> tuple:
 
 
 def steady_bore_traction(lateral: Numbers, forward: Numbers, velocity: Numbers) -> tuple:
-    """Traction (lateral, forward) on a sphere in continuous bore that slips everywhere (Eq 15).
+    """Return the traction (lateral, forward) in continuous bore under full slip (Eq 15).
 
     The traction has the magnitude hertz.friction_bound(r) and is opposite to the local velocity
-    (-forward, velocity + lateral). It is 0 at the centre of rotation. One sign in the paper's Eq 15
-    is wrong. The mean lateral force is 0 (Eq 16). lateral, forward: position relative to the
-    contact centre. Raises ValueError unless velocity >= 0; the arguments are broadcast.
+    (-forward, velocity + lateral). It is 0 at the centre of rotation. The sign that is wrong in Eq
+    15 of the paper is corrected here. The mean lateral force is 0 (Eq 16). lateral, forward:
+    position relative to the contact centre. Raises ValueError unless velocity >= 0; the arguments
+    are broadcast.
     """
     lateral = checked("lateral", lateral, low=-np.inf)
     forward = checked("forward", forward, low=-np.inf)
@@ -107,11 +108,13 @@ def steady_bore_traction(lateral: Numbers, forward: Numbers, velocity: Numbers) 
 
 
 def forward_kernel(ratio: Numbers) -> Numbers:
-    """Kernel Q_Y: forward friction of a ring of radius ratio*velocity, divided by its bound (Eq
-    19).
+    """Return the kernel Q_Y of the forward friction of a ring (Eq 19).
+
+    The kernel is the forward friction of a ring of radius ratio*velocity, divided by the friction
+    bound.
 
     Raises ValueError unless ratio >= 0; the argument can have any shape. The kernel is 4 E(k) at
-    the modulus k = ratio for ratio <= 1, and Q_M(1/ratio) for ratio > 1. It falls from 2 pi at
+    the modulus k = ratio for ratio <= 1, and Q_M(1/ratio) for ratio > 1. It decreases from 2 pi at
     ratio 0 to 4 at ratio 1, and approaches pi/ratio at large ratios.
     """
     inside, even, odd = _ring_integrals(ratio)
@@ -119,7 +122,10 @@ def forward_kernel(ratio: Numbers) -> Numbers:
 
 
 def torque_kernel(ratio: Numbers) -> Numbers:
-    """Kernel Q_M: torque of a ring of radius ratio*velocity, divided by bound and radius (Eq 20).
+    """Return the kernel Q_M of the torque of a ring (Eq 20).
+
+    The kernel is the torque of a ring of radius ratio*velocity, divided by the friction bound and
+    the radius.
 
     Raises ValueError unless ratio >= 0; the argument can have any shape. The kernel is 4 (E - (1 -
     k^2) K)/k at the modulus k = ratio for ratio <= 1, and Q_Y(1/ratio) for ratio > 1. At small
@@ -132,7 +138,7 @@ def torque_kernel(ratio: Numbers) -> Numbers:
 def _ring_integrals(ratio: Numbers) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     ratio = checked("ratio", ratio)
     k = np.minimum(ratio, 1 / np.maximum(ratio, 1.0))
-    # Carlson's R_D gives (E - (1 - k^2) K)/k without cancellation. It is infinite at k = 1 only.
+    # Carlson's R_D gives (E - (1 - k^2) K)/k without cancellation. R_D is infinite at k = 1 only.
     rest = np.maximum((1 - k) * (1 + k), 1e-100)
     return (
         ratio <= 1,
@@ -142,11 +148,11 @@ def _ring_integrals(ratio: Numbers) -> tuple[np.ndarray, np.ndarray, np.ndarray]
 
 
 def bore_forward(velocity: Numbers) -> Numbers:
-    """Forward friction of the steady continuous bore under Hertz pressure (Eq 21).
+    """Return the forward friction of the steady continuous bore under Hertz pressure (Eq 21).
 
-    It is (3 pi/8)(v - v^3/4) for v <= 1, and the hypergeometric function 2F1(-1/2, 1/2; 5/2;
-    1/v^2), which tends to 1, for v > 1. Raises ValueError unless velocity >= 0; the argument can
-    have any shape.
+    The friction is (3 pi/8)(v - v^3/4) for v <= 1. For v > 1, it is the hypergeometric function
+    2F1(-1/2, 1/2; 5/2; 1/v^2), which tends to 1 at large velocities. Raises ValueError unless
+    velocity >= 0; the argument can have any shape.
     """
     velocity = checked("velocity", velocity)
     slow = np.minimum(velocity, 1.0)
@@ -160,11 +166,11 @@ def _fast_forward(inverse: np.ndarray) -> np.ndarray:
 
 
 def bore_torque(velocity: Numbers) -> Numbers:
-    """Torque of the steady continuous bore under Hertz pressure, divided by its value at rest (Eq
-    22).
+    """Return the torque of the steady continuous bore under Hertz pressure (Eq 22).
 
-    It is 1 - v^2 + (3/8) v^4 for v <= 1, and 16/(15 pi v) 2F1(1/2, 1/2; 7/2; 1/v^2) for v > 1.
-    Raises ValueError unless velocity >= 0; the argument can have any shape.
+    The torque, divided by its value at velocity 0, is 1 - v^2 + (3/8) v^4 for v <= 1, and 16/(15 pi
+    v) 2F1(1/2, 1/2; 7/2; 1/v^2) for v > 1. Raises ValueError unless velocity >= 0; the argument can
+    have any shape.
     """
     velocity = checked("velocity", velocity)
     slow, inverse = np.minimum(velocity, 1.0) ** 2, 1 / np.maximum(velocity, 1.0)
@@ -175,10 +181,10 @@ def bore_torque(velocity: Numbers) -> Numbers:
 
 # Oscillating bore
 def large_amplitude_bore(velocity: Numbers) -> Numbers:
-    """Quasi-steady forward friction under oscillating bore of large amplitude (Eq 29).
+    """Return the quasi-steady forward friction under oscillating bore of large amplitude (Eq 29).
 
-    It is the mean of bore_forward(velocity/cos(tau)) over tau. Raises ValueError unless velocity >=
-    0; the argument can have any shape.
+    The friction is the mean of bore_forward(velocity/cos(tau)) over tau. Raises ValueError unless
+    velocity >= 0; the argument can have any shape.
     """
     velocity = checked("velocity", velocity)
     fast, slow = np.maximum(velocity, 1.0), np.clip(velocity, np.finfo(float).tiny, 1 - 1e-16)
@@ -187,20 +193,20 @@ def large_amplitude_bore(velocity: Numbers) -> Numbers:
 
 
 def _fast_mean(velocity: np.ndarray) -> np.ndarray:
-    # The integrand is periodic and smooth, so equal steps converge exponentially. At velocity 1 it
-    # contains |tau|^5, and the order of convergence is 6.
+    # The integrand is periodic and smooth, so a sum over equal steps converges exponentially. At
+    # velocity 1, the integrand contains |tau|^5, and the order of convergence is 6.
     tau = (np.arange(128) + 0.5) * (np.pi / 256)
     return np.mean(_fast_forward(np.cos(tau) / velocity[..., None]), axis=-1)
 
 
 def _slow_mean(velocity: np.ndarray) -> np.ndarray:
-    # For cos(tau) > v the cubic branch of Eq 21 applies, and the mean has a closed form.
+    # For cos(tau) > v, the cubic branch of Eq 21 applies, and the integral has a closed form.
     v = velocity
     sine = np.sqrt((1 - v) * (1 + v))
     rotating = 3 * np.pi / 8 * ((v - v**3 / 8) * np.log((1 + sine) / v) - v * sine / 8)
     # The rest is the integral of v f(s) / sqrt(1 - v^2 s^2) over s = cos(tau)/v from 0 to 1. Here f
-    # has half-integer powers at s = 1, and the root is singular near s = 1. The substitution
-    # 1 - s = (1/v - 1) sinh(h)^2 removes both.
+    # has half-integer powers at s = 1, and the root is singular near s = 1. The substitution 1 - s
+    # = (1/v - 1) sinh(h)^2 removes both difficulties.
     h_end = np.arcsinh(np.sqrt(v / (1 - v)))
     nodes, weights = unit_rule(64)
     sinh = np.sinh(h_end[..., None] * nodes)
@@ -212,7 +218,7 @@ def _slow_mean(velocity: np.ndarray) -> np.ndarray:
 
 
 def bore_amplitude_at(stick_radius: Numbers) -> Numbers:
-    """Bore amplitude at which the stick radius is c, D(c)/D(1/2) (Eqs 30, 31).
+    """Return the bore amplitude at which the stick radius is c, D(c)/D(1/2) (Eqs 30, 31).
 
     Raises ValueError unless 0 < stick_radius <= 1; the argument can have any shape.
     """
@@ -221,7 +227,7 @@ def bore_amplitude_at(stick_radius: Numbers) -> Numbers:
 
 
 def bore_stick_radius(amplitude: Numbers) -> Numbers:
-    """Stick radius under oscillating bore alone (Eq 32, inverse of bore_amplitude_at).
+    """Return the stick radius under oscillating bore alone (Eq 32, inverse of bore_amplitude_at).
 
     Raises ValueError unless amplitude >= 0; the argument can have any shape. The radius is above 0
     and at most 1.
@@ -230,19 +236,20 @@ def bore_stick_radius(amplitude: Numbers) -> Numbers:
 
 
 def static_bore(amplitude: Numbers) -> Numbers:
-    """The paper's static friction under oscillating bore, 1 - (1 - c^2)^(3/2) (Eq 33, corrected).
+    """Return the paper's static friction under oscillating bore (Eq 33, corrected).
 
-    It is Eq 10 at the radius of Eq 32. The exact limit is static_limit_bore. Raises ValueError
-    unless amplitude >= 0; the argument can have any shape.
+    The friction is 1 - (1 - c^2)^(3/2), that is, Eq 10 at the stick radius c of Eq 32. For the
+    exact limit, see static_limit_bore. Raises ValueError unless amplitude >= 0; the argument can
+    have any shape.
     """
     return static_stick_zone(bore_stick_radius(amplitude))
 
 
 def static_bore_printed(amplitude: Numbers) -> Numbers:
-    """Eq 33 as printed, 1 - (1 - c)^(3/2), without the square of Eq 10.
+    """Return Eq 33 as printed, 1 - (1 - c)^(3/2), in which the square of c in Eq 10 is missing.
 
-    Raises ValueError unless amplitude >= 0; the argument can have any shape. This function is for
-    comparison only.
+    This function is for comparison only. Raises ValueError unless amplitude >= 0; the argument can
+    have any shape.
     """
     return static_stick_zone(np.sqrt(bore_stick_radius(amplitude)))
 
@@ -251,12 +258,12 @@ def static_bore_printed(amplitude: Numbers) -> Numbers:
 # the largest constant forward traction that can be added to the oscillating traction without
 # exceeding the bound.
 def static_limit_transverse(amplitude: Numbers) -> Numbers:
-    """Static friction under transverse oscillation, v -> 0 (exact for Poisson's ratio 0).
+    """Return the exact static friction under transverse oscillation, v -> 0, for Poisson's ratio 0.
 
-    It is the integral over the stick zone of sqrt(g^2 - (g - g_c)^2), where g_c is the inner bound
-    of mindlin_traction, and 0 for amplitude >= 1. At other Poisson's ratios, Mindlin's traction and
-    this limit are approximations. Raises ValueError unless amplitude >= 0; the argument can have
-    any shape.
+    The friction is the integral of sqrt(g^2 - (g - g_c)^2) over the stick zone, where g_c is the
+    inner bound of mindlin_traction. It is 0 for amplitude >= 1. For other Poisson's ratios,
+    Mindlin's traction and this limit are approximations. Raises ValueError unless amplitude >= 0;
+    the argument can have any shape.
     """
     amplitude = np.minimum(checked("amplitude", amplitude), 1.0)
     step, bound, inner = _stick_zone_rule(np.sqrt(1 - amplitude), np.sqrt(amplitude))
@@ -265,22 +272,22 @@ def static_limit_transverse(amplitude: Numbers) -> Numbers:
 
 
 def static_limit_longitudinal(amplitude: Numbers) -> Numbers:
-    """Static friction under oscillation along the forward direction, (1 - amplitude)^(3/2).
+    """Return the static friction under longitudinal oscillation, (1 - amplitude)^(3/2).
 
-    It is the integral of the inner bound g_c of mindlin_traction, and 0 for amplitude >= 1. It is
-    exact for Poisson's ratio 0. Raises ValueError unless amplitude >= 0 in u_lim; the argument can
-    have any shape.
+    The friction is the integral of the inner bound g_c of mindlin_traction, and 0 for amplitude >=
+    1. The limit is exact for Poisson's ratio 0. Raises ValueError unless amplitude >= 0 in u_lim;
+    the argument can have any shape.
     """
     return (1 - np.minimum(checked("amplitude", amplitude), 1.0)) ** 1.5
 
 
 def static_limit_bore(amplitude: Numbers) -> Numbers:
-    """Static friction under oscillating bore, v -> 0.
+    """Return the static friction under oscillating bore, v -> 0.
 
-    It is the integral over the stick zone of (2/pi) g arccos(tau/g), the largest forward traction
-    averaged over the angle. It is exact for every Poisson's ratio, because neither the stick radius
-    nor the torsional traction tau at a given phi~ depends on Poisson's ratio. Raises ValueError
-    unless amplitude >= 0; the argument can have any shape.
+    The friction is the integral of (2/pi) g arccos(tau/g) over the stick zone. The integrand is the
+    largest forward traction, averaged over the angle. The limit is exact for every Poisson's ratio,
+    because neither the stick radius nor the torsional traction tau at a given phi~ depends on
+    Poisson's ratio. Raises ValueError unless amplitude >= 0; the argument can have any shape.
     """
     c = np.asarray(bore_stick_radius(amplitude))
     step, bound, inner = _stick_zone_rule(c, np.sqrt((1 - c) * (1 + c)))
@@ -292,13 +299,15 @@ def static_limit_bore(amplitude: Numbers) -> Numbers:
 def _stick_zone_rule(
     c: np.ndarray, complement: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Quadrature over r < c: weights for d(eta), and the roots sqrt(1 - r^2) and sqrt(c^2 - r^2) at
+    """Return a quadrature rule over r < c.
+
+    The three arrays are the weights for d(eta), and the roots sqrt(1 - r^2) and sqrt(c^2 - r^2) at
     the nodes.
 
     The roots are complement*cosh(eta) and complement*sinh(eta) with complement = sqrt(1 - c^2), and
-    r dr = -(product of the roots) d(eta). The substitution resolves the edge layer of a small
-    amplitude. The nodes of eta follow a squared sine, because the integrands have half-integer
-    powers at both ends.
+    r dr = -(product of the roots) d(eta). The substitution resolves the thin layer at the edge for
+    small amplitudes. The nodes of eta follow a squared sine, because the integrands contain
+    half-integer powers at both ends.
     """
     # Smaller amplitudes change friction by less than the rounding error.
     complement = np.maximum(complement, 1e-8)
@@ -310,19 +319,22 @@ def _stick_zone_rule(
 
 
 _FASTEST = 1e6
-"""Largest velocity of a steady bore. Its friction 1 - 0.1/v^2 is within 1e-13 of full friction. So
-a rounding error of 1e-16 in the force changes the velocity by a fraction of 1e-3."""
+"""Largest velocity of a steady bore. At this velocity, the friction 1 - 0.1/v^2 is within 1e-13 of
+full friction. Hence a rounding error of 1e-16 in the force changes the velocity by a fraction of
+1e-3."""
 
 
 def transverse_drift(force: Numbers, amplitude: Numbers) -> Numbers:
-    """Mean velocity of a rigid contact under transverse oscillation, (2/pi) A P / sqrt(1 - P^2).
+    """Return the mean velocity of a rigid contact under transverse oscillation.
+
+    The velocity is (2/pi) A P / sqrt(1 - P^2).
 
     Parameters
     ----------
     force : array_like
         Force P divided by mu F_z, >= 0.
     amplitude : array_like
-        Amplitude A in u_lim, >= 0. It is broadcast with the force.
+        Amplitude A in u_lim, >= 0. It is broadcast against the force.
 
     Returns
     -------
@@ -342,19 +354,19 @@ def transverse_drift(force: Numbers, amplitude: Numbers) -> Numbers:
 
 
 def bore_drift(force: Numbers, amplitude: Numbers) -> Numbers:
-    """Mean velocity of a rigid contact under oscillating bore.
+    """Return the mean velocity of a rigid contact under oscillating bore.
 
-    It is (2/pi) E^-1(P), where E is the friction of Eq 21 as a function of velocity. The velocity
-    is in units of Omega phi0 a. This unit is proportional to the amplitude, so the result does not
-    depend on the amplitude. The function has the same arguments and exceptions as
-    `transverse_drift`; forces between 1 - 1e-13 and 1 raise InputError.
+    The velocity is (2/pi) E^-1(P) in units of Omega phi0 a, where E is the friction of Eq 21 as a
+    function of velocity. This unit is proportional to the amplitude, so the result does not depend
+    on the amplitude. The function has the same arguments and exceptions as `transverse_drift`;
+    forces between 1 - 1e-13 and 1 raise InputError.
     """
     steady = np.vectorize(_steady_bore, otypes=[float])(checked("force", force))
     return np.broadcast_arrays(2.0 / np.pi * steady, checked("amplitude", amplitude))[0].copy()
 
 
 def _steady_bore(force: float) -> float:
-    """Velocity of a steady bore with the forward friction `force` (inverse of Eq 21)."""
+    """Return the velocity of a steady bore with the forward friction `force` (inverse of Eq 21)."""
     if force >= 1.0:
         return np.inf
     if force > bore_forward(_FASTEST):
