@@ -1,1 +1,1 @@
-"""Solver for one run at one resolution: its periodic, steady or static state."""
+"""Solver for a single run at one resolution, which computes a periodic, steady or static state."""

@@ -1,5 +1,7 @@
-"""Discretisation of a problem: the mesh of the contact, the path in time, and values of a march:
-tractions and bounds at each phase, mean forces, dissipated energy.
+"""Discretisation of a problem in space and time, and evaluation of its time integration.
+
+The functions build the mesh of the contact and the path in time.  From a march (a time integration
+along the path), they compute tractions, friction bounds, mean forces and the dissipated energy.
 """
 
 from __future__ import annotations
@@ -26,7 +28,7 @@ from microslip.contact.rings import Focus
 from microslip.scene.problem import Problem
 
 WEAKEST_FOCUS, STRONGEST_FOCUS, STATIC_FOCUS = 0.3, 1.0 - 2.0**-6, 0.9
-"""Smallest and largest mesh.Focus.strength, and the value used for the static limit."""
+"""Smallest and largest value of rings.Focus.strength, and the value for the static limit."""
 
 
 @dataclass(frozen=True, order=True)
@@ -49,14 +51,14 @@ class Resolution:
 
 
 def focus_strength(drift: float) -> float:
-    """Strength of the ring grading towards the stick radius.
+    """Return the strength of the ring grading towards the stick radius.
 
     `drift` is the forward displacement per radian of phase, in u_lim; 0 for the static limit.
 
     In a layer of width drift^(2/3) at the stick radius, the slip is as small as the drift.  Ring
     widths grow quadratically from the stick radius.  So the ratio of the smallest to the mean ring
     width should be the square root of the layer's width.  The ratio is rounded to a power of two,
-    so that points share meshes.
+    so that different points share meshes.
     """
     if drift == 0.0:
         return STATIC_FOCUS
@@ -81,7 +83,7 @@ def contact_of(
         Name in contact.registry.MODELS.
     resolution : Resolution
         Resolution of the model.
-    focus : mesh.Focus or None
+    focus : rings.Focus or None
         Grading of the rings.  By default, they are graded towards the radius at which slip starts.
     """
     radius = problem.focus
@@ -105,8 +107,8 @@ def path_of(problem: Problem, contact: Any, steps: int, integrator: Integrator =
     problem : Problem
         The problem.
     contact : Contact
-        The contact, or another object with a `grading`.  If it is not None, it replaces the
-        grading for the problem.
+        The contact, or another object with the attribute `grading`.  If `grading` is not None, it
+        replaces the default grading of the time steps for the problem.
     steps : int
         Approximate number of steps in half a period.
     integrator : path.Integrator
@@ -130,10 +132,11 @@ def _path(problem: Problem, steps: int, grading: float | None, integrator: Integ
 def tractions_at_phases(
     contact: Contact, path: Path, march: March, rows: np.ndarray | slice = slice(None)
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Tractions of a march and friction bounds at phases of its path.
+    """Return the tractions of a march and the friction bounds at phases of its path.
 
-    The shapes are (phases, 2, ...) and (phases, ...).  `rows`: indices of the phases, by default of
-    all phases.  If the last stage of a step is before its end, all phases are needed.
+    The shapes are (phases, 2, ...) and (phases, ...).  `rows` contains the indices of the phases,
+    by default of all phases.  If the last stage of a step lies before the end of the step, all
+    phases are needed.
     """
     assert march.fields is not None  # true for contacts whose points can stick
     bounds = bounds_at_phases(contact, path)
@@ -148,24 +151,31 @@ def tractions_at_phases(
 
 
 def bounds_at_phases(contact: Contact, path: Path) -> np.ndarray:
-    """Friction bounds at every phase, shape (steps + 1, 1, n), or (1, ...) if they are constant."""
+    """Return the friction bounds at every phase.
+
+    The shape is (steps + 1, 1, n), or (1, ...) if the bounds are constant.
+    """
     if path.depth is None:
         return contact.bound[None]
     return contact.bounds_along(path)[:: path.stages.shape[1], None]
 
 
 def mean_forces(contact: Contact, problem: Problem, path: Path, forces: np.ndarray) -> np.ndarray:
-    """Mean forces over a march, shape (3,).  `forces` are the forces at the phases of the path."""
+    """Compute the mean forces over a march, an array of shape (3,).
+
+    `forces` are the forces at the phases of the path.
+    """
     if problem.depth is None:
         return path.mean(forces)
-    # the mean of full slip is exact, so the trapezoidal rule integrates only the difference
+    # the mean force in full slip is known exactly, so the trapezoidal rule integrates only
+    # the difference from it
     bounds = contact.bounds(problem.depth(path.phase))
     full = contact.angles * (bounds @ contact.weight)[:, None] * [1.0, 0.0, 0.0]
     return [problem.mean_load, 0.0, 0.0] - path.mean(full - forces)
 
 
 def dissipated_energy(contact: Contact, path: Path, march: March) -> float:
-    """Energy that friction dissipates in a period, divided by mu F_z u_lim.
+    """Compute the energy that friction dissipates in a period, divided by mu F_z u_lim.
 
     The elastic energy is the same at both ends of a period.  An oscillating normal load does no net
     work, because the load is a function of the indentation.  So the dissipated energy is the work

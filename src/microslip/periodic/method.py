@@ -1,7 +1,8 @@
 """A numerical method: integrator, step solver and search for the periodic state.
 
-The shipped method is the default of `microslip.solve`.  Each other method, for comparison, replaces
-the integrator, the step solver, the search, or the search's initial state.
+The shipped method is the default of `microslip.solve`.  The other methods are for comparison.  Each
+of them replaces the integrator, the step solver, the search, its initial state, or the whole
+simulation.
 """
 
 from __future__ import annotations
@@ -15,7 +16,7 @@ from microslip.periodic.methods import SHIPPED
 
 @dataclass(frozen=True)
 class Method:
-    """The parts of a method. By default, each part is the part of the shipped method.
+    """The parts of a numerical method.  The defaults are those of the shipped method.
 
     In the file of a method, `requires`, `resolution`, `turns`, `model` and `parameters` must be
     literals, since methods.declared reads them without running the file.
@@ -63,8 +64,8 @@ OWN = {
     SHIPPED: Method("what microslip.solve does unless told otherwise"),
     # robust and first order; tractions never exceed the friction bound
     "euler": Method("backward Euler, first order", integrator=EULER),
-    # Coulomb's law is satisfied in the middle of a step.  The tractions at the end are extrapolated
-    # and can exceed the friction bound.  The error of a step recurs with the opposite sign.
+    # Coulomb's law is satisfied in the middle of a step.  The tractions at its end are extrapolated
+    # and can exceed the friction bound.  An error recurs in the next step with the opposite sign.
     "midpoint": Method("implicit midpoint rule, undamped", integrator=theta_method(0.5)),
 }
-"""Methods that replace at most the integrator, by name: those in methods.OWN."""
+"""Methods that replace at most the integrator, keyed by the names in methods.OWN."""

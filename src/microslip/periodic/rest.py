@@ -1,4 +1,4 @@
-"""One run of a contact under a force below the static limit, until it comes to rest.
+"""Run of a contact under a force below the static limit until it comes to rest.
 
 First, the force alone displaces the contact by partial slip.  Then the oscillation begins at its
 mean position, and each period displaces the contact by less than the period before.  The remaining
@@ -49,8 +49,8 @@ def run_to_rest(
     Parameters
     ----------
     problem : problem.Problem
-        The problem at velocity 0 with a Force below the static limit.  Its motion must be even, see
-        under_force.is_even.
+        The problem at velocity 0 with a Force below the static limit.  It must satisfy
+        limits.is_even.
     model : str
         Name in contact.registry.MODELS of a model that supports drives.
     resolution : discretise.Resolution
@@ -63,11 +63,12 @@ def run_to_rest(
     Returns
     -------
     Run
-        The run, with the values `displacement` (from the position without a force to the position
-        at rest, in u_lim), `pushed` (the part of it caused by the force alone), and `most_after`
-        (the number of periods in which the contact covers the fraction MOST_SHARE of the
-        displacement caused by the oscillation).  Its `distance` bounds the remaining displacement.
-        It is not converged if the contact does not come to rest or a step failed.
+        The run, with three values.  `displacement` is measured from the position without a force to
+        the position at rest, in u_lim.  `pushed` is the part of the displacement caused by the
+        force alone.  `most_after` is the number of periods in which the contact covers the fraction
+        MOST_SHARE of the displacement caused by the oscillation.  The `distance` of the run bounds
+        the remaining displacement.  The run has not converged if the contact does not come to rest
+        or a step failed.
     """
     # or a contact wrapped to count its marches
     contact = cast(RingContact, settings.contact(problem, model, resolution))
@@ -79,7 +80,7 @@ def run_to_rest(
     )
     interval = cycle.path.phase[-1] - cycle.path.phase[0]
     pushed = walk.march(_still(problem), 0.0 * forward_slip(contact))
-    # from the mean position to the start of an interval of the map, where the state is mirrored
+    # march from the mean position to the start of an interval of the map; the state is mirrored
     # once for each interval by which this start is postponed
     end, images = cycle.path.phase[0], 0
     while end <= 0.0:
@@ -128,7 +129,7 @@ def run_to_rest(
 
 
 class _Walk:
-    """Marches of a contact under a force, with the sums of their residuals and iterations."""
+    """Successive marches of a contact under a force, with sums of their effort and residuals."""
 
     def __init__(self, contact: RingContact, body: Body, step_tolerance: float):
         self.contact, self.body, self.step_tolerance = contact, body, step_tolerance
@@ -150,24 +151,27 @@ class _Walk:
 
 
 def _still(problem: Problem) -> Path:
-    """Path without oscillation.  One step suffices, since slip only grows with the force."""
+    """Return a path without oscillation.  One step suffices, since slip only grows with the
+    force."""
     of_phase = problem.depth
     depth = None if of_phase is None else lambda phase: of_phase(0.0 * phase)
     return make_path(lambda phase: (0.0 * phase,) * 3, np.array([0.0, 1.0]), EULER, depth)
 
 
 def _remaining(ways: list[float], rounding: float) -> tuple[float, bool]:
-    """Upper bound on the remaining displacement, and whether the contact keeps drifting.
+    """Return an upper bound on the remaining displacement, and whether the contact keeps drifting.
 
     The displacements between doublings of the number of intervals are extrapolated as a geometric
-    series.  The bound is infinite if the ratio of the last two is above SLOWEST_RATIO.
+    series.  The bound is infinite if the ratio of the last two displacements is above
+    SLOWEST_RATIO.
 
     Parameters
     ----------
     ways : list of float
         Displacement in each interval.
     rounding : float
-        Displacement within the residual of the steps, at which the contact is at rest.
+        Displacement that the residuals of the steps can cause.  A contact that moves by less is at
+        rest.
     """
     count = len(ways)
     before = max(sum(ways[count // 4 : count // 2]), 0.0)

@@ -1,10 +1,11 @@
 """Settings, effort and result of a run, and the budget of a point.
 
-The budget limits the work of a point and its wall-clock time.  Both limits are checked after every
-march, so that they also end long searches.  With a limit on the work, the result is the same on
-every machine.  The time limit depends on the machine, so a result that reached the time limit is
-not stored.  The time that Numba needs to compile or load kernels does not count, because only the
-first points of a process need it.
+A run is one simulation at one resolution; a march is one time integration over a period or half a
+period.  The budget limits the work of a point and its wall-clock time.  Both limits are checked
+after every march, so that they also end long searches.  With a limit on the work, the result is the
+same on every machine.  The time limit depends on the machine, so a result that reached the time
+limit is not stored.  The time that Numba needs to compile or load kernels does not count, because
+only the first points of a process need it.
 """
 
 from __future__ import annotations
@@ -54,7 +55,7 @@ class Effort(NamedTuple):
 
     @staticmethod
     def of(solves: int, iterations: int, unknowns: int) -> Effort:
-        """Effort of marches; `unknowns` is the number of unknowns in a step."""
+        """Return the effort of marches; `unknowns` is the number of unknowns in a step."""
         return Effort(solves, iterations, solves * unknowns, iterations * unknowns)
 
     def __add__(self, other: Effort) -> Effort:  # type: ignore[override]
@@ -98,8 +99,8 @@ class Budget:
     def take(self, effort: Effort, next_work: int = 0) -> None:
         """Count the effort of marches.
 
-        Raises Spent if a limit is exceeded, or if the next march alone would exceed it: a fine mesh
-        takes long to build.
+        Raises Spent if a limit is exceeded, or if the work of the next march would exceed its
+        limit.  The next march is checked in advance because a fine mesh takes long to build.
         """
         self.taken += effort
         if self.taken.work + next_work > self.most_work:
@@ -111,14 +112,17 @@ class Budget:
 
 
 def _seconds() -> float:
-    """Time in seconds on a clock that stands still during compilation."""
+    """Return the time in seconds on a clock that stops during compilation."""
     from microslip.foundation.compiled import compile_seconds  # imports Numba
 
     return time.monotonic() - compile_seconds()
 
 
 class Metered:
-    """A contact (see contact.Contact) that counts its marches.  The first one starts the clock."""
+    """A contact (see contact.Contact) whose marches are counted in a budget.
+
+    The first contact starts the clock of the budget.
+    """
 
     def __init__(self, contact: Contact, budget: Budget):
         self._contact: Any = contact  # not every contact has every method
@@ -145,7 +149,7 @@ TIGHTER = 0.1
 """Smallest ratio of the step tolerance in a second attempt to the step tolerance in the first."""
 MARCH_SHARE = 0.16
 """Largest sum of the step tolerances in half a period, divided by the tolerance of the periodic
-state.  With two stages per step, the residuals add up to a third of the tolerance."""
+state.  With two stages per step, the residuals add up to at most a third of the tolerance."""
 NAMES = ("friction", "torque", "dissipation", "velocity", "displacement")
 """Names of the values of a run that have error estimates."""
 
@@ -162,7 +166,7 @@ class Settings:
         Whether the steps of slow motions are solved to a smaller tolerance.
     budget : run.Budget or None
         Budget of the marches.  None means unlimited.
-    focus : mesh.Focus or None
+    focus : rings.Focus or None
         Grading of the rings.  By default, they are graded towards the radius at which slip starts.
     slope : float
         Under a prescribed force: rise of the friction with the velocity.  It converts an unbalanced
@@ -178,7 +182,7 @@ class Settings:
     def contact(
         self, problem: Problem, model: str, resolution: Resolution, focus: Focus | None = None
     ) -> Contact:
-        """Build a contact with the method's step solver.  The contact counts its marches.
+        """Build a contact with the method's step solver, whose marches are counted in the budget.
 
         Raises Spent, before the contact is built, if one march would exceed the budget.
         """
@@ -248,13 +252,13 @@ class Run:
 
 
 def unsolved(steps: Any, tolerance: float) -> str:
-    """Reason why the stages are not solved to their tolerance, otherwise empty.
+    """Return the reason why the stages are not solved to their tolerance, or "" if they are.
 
     Parameters
     ----------
     steps : March, or another object with the same attributes
-        `residual`, the residual of the step solver summed over the stages, as a force divided by mu
-        F_z, and `solves`, the number of stages.
+        The attribute `residual` is the residual of the step solver summed over the stages, as a
+        force divided by mu F_z.  The attribute `solves` is the number of stages.
     tolerance : float
         Tolerance of each stage, as a force divided by mu F_z.
     """
@@ -264,7 +268,7 @@ def unsolved(steps: Any, tolerance: float) -> str:
 
 
 def failed_run(reason: str) -> Run:
-    """The Run for a failed march.  Its numbers are NaN or infinite."""
+    """Build the Run for a failed march.  Its values are NaN, and its errors are infinite."""
     return Run(dict.fromkeys(NAMES, np.nan), np.inf, np.inf, reason=reason)
 
 

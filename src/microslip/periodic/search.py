@@ -1,17 +1,19 @@
-"""Search for the periodic state, the fixed point of the march over a period or half a period.
+"""Search for the periodic state of a contact.
 
-The transients of a plain march last about 1/(2 pi v~) periods.  Anderson acceleration of the map
-finds its fixed point much sooner.  Convergence is judged by three quantities: the residual of the
-plain map, the distance to the next state, and an error computed from the residual and the drift
-rate of the motion.  The last quantity is needed near the static limit, where the state changes so
-slowly that a small residual is no evidence of convergence.
+A march is the time integration over a period or half a period.  It maps the state at its start to
+the state at its end, and the periodic state is the fixed point of this map.  The transients of
+plain marches last about 1/(2 pi v~) periods.  Anderson acceleration of the map finds its fixed
+point much sooner.  Convergence is judged by three quantities: the residual of the plain map, the
+distance to the next state, and an error computed from the residual and the drift rate of the
+motion.  The last quantity is needed near the static limit, where the state changes so slowly that a
+small residual is no evidence of convergence.
 
 The state of a driven body includes two more numbers, its position x and rate x' (see
-contact/march.py).  In one period, unbalanced forces hardly change the state of a heavy body or of
-a body on a soft spring.  So the map scales up the changes of x and x', as if the spring were
-stiffer and the body lighter, to match the stiffness of the contact.  The fixed point of the map
-stays the same.  A contact in full slip is much more compliant than a sticking contact.  Its
-stiffness is the rise of the mean force with the displacement.
+contact/march.py).  In one period, unbalanced forces hardly change the state of a heavy body or of a
+body on a soft spring.  So the map scales up the changes of x and x', as if the spring were stiffer
+and the body lighter, to match the stiffness of the contact.  The fixed point of the map stays the
+same.  A contact in full slip is much more compliant than a sticking contact.  For it, the stiffness
+is the rise of the mean force with the displacement.
 """
 
 from __future__ import annotations
@@ -33,10 +35,10 @@ FORCING = 1e-3
 """Tolerance of the steps in a march, divided by the last change of the state."""
 LOOSEST, LOOSEST_NEAR = 1e-4, 1e-5
 """Largest tolerance of a step.  The first value is for an initial state far from the periodic
-state, and the second value is for one near it."""
+state, and the second value is for an initial state near it."""
 NOISE = 1e-2
 """Largest accepted residual of a march, divided by the force that the drift adds in this march.  An
-error of the state decays no faster than the state drifts."""
+error of the state decays at most as fast as the state drifts."""
 DRIFTING, MOST_RETURNS = 0.5, 3
 """DRIFTING: a state below the static limit is stuck if its residual exceeds this fraction of the
 force that the drift adds.  Such a state drifts without slip, so its change does not measure the
@@ -135,7 +137,7 @@ class DriftRate:
     least: float = np.nan
 
     def error(self, force: float, change: float) -> float:
-        """Error of a mean force if the plain map still changes the state by the force `change`."""
+        """Return the error of a mean force if the plain map changes the state by `change`."""
         if self.gain == np.inf:
             return 0.0
         excess = abs(force - self.static_force)
@@ -145,7 +147,7 @@ class DriftRate:
 
 
 class PeriodMap:
-    """The map of a contact's state over a path.
+    """Map from the state of a contact at the start of a path to its state at the end.
 
     A state is an array of all tractions, followed by x and x' of a driven body (0 without a body).
 
@@ -217,7 +219,7 @@ class PeriodMap:
         return self.contact.mirrored(tractions) if self.mirror else tractions
 
     def step(self, state: np.ndarray, march: March) -> tuple[np.ndarray, np.ndarray]:
-        """State at the start of the next interval, and the change of the state.
+        """Return the state at the start of the next interval, and the change of the state.
 
         The changes of x and x' are scaled up.
         """
@@ -236,7 +238,7 @@ class PeriodMap:
         return image, change
 
     def norm(self, change: np.ndarray) -> float:
-        """Upper bound on the force due to a change of the state."""
+        """Return an upper bound on the force due to a change of the state."""
         tractions, body = change[:-2].reshape(self.shape), self.body
         force, held = energy_norm(self.contact, tractions), 0.0
         if body.remembers:
@@ -247,7 +249,7 @@ class PeriodMap:
         return float(np.sqrt(force**2 + self.contact.stiffness * held)) if held else force
 
     def gained(self, march: March, change: np.ndarray, residual: float) -> float:
-        """Change of the state by the plain map, as a force."""
+        """Return the change of the state by the plain map, as a force."""
         if not self.driven:
             return residual
         advance = abs(march.body[-1, 0] - march.body[0, 0])
@@ -258,7 +260,7 @@ class PeriodMap:
 def find_periodic_state(
     period_map: PeriodMap, start: np.ndarray, goal: Goal, place: np.ndarray = AT_REST
 ) -> PeriodicState:
-    """March periods until the state is periodic to within the tolerance.
+    """Repeat marches over a (half) period until the state is periodic to within the tolerance.
 
     Parameters
     ----------

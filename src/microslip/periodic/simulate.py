@@ -1,6 +1,7 @@
-"""One run at one resolution: build the contact and the path, then find the periodic state.
+"""Simulation of a problem at one resolution: build the contact and the path, then find the state.
 
-The steady state of a motion without oscillation is the fixed point of a march over any stretch.
+The steady state of a motion without oscillation is the fixed point of a march over a path of any
+length.
 
 The search for the state of a driven contact starts from the periodic state at a prescribed
 velocity: the velocity of the spring's far end, or an approximate velocity under the force.  The
@@ -54,7 +55,7 @@ from microslip.periodic.static_limit import SLOW_LOOP, limit_on_a_line, limit_on
 from microslip.scene.problem import Problem
 
 STEADY_STRETCH = 8
-"""Number of steps in a stretch."""
+"""Number of steps in the path of a steady motion."""
 STEADY_TRAVEL = 0.5
 """Largest rigid displacement of a steady motion in one step, in u_lim."""
 
@@ -100,8 +101,8 @@ def steady_state(contact: Contact, problem: Problem, tolerance: float) -> Run:
 SLOW_EXCESS, LARGEST_EXCESS = 4.0, 0.6
 """A search starts from the static limit plus a forward traction.  This traction is the friction
 bound times SLOW_EXCESS * drift^(2/3), but at most LARGEST_EXCESS times the bound.  Friction rises
-with the same power of the drift.  So the search starts with too much forward traction, which makes
-an accelerated search converge faster."""
+with the same power of the drift.  The factor SLOW_EXCESS is so large that the search starts with
+too much forward traction, which makes an accelerated search converge faster."""
 MARCHES_FROM_COARSER = 50
 """Largest number of marches in a search that starts from interpolated tractions.  If more are
 needed, a search from the usual start is faster."""
@@ -126,17 +127,17 @@ def simulate(
     guess: Run | None = None,
     settings: Settings = AS_SHIPPED,
 ) -> Run:
-    """Run a model of a problem at one resolution.
+    """Simulate a problem with a model at one resolution.
 
-    The problem decides what is computed: the steady state of a motion without oscillation, the
-    static limit at velocity 0, the way to rest under a force at velocity 0, otherwise the periodic
-    state.
+    The problem determines the state that is computed.  It is the steady state of a motion without
+    oscillation, the static limit at velocity 0, or the state of rest at velocity 0 under a force.
+    In all other cases, it is the periodic state.
 
     Parameters
     ----------
     problem : problem.Problem
         The problem, already checked.  With a spring, the prescribed velocity is the velocity of the
-        far end of the spring. Under a prescribed force, a velocity above 0 is an initial guess.
+        far end of the spring.  Under a prescribed force, a velocity above 0 is an initial guess.
     model : str
         Name in contact.registry.MODELS.
     resolution : discretise.Resolution
@@ -145,8 +146,8 @@ def simulate(
         Tolerance of the state: a force divided by mu times the mean normal load, a velocity under a
         prescribed force, or a displacement in u_lim for a run to rest.
     guess : Run or None
-        Run of the same point, used as the initial guess.  It is used if it has the same numbers of
-        cells and angles, or if the contact can interpolate its tractions.
+        Run of the same point.  It is the initial guess if it has the same numbers of cells and
+        angles, or if the contact can interpolate its tractions.
     settings : Settings
         Settings of the run.
 
@@ -200,11 +201,11 @@ class Start(NamedTuple):
 class _Search:
     """Search for the periodic state of one run, trying several initial states in turn.
 
-    `unit` is the force, divided by mu F_z, that corresponds to an error of 1 in the result.  On a
-    spring, the result is a force, as at a prescribed velocity.  For a prescribed force, the result
-    is a velocity, and there are two estimates of its unit.  The first divides the force by the
-    stiffness and by the length of the interval.  The second divides the unbalanced force by the
-    rise of friction with the velocity.  The smaller force is used.
+    `unit` is the force, divided by mu F_z, that corresponds to an error of 1 in the result.  If the
+    contact is pulled by a spring, the result is a force, as it is for a prescribed velocity.  For a
+    prescribed force, the result is a velocity, and `unit` is the smaller of two estimates.  The
+    first is the stiffness of the contact times the displacement at velocity 1 in an interval.  The
+    second is the rise of the friction force with the velocity.
     """
 
     def __init__(
@@ -221,7 +222,7 @@ class _Search:
         self.path = path_of(problem, self.contact, resolution.steps, settings.method.integrator)
         self.interval = self.path.phase[-1] - self.path.phase[0]
         self.rate = self.contact.stiffness * problem.drift
-        # a static limit is computed with an accuracy according to the rise of friction above it
+        # the accuracy of a static limit is chosen according to the rise of friction above it
         self.rise = problem.drift ** (2.0 / 3.0)
         self.unit, self.most_marches = problem.mean_load, MOST_MARCHES
         self.force, self.body = problem.force, None
@@ -244,8 +245,8 @@ class _Search:
         self.earlier: list[Run] = []
 
     def run(self, guess: Run | None) -> Run:
-        """Search from one initial state after the other, and return the Run of the last search,
-        with the effort of all searches."""
+        """Try one initial state after the other, and return the Run of the last search, with the
+        effort of all searches."""
         problem, find = self.problem, self.settings.method.search or find_periodic_state
         for start in (self.prescribed if self.body is None else self.driven)(guess):
             most = MARCHES_FROM_COARSER if start.near else self.most_marches
@@ -282,7 +283,7 @@ class _Search:
         )
 
     def map(self, start: Start) -> PeriodMap:
-        """The map for a search from a start."""
+        """Build the map for a search from a start."""
         full, drift_rate, slope = self.problem.mean_load, None, np.inf
         if self.force is None:  # the velocity is known
             gain = self.rate * self.interval
@@ -294,7 +295,7 @@ class _Search:
         return PeriodMap(self.contact, self.path, drift_rate, mirror, self.body, slope)
 
     def prescribed(self, guess: Run | None) -> Iterator[Start]:
-        """Initial states at a prescribed velocity, best first."""
+        """Yield initial states at a prescribed velocity, best first."""
         problem, contact, method = self.problem, self.contact, self.settings.method
         if problem.straight or not contact.sticks:
             self.static_force = 0.0
@@ -319,7 +320,8 @@ class _Search:
         yield Start(slipping)
 
     def _find_limit(self) -> np.ndarray:
-        """Tractions of the static limit of a motion on a line; also sets `static_force`."""
+        """Return the tractions of the static limit of a motion on a line, and set
+        `static_force`."""
         tolerance = STEP_SHARE * max(self.rise, self.tolerance)
         limit = limit_on_a_line(self.contact, self.problem.oscillation, tolerance)
         if not unsolved(limit.march, tolerance):
@@ -328,7 +330,7 @@ class _Search:
         return self.limit
 
     def _from_run(self, guess: Run) -> Iterator[Start]:
-        """Initial state from a run, if it converged and its tractions are known or can be
+        """Yield the initial state from a run that converged, if its tractions are known or can be
         interpolated."""
         contact = self.contact
         if guess.state is None or not guess.converged:
@@ -345,7 +347,7 @@ class _Search:
             yield Start(project(near, contact.bound), guess.place, near=True, friction=guess.mu)
 
     def driven(self, guess: Run | None) -> Iterator[Start]:
-        """Initial states under a prescribed force or on a spring, best first."""
+        """Yield initial states under a prescribed force or on a spring, best first."""
         contact, problem, slipping = self.contact, self.problem, forward_slip(self.contact)
         for one in self._similar_runs(guess):
             yield from self._from_run(one)
@@ -367,7 +369,7 @@ class _Search:
             yield Start(tractions, np.array([place, 0.0]), friction=run.mu)
 
     def _similar_runs(self, guess: Run | None) -> Iterator[Run]:
-        """The guess, and a Run with COARSENING times fewer steps."""
+        """Yield the guess, and a Run with COARSENING times fewer steps."""
         if guess is not None:
             yield guess
         if self.resolution.steps >= PREPARED_FROM:

@@ -2,24 +2,26 @@
 
 The limit is a separate problem at every point.  Let q(t) be the periodic tractions of the
 oscillation alone, and g(t) the friction bound.  As the forward velocity vanishes, every point slips
-forward a little in each period when q(t) + s reaches the bound, where s is constant.  Such a slow
-drift does not change q(t).  By the flow rule, s has the largest forward component:
+forward a little in each period when q(t) + s reaches the bound, where s is a constant traction.
+Such a slow drift does not change q(t).  By the flow rule, s has the largest forward component that
+the bound allows:
 
     mu F_z mu_static = Integral { mean of q_forward
                                   + max s_forward : |q(t) + s| <= g(t) for all t } dA.
 
 This is the counterpart of Melan's shakedown theorem for ratcheting.  At points that slip in every
-period of the oscillation alone, s is 0, since q reaches the bound in directions that balance.  At
-these points, the mean of q remains: a loop without half-period symmetry drags the contact along.
-At points that never slip, q has an arbitrary constant part, and the maximum does not depend on it.
+period of the oscillation alone, s is 0, because q reaches the bound in several directions, so that
+no constant traction can be added.  The mean of q at these points is not 0 for a loop without
+half-period symmetry, which drags the contact along.  At points that never slip, q contains an
+arbitrary constant, which does not change the sum of both terms.
 
 For a motion on a line under a constant load, q(t) moves along the segment between the tractions at
 the two turning points, +-q after subtracting their mean.  So only these two instants matter.
 
 Coarse runs of the static limit also give the edges of the stick zone in slow motions.  No formula
 gives the edges for motions on a loop, or for pressures without a closed form.  For rotating
-indenters, the radius is also the root of an integral (indenters.torsion_stick_radius); a test
-compares both results.
+indenters, the radius of the edge is also the root of an integral (indenters.torsion_stick_radius);
+a test compares both results.
 """
 
 from __future__ import annotations
@@ -122,7 +124,7 @@ class StaticLimit(NamedTuple):
 
 
 def at_turning_points(problem: Problem) -> bool:
-    """Whether the tractions at the turning points determine the static limit.
+    """Return whether the tractions at the turning points determine the static limit.
 
     This is the case for a motion on a line under a constant load.
     """
@@ -131,12 +133,12 @@ def at_turning_points(problem: Problem) -> bool:
 
 @lru_cache(maxsize=32)
 def _quarter(oscillation: Callable) -> Path:
-    """The path from the mean position to the second turning point."""
+    """Return the path from the mean position to the second turning point."""
     return make_path(oscillation, np.linspace(0.0, np.pi / 2, STEPS // 2 + 1), EULER)
 
 
 def limit_on_a_line(contact: Contact, oscillation: Callable, step_tolerance: float) -> StaticLimit:
-    """Static limit of a contact at its turning points.
+    """Compute the static limit of a contact from its tractions at the turning points.
 
     `oscillation(phase)` returns the rigid displacement without forward motion.  The first turning
     point is at the phase -pi/2.
@@ -151,7 +153,9 @@ def limit_on_a_line(contact: Contact, oscillation: Callable, step_tolerance: flo
 
 
 def lens_corner(oscillating: np.ndarray, bound: np.ndarray) -> np.ndarray:
-    """Constant tractions s at every point of a line; arrays (2, ...), forward component first.
+    """Return the constant tractions s at every point, for a motion on a line.
+
+    `oscillating` and the result have the shape (2, ...), with the forward component first.
 
     The two discs |s +- q| <= g intersect in a lens.  s is the forward tip of one disc if the other
     disc contains it, otherwise the forward corner of the lens.
@@ -174,7 +178,8 @@ def lens_corner(oscillating: np.ndarray, bound: np.ndarray) -> np.ndarray:
 def loop_energy(
     contact: Contact, oscillation: Callable, oscillating: np.ndarray | None = None
 ) -> float:
-    """Energy that an oscillation on a line dissipates in a period, divided by mu F_z u_lim.
+    """Compute the energy that an oscillation on a line dissipates in a period, divided by mu F_z
+    u_lim.
 
     Each slipping point slips in a constant direction.  By Masing's rule, it slips twice as far
     between the turning points as in the first loading.  So the energy is four times the friction
@@ -203,7 +208,7 @@ def loop_energy(
 def limit_on_a_loop(
     contact: Contact, problem: Problem, path: Path, tolerance: float, step_tolerance: float
 ) -> StaticLimit:
-    """Static limit of a contact from the periodic state of the oscillation alone.
+    """Compute the static limit of a contact from the periodic state of the oscillation alone.
 
     Parameters
     ----------
@@ -267,8 +272,8 @@ def largest_shift(tractions: np.ndarray, bounds: np.ndarray) -> np.ndarray:
     least, most = np.zeros(forward.shape[1:]), 2.0 * bounds.min(axis=0)
 
     def reach(shift: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Whether a forward shift lies inside the discs of all phases, and bounds on the lateral
-        shift."""
+        """Return whether a forward shift lies inside the discs of all phases, and bounds on the
+        lateral shift."""
         across = bounds**2 - (forward + shift) ** 2
         width = np.sqrt(np.maximum(across, 0.0))
         ends = (-lateral - width).max(axis=0), (width - lateral).min(axis=0)
@@ -286,7 +291,7 @@ def largest_shift(tractions: np.ndarray, bounds: np.ndarray) -> np.ndarray:
 def limit_run(
     contact: Contact, problem: Problem, resolution: Resolution, tolerance: float, settings: Settings
 ) -> tuple[Run, np.ndarray | None]:
-    """Run of the static limit on one contact.
+    """Compute the static limit on one contact.
 
     Parameters
     ----------
@@ -366,7 +371,7 @@ SLIVER = 1e-3
 little slip, the shift is almost 0 in the rings on either side of an edge."""
 _EDGES: dict[Problem, tuple[tuple[float, ...], Effort]] = {}
 MOST_STORED = 64
-"""Number of static limits whose edges are stored, with the effort of their search."""
+"""Largest number of static limits whose edges are stored, with the effort of the search."""
 
 
 def edge_focus(
@@ -375,7 +380,7 @@ def edge_focus(
     budget: Budget | None = None,
     progress: Callable | None = None,
 ) -> Focus | None:
-    """Grading of the rings for a slow motion, towards the edges of the static limit's stick zone.
+    """Grade the rings for a slow motion towards the edges of the stick zone of the static limit.
 
     The stick zone of a circular motion is smaller than that of a linear motion of the same
     amplitude, because slip on a circle never stops.  The stick zone of a contact with a hole is a
@@ -398,7 +403,7 @@ def edge_focus(
 
     Returns
     -------
-    mesh.Focus or None
+    rings.Focus or None
         The grading.  It is None if Motion.focus gives the radius, the motion is fast, the model has
         no rings, the stick zone is not round, or the whole contact slips.
 
@@ -433,7 +438,7 @@ def edge_focus(
 
 
 def _edges_of(limit: Problem, settings: Settings, progress: Callable | None) -> tuple[float, ...]:
-    """Radii of the edges for a problem at velocity 0."""
+    """Find the radii of the edges for a problem at velocity 0."""
     motion, model = limit.motion, "polar" if limit.motion.rotates else "radial"
     edges = partial(stick_edges, limit, model, settings=settings, progress=progress)
     if not at_turning_points(limit):
@@ -509,7 +514,9 @@ def stick_edges(
 
 
 def _stick_radii(contact: Contact, sticks: np.ndarray | None) -> tuple[float, ...]:
-    """Radii between rings that stick and rings that slip; a ring sticks if most of its points do.
+    """Return the radii between rings that stick and rings that slip.
+
+    A ring sticks if most of its points do.
 
     Pairs of radii closer than SLIVER are removed.  Returns only the outermost radius if there are
     more than MOST_EDGES radii, and no radius if `sticks` is None.

@@ -1,13 +1,13 @@
-"""Methods for comparison with the shipped one, and the names of all methods.
+"""Methods for comparison with the shipped method, and the names of all methods.
 
-The methods in OWN replace at most the integrator, see periodic.method.  Every other method is one
-file of this folder.  The file `some_name.py` defines METHOD, a `method.Method`.  The method's name
-is `some-name` in `microslip.solve` and in configurations.  Files whose names start with an
-underscore contain shared code.  The name of a method can be followed by parameters, for example
-"projected-gradient:step=0.5".  A method can require a package that microslip does not depend on.
-Studies omit the method if that package is not installed.
+The methods in OWN replace at most the integrator, see periodic.method.  Every other method is a
+file in this folder.  For example, the file `some_name.py` defines METHOD, a `method.Method`, and
+this method is called `some-name` in `microslip.solve` and in configurations.  Files whose names
+start with an underscore contain shared code.  The name of a method can be followed by parameters,
+for example "projected-gradient:step=0.5".  A method can require a package that microslip does not
+depend on.  Studies omit the method if that package is not installed.
 
-Listing and checking names imports neither the solver nor NumPy.
+The functions that list and check names import neither the solver nor NumPy.
 """
 
 from __future__ import annotations
@@ -34,7 +34,7 @@ METHODS = Path(__file__).parent
 
 @cache
 def names() -> tuple[str, ...]:
-    """Names of all methods, the shipped one first.  Files that cannot be parsed are omitted."""
+    """Return the names of all methods, "shipped" first, without files that cannot be parsed."""
     stems = (file.stem for file in METHODS.glob("[!_]*.py"))
     # copies and checkpoints of files are not methods
     files = {stem.replace("_", "-") for stem in stems if stem.isidentifier()}
@@ -44,8 +44,10 @@ def names() -> tuple[str, ...]:
 
 @cache
 def _parsed(name: str) -> ast.Module | str | None:
-    """Syntax tree of a method's file, the error message if parsing fails, or None if there is no
-    file."""
+    """Return the syntax tree of a method's file.
+
+    Return the error message if parsing fails, and None if there is no file.
+    """
     file = METHODS / f"{name.replace('-', '_')}.py"
     if not file.stem.isidentifier():
         return None
@@ -58,9 +60,9 @@ def _parsed(name: str) -> ast.Module | str | None:
 
 
 def split(text: str) -> tuple[str, dict[str, float]]:
-    """Name and parameters of a method; raises InputError if the text does not name a method.
+    """Split a string into the name and the parameters of a method, without importing the solver.
 
-    Does not import the solver.
+    Raises InputError if the string does not name a method.
     """
     if not isinstance(text, str):
         raise InputError("method", text, f"allowed is one of {', '.join(names())}")
@@ -73,10 +75,10 @@ def split(text: str) -> tuple[str, dict[str, float]]:
 
 
 def missing(text: str) -> str:
-    """Error message if a package required by a method is not installed; empty if the method can
-    run.
+    """Return an error message if the package that a method requires is not installed, otherwise "".
 
-    Neither the solver nor the package is imported.  Raises InputError as `split` does.
+    Imports neither the solver nor the package.  Raises InputError if the string does not name a
+    method.
     """
     package = declared(split(text)[0], "requires")
     if package and find_spec(package) is None:
@@ -85,7 +87,7 @@ def missing(text: str) -> str:
 
 
 def method_named(text: str) -> Method:
-    """Return the Method with a name, or raise an InputError that lists the allowed names."""
+    """Return the Method with the given name, or raise InputError with the allowed names."""
     name, numbers = split(text)
     if name in OWN:
         return import_module("microslip.periodic.method").OWN[name]

@@ -48,7 +48,7 @@ class Points(NamedTuple):
     weight: np.ndarray
 
     def judged(self, b: np.ndarray, q: np.ndarray) -> tuple[np.ndarray, float]:
-        """Slip b - A q, and the residual of the step."""
+        """Return the slip b - A q, and the residual of the step."""
         slip = b - (self.matrix @ q.ravel()).reshape(b.shape)
         return slip, coulomb_residual(q, slip, self.bound, self.weight, self.scale)
 
@@ -74,13 +74,13 @@ class DenseContact:
     def march(
         self, path: Path, state: np.ndarray, tolerance: float, previous: March | None = None
     ) -> March:
-        """March along a path, see Contact; raises StepFailure if a step is not solved."""
+        """Integrate along a path, see Contact.  Raises StepFailure if a step is not solved."""
         self.tolerance, self.last = tolerance, state
         return march_by_steps(self.contact, self, path, state, previous)
 
     def solve(self, b: np.ndarray, guess: np.ndarray) -> Step:
         """Solve a step, see contact.march_by_steps.  The initial guess is the solution of the last
-        step, since some methods fail from an extrapolated guess."""
+        step, since some methods fail if they start from an extrapolated guess."""
         try:
             q, slip, count, residual = self._solve(
                 self.points,
@@ -102,5 +102,5 @@ class DenseContact:
 
 
 def dense(solve: Solve, prepare: Callable | None = None) -> Callable:
-    """Make a function for Method.dress: `dress(contact, **parameters)` returns a DenseContact."""
+    """Return a function for Method.dress: `dress(contact, **parameters)` returns a DenseContact."""
     return lambda contact, **parameters: DenseContact(contact, solve, prepare, **parameters)

@@ -1,23 +1,23 @@
-"""The incremental frictional solver of the package aspher, on the same squares and path as ours.
+"""Incremental friction solver of the package aspher, on the squares and the path of microslip.
 
 V. A. Yastrebov, https://github.com/cofebem/aspher (BSD-3-Clause).  The package must be installed.
-First, it solves the normal contact on the squares.  Then it solves one tangential problem per
-backward Euler step by a projected conjugate gradient method.  It supports translations only, at any
-nu.
+First, the method solves the normal contact on the squares.  Then it solves one tangential problem
+per backward Euler step by a projected conjugate gradient method.  It supports translations only, at
+any nu.
 
-The march starts without tractions and ends when the means of two periods agree, or after
-MOST_PERIODS.  Within so few periods, only fast forward motions become periodic.  Two settings
-differ from the defaults of the package:
+The time integration starts without tractions.  It ends when the mean forces of two periods agree,
+or after MOST_PERIODS periods.  Within so few periods, only fast forward motions become periodic.
+Two settings differ from the defaults of the package:
 
-- The preconditioner is off.  It is designed for sticking points.  When the slip changes
-  direction, the preconditioned solver needs about five times as many iterations, and the means are
-  no more accurate.
+- The preconditioner is off.  It is designed for sticking points.  When the slip changes direction,
+  the preconditioned solver needs about five times as many iterations, and the mean forces are no
+  more accurate.
 
 - A step that the package rejects counts as failed, and the march continues from the best tractions.
   By default, the package returns to the tractions before the step, which makes the means wrong.
 
-An iteration computes two products with the influence operator; our solvers compute one.  The effort
-counts iterations.
+An iteration computes two products with the influence operator; solvers of microslip compute one.
+The effort counts iterations.
 """
 
 from __future__ import annotations
@@ -36,7 +36,7 @@ from microslip.scene.problem import Problem
 from microslip.theory.hertz import G_STAR
 
 MOST_PERIODS = 6
-"""Largest number of periods marched."""
+"""Largest number of periods."""
 ACCEPTED = 1e-2
 """Stopping criterion of the package's step solver: largest traction change in a projected step,
 divided by the largest friction bound."""
@@ -84,7 +84,7 @@ class Solver:
 
 
 def half_period(solver: Solver, path: Path, number: int) -> tuple[np.ndarray, float]:
-    """March one half period; `number` counts the half periods from 0.
+    """Integrate over one half period; `number` counts the half periods from 0.
 
     Returns the forward forces at all phases except the first, and the sum of the residuals.
     """

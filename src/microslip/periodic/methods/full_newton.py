@@ -1,7 +1,7 @@
 """Semismooth Newton method for q = P(q + slip / scale), with full steps.
 
-It converges in a few steps near the solution.  Further away, points can switch between stick and
-slip forever.  The switching starts at points with a very small bound.
+The method converges in a few steps near the solution.  Further away, points can switch between
+stick and slip forever.  The switching starts at points with a very small bound.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""Plain march, period after period, until the state is periodic."""
+"""Plain integration in time, period after period, until the state is periodic."""
 
 from __future__ import annotations
 
@@ -15,10 +15,10 @@ SLOWEST = 1.0 - 1e-6
 def plain_march(
     period_map: PeriodMap, start: np.ndarray, goal: Goal, place: np.ndarray = AT_REST
 ) -> PeriodicState:
-    """Search by the plain march, with the distance estimate of the shipped search.
+    """Find the periodic state by plain marches over (half) periods.
 
-    The remaining changes are extrapolated as a geometric series, using the ratio of the last two
-    changes.
+    The distance is estimated as in the shipped search, except that the remaining changes of the
+    state are extrapolated as a geometric series with the ratio of the last two changes.
     """
     state, march, last, distance, iterations = np.append(start, place), None, np.nan, np.inf, 0
     for marches in range(1, goal.most_marches + 1):

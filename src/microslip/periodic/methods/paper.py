@@ -25,13 +25,13 @@ STRESS_TOLERANCE = 1e-3
 
 
 def path_of(problem: Problem, steps: int = STEPS) -> Path:
-    """Path that starts in the middle of a stroke and has a given number of steps."""
+    """Return a path with the given number of steps, starting in the middle of a stroke."""
     phase = 2.0 * np.pi / STEPS_PER_PERIOD * np.arange(steps + 1)
     return make_path(problem.displacement, phase, EULER)
 
 
 def last_means(march: March) -> tuple[float, float]:
-    """Mean forward forces over the last and over the second-to-last period."""
+    """Return the mean forward forces over the last and over the second-to-last period."""
     force = march.forces[1:, FORWARD]
     last, before = force[-STEPS_PER_PERIOD:], force[-2 * STEPS_PER_PERIOD : -STEPS_PER_PERIOD]
     return float(last.mean()), float(before.mean())

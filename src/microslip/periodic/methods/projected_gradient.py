@@ -1,7 +1,8 @@
 """Projected gradient method with a fixed step.
 
-It is stable for steps below twice the inverse of the largest eigenvalue.  With a stable step, it
-converges slowly, since the compliance is far larger for smooth tractions than for rough ones.
+The method is stable for steps below twice the inverse of the largest eigenvalue.  With a stable
+step, it converges slowly, since the compliance is far larger for smooth tractions than for rough
+ones.
 """
 
 from __future__ import annotations
@@ -16,7 +17,10 @@ MAX_ITERATIONS = 3000
 
 
 def _length(points: Points, step: float) -> float:
-    """Length of a gradient step; `step` is in units of the inverse of the largest eigenvalue."""
+    """Return the length of a gradient step.
+
+    `step` is in units of the inverse of the largest eigenvalue.
+    """
     return step / float(np.abs(np.linalg.eigvals(points.matrix)).max())
 
 
