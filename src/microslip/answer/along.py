@@ -131,7 +131,7 @@ def history(
     Parameters
     ----------
     motion, velocity, amplitude, pressure, poisson, model
-        See `microslip.solve`; the velocity is above 0.
+        See `microslip.solve`; the velocity must be above 0.
     cells : int or None
         Number of rings, or of squares along a side, at least 2.  Defaults to 32.
     steps : int or None
@@ -210,9 +210,9 @@ class Response(Answer):
         mu F_z u_lim.
     stick_fraction : np.ndarray, shape (rows,)
         Fraction of the contact area that sticks in the last step before the row.  It is NaN in the
-        first row and without contact.  Its resolution is limited by the mesh.
+        first row, and in rows without contact.  Its resolution is limited by the mesh.
     tolerance : float
-        Requested largest force error.
+        Largest accepted force error, as requested.
     converged : bool
         Whether every force error is within the tolerance.
     reason : str
@@ -278,8 +278,7 @@ def response(
         `load`.
     state : Response, str or None
         State of the contact in the first row: "full-slip", "full-rotation", or None for no
-        tangential tractions.  If it is a Response, the path continues from the last row of this
-        response.
+        tangential tractions.  If a Response is given, the path continues from its last row.
     pressure : str or Pressure
         Pressure, see `microslip.solve`.  If the load changes, the indenter must be axisymmetric.
     poisson : float
@@ -449,10 +448,11 @@ TOLERANCE = 1e-3
 contact in the comparison."""
 BEYOND_FULL_SLIP = 1.2
 """In the comparison, the loop reverses at plus and minus this displacement, in u_lim.  At nu = 0.5,
-the force is within 2e-4 of full friction there."""
+the force at this displacement is within 2e-4 of full friction."""
 ROWS = 13
 """Number of rows in the initial loading of the comparison, one for every 0.1 u_lim.  A branch of
-the loop has twice as many intervals.  With 49 rows, the computed difference is up to 7 % larger."""
+the loop has twice as many intervals as the initial loading.  With 49 rows, the computed difference
+is up to 7 % larger."""
 
 
 def iwan(

@@ -234,8 +234,8 @@ class Result(Answer):
         Number of time steps in a full period in the finest run.
     observed_order : float or None
         Observed order of convergence of the last three levels, or None if it is unknown.  The
-        expected order is 2.  If the observed order is far below 1, the runs are too coarse for the
-        error estimate.
+        expected order is 2.  If the observed order is far below 1, the runs are too coarse for a
+        reliable error estimate.
     periods : float
         Number of full periods that the longest run needed to find the periodic state; 2.5 means
         five half periods.

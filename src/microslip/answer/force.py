@@ -68,7 +68,7 @@ GAP_MARGIN = 2.0
 """Distance above the static limit at which the contact certainly moves, in units of the limit's
 error."""
 AT_REST, UNBOUNDED = Estimate(0.0, {"model": 0.0}), Estimate(math.nan, {"model": math.inf})
-"""Velocity at rest, and velocity of a contact that has no mean velocity."""
+"""Velocity of a contact at rest, and velocity of a contact without a mean velocity."""
 
 
 def under_force(request: Request) -> Result:

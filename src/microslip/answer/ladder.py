@@ -2,8 +2,8 @@
 
 Level n has n cells, and its numbers of angles and steps are proportional to n.  So the error has a
 single leading term C / n^2, which is estimated from runs at the levels n/4, n/2 and n.  LEVELS
-interleaves two series, each of which doubles from one level to the next.  So the cost grows
-moderately from level to level, and level n can reuse the runs at n/2 and n/4.
+interleaves two series of doublings, 2, 4, 8, ... and 3, 6, 12, ...; so the cost grows moderately
+from level to level, and level n can reuse the runs at n/2 and n/4.
 
 The first level depends on the tolerance and on the motion.  The mesh and the path also adapt to the
 problem.  Rings are graded towards the slip front (discretise.focus_strength).  The number of time
@@ -28,7 +28,7 @@ from microslip.scene.problem import Problem
 ORDER = 2
 """Order of convergence of rings, angles and time steps."""
 RATIO = 2
-"""Ratio of the levels that are extrapolated.  The first level is multiplied by this ratio per
+"""Ratio of successive levels in an extrapolation.  The first level is multiplied by this ratio per
 decade of the tolerance, since extrapolated errors decrease with about the third power of the
 level."""
 LEVELS = tuple(sorted(base * RATIO**k for k in range(9) for base in (RATIO, 3)))
@@ -123,8 +123,8 @@ class Kind(NamedTuple):
     start : int
         Ladder.start.
     steps : int
-        Number of time steps in half a period, divided by the level, for a stroke of u_lim; 0 if
-        there is no march.
+        Number of time steps in half a period, divided by the level, for a stroke of u_lim; 0 if no
+        time integration is needed.
     """
 
     start: int
@@ -132,7 +132,7 @@ class Kind(NamedTuple):
 
 
 TRANSLATION = Kind(start=12, steps=2)
-"""Translations.  Close to full sliding, coarser levels can agree by chance, see
+"""Translations.  Close to full sliding, levels coarser than `start` can agree by chance, see
 tests/answer/test_estimates.py."""
 LOOP = TRANSLATION._replace(start=16)
 """Slow motions without half-period symmetry.  The two halves of a period have different slip
@@ -207,7 +207,8 @@ def _kind(problem: Problem, model: str) -> Kind:
 def _imposing(ladder: Ladder, tolerance: float, cells: int | None, steps: int | None) -> Ladder:
     """Change a ladder so that its first level has the imposed resolution.
 
-    A number that is not imposed is chosen according to the tolerance or the imposed cells.
+    A number of cells or steps that is not imposed is chosen according to the tolerance or the
+    imposed number of cells.
     """
     cells, steps = cells if ladder.cells else None, steps if ladder.steps else None
     if cells is None and steps is None:

@@ -75,7 +75,7 @@ amplitudes per period."""
 CLOSEST_STEADY_FORCE = 1.0 - 1e-7
 """Largest force on a steady rotation, divided by mu times the mean normal load.  The rounding error
 of the friction, 1.1e-16, causes a relative error of 1.1e-16 / (2 (1 - force)) in the velocity.  At
-this force, the relative error is close to the stated 1e-9."""
+this force, the relative error is close to the error estimate of 1e-9."""
 STEPLESS = ("rigid", "dahl")
 """Models that evaluate a formula at every step, without a step solver."""
 

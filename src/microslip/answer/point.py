@@ -37,7 +37,7 @@ def solve(
     time_limit: float | None = None,
     progress: Callable | None = None,
 ) -> Result:
-    """Compute the macroscopic friction of a vibrated contact at one point.
+    """Compute the macroscopic friction of a vibrated contact, or its velocity under a force.
 
     Parameters
     ----------

@@ -1,7 +1,7 @@
 """Stall force and no-load velocity of a self-propelled motion.
 
 The sphere moves forward at a prescribed velocity v, like a body too heavy for its velocity to
-change during a period.  The contact exerts the force -mu(v) on its own body.  The stall force is
+change during a period.  The contact exerts the force -mu(v) on the body.  The stall force is
 -mu(v -> 0), the load that stops the body.  The no-load velocity is the root of mu(v).  Friction
 never decreases with the velocity (theory/exact.py), so two velocities at which friction has
 opposite signs bracket the root.
@@ -29,8 +29,8 @@ from microslip.scene.pressure import Pressure
 from microslip.scene.problem import Problem
 
 FACTOR, FASTEST = 4.0, 1e6
-"""Search for the root: factor between trial velocities, and largest velocity divided by the first
-one."""
+"""Parameters of the search for the root: factor between trial velocities, and largest velocity
+divided by the first trial velocity."""
 
 
 class Propulsion(Answer):

@@ -24,8 +24,8 @@ taken to agree by chance: the differences change sign, or the observed order is 
 the last level need not be better than the one before, and D is the difference of the first two
 levels.
 
-If the differences increase, n/4 is too coarse for the leading term, and a slightly finer level
-probably is, too.  The next n is then one whose coarser levels have already been computed.
+If the differences increase, n/4 is too coarse for the leading term to dominate, and so, probably,
+is a slightly finer level.  The next n is then one whose coarser levels have already been computed.
 """
 
 from __future__ import annotations
@@ -109,7 +109,7 @@ def refine(
     energy_unit: float = np.nan,
     drive_work: float = 0.0,
 ) -> Answer:
-    """Refine until the estimated error is within the tolerance.  No run is repeated.
+    """Refine the resolution until the estimated error is within the tolerance.  No run is repeated.
 
     Parameters
     ----------
@@ -138,8 +138,8 @@ def refine(
         resolution, the observed order, the number of periods in the longest run, the effort of all
         runs, whether every run is `periodic`, and whether the resolution is `imposed`.  The Answer
         has not converged if a run did not converge, if the finest level is not fine enough, or if a
-        run raised run.Spent.  In the last case, the estimates are those before that run, or
-        unknown.
+        run raised run.Spent.  In the last case, the estimates are those obtained before that run,
+        or UNKNOWN if there are none.
     """
     runs: dict[tuple[int, int], Run] = {}
     goal, answer, order = tolerance, None, math.nan

@@ -7,7 +7,7 @@ import numpy as np
 from microslip.foundation.compiled import kernel
 
 DEPTH = 12
-"""Number of stored differences.  Of 5, 8 and 12, the value 12 needs the fewest marches for bores
+"""Number of stored differences.  Among 5, 8 and 12, this value needs the fewest marches for bores
 and loops."""
 DEPENDENT = 1e-8
 """A difference is dropped if the norm of its part orthogonal to newer differences is below this

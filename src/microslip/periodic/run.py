@@ -204,17 +204,16 @@ class Run:
     Attributes
     ----------
     values : mapping of str to float
-        Values by name.  All runs have `friction`, the mean forward force divided by mu times the
-        mean normal load, except for runs to rest.  Further values are `torque` (divided by its
+        Values by name.  All runs except runs to rest have `friction`, the mean forward force
+        divided by mu times the mean normal load.  Further values are `torque` (divided by its
         full-slip value), `dissipation` (energy per period, divided by mu F_z u_lim), `velocity`
-        (mean forward velocity of a driven contact), and, for runs to rest, those listed in
-        rest.py.
+        (mean forward velocity of a driven contact), and, for runs to rest, those listed in rest.py.
     distance : float
         Estimated distance from the periodic (or steady) state, in the unit of the result.
     residual : float
         Residual of the step solver summed over the last period, in the unit of the result.
     periods : float
-        Number of full periods marched in the search for the periodic state; 0 for a steady motion.
+        Number of full periods in the search for the periodic state; 0 for a steady motion.
     effort : Effort
         Effort of all searches.
     reason : str

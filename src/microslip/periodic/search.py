@@ -3,10 +3,10 @@
 A march is the time integration over a period or half a period.  It maps the state at its start to
 the state at its end, and the periodic state is the fixed point of this map.  The transients of
 plain marches last about 1/(2 pi v~) periods.  Anderson acceleration of the map finds its fixed
-point much sooner.  Convergence is judged by three quantities: the residual of the plain map, the
-distance to the next state, and an error computed from the residual and the drift rate of the
-motion.  The last quantity is needed near the static limit, where the state changes so slowly that a
-small residual is no evidence of convergence.
+point much sooner.  Convergence is judged by three quantities: the residual of the plain map
+(without acceleration), the distance to the next state, and an error computed from the residual and
+the drift rate of the motion.  The last quantity is needed near the static limit, where the state
+changes so slowly that a small residual is no evidence of convergence.
 
 The state of a driven body includes two more numbers, its position x and rate x' (see
 contact/march.py).  In one period, unbalanced forces hardly change the state of a heavy body or of a
@@ -214,7 +214,7 @@ class PeriodMap:
         """Convert the tractions at the end of an interval to those at the start of the next
         interval.
 
-        The map is linear.
+        This conversion is linear.
         """
         return self.contact.mirrored(tractions) if self.mirror else tractions
 

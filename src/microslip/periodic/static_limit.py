@@ -13,10 +13,11 @@ This is the counterpart of Melan's shakedown theorem for ratcheting.  At points 
 period of the oscillation alone, s is 0, because q reaches the bound in several directions, so that
 no constant traction can be added.  The mean of q at these points is not 0 for a loop without
 half-period symmetry, which drags the contact along.  At points that never slip, q contains an
-arbitrary constant, which does not change the sum of both terms.
+arbitrary constant, which does not change the sum of the two terms above.
 
 For a motion on a line under a constant load, q(t) moves along the segment between the tractions at
-the two turning points, +-q after subtracting their mean.  So only these two instants matter.
+the two turning points, which are +-q after their mean is subtracted.  So only these two instants
+matter.
 
 Coarse runs of the static limit also give the edges of the stick zone in slow motions.  No formula
 gives the edges for motions on a loop, or for pressures without a closed form.  For rotating
@@ -91,8 +92,8 @@ LOOP_STEP_SHARE = 1e-4
 """Ratio of the step tolerance to the tolerance of the periodic state.  A point's shift depends on
 the square root of the distance between its traction and the bound."""
 ENOUGH = 4.0
-"""Largest accepted ratio of the distance reached to the distance requested; rounding limits the
-search."""
+"""Largest accepted ratio of the distance from the periodic state to its tolerance.  Rounding errors
+can prevent a search from reaching the tolerance."""
 ROUNDING = 1e-12
 """Tolerance of the periodic state of a contact that never sticks, which takes a few marches."""
 LARGEST_SHIFT = 1e-2
@@ -158,7 +159,7 @@ def lens_corner(oscillating: np.ndarray, bound: np.ndarray) -> np.ndarray:
     `oscillating` and the result have the shape (2, ...), with the forward component first.
 
     The two discs |s +- q| <= g intersect in a lens.  s is the forward tip of one disc if the other
-    disc contains it, otherwise the forward corner of the lens.
+    disc contains this tip, otherwise the forward corner of the lens.
     """
     q_forward, q_lateral = oscillating
     size = np.hypot(q_forward, q_lateral)
@@ -182,8 +183,8 @@ def loop_energy(
     u_lim.
 
     Each slipping point slips in a constant direction.  By Masing's rule, it slips twice as far
-    between the turning points as in the first loading.  So the energy is four times the friction
-    bound times the slip of the first loading, summed over the points.
+    between the turning points as in the initial loading.  So the energy is four times the friction
+    bound times the slip of the initial loading, summed over the points.
 
     Parameters
     ----------
@@ -248,8 +249,7 @@ def limit_on_a_loop(
 
 
 def largest_shift(tractions: np.ndarray, bounds: np.ndarray) -> np.ndarray:
-    """Among the shifts s with |q + s| <= g at all phases, find the one with the largest forward
-    component.
+    """Find the shift s with the largest forward component such that |q + s| <= g at all phases.
 
     The discs |q + s| <= g are convex, and so is their intersection.  The intersection contains
     s = 0 and therefore every forward shift below the largest one.
