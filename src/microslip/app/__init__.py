@@ -1,1 +1,1 @@
-"""The command line, the plan of a run, and how a process starts and ends."""
+"""The command line, the plan of a run, and the start and end of a process."""

@@ -22,18 +22,18 @@ if TYPE_CHECKING:
 MOST_COMPLAINTS = 10
 """Largest number of error messages about contacts without a prediction."""
 MOST_LINES = 8
-"""Largest number of lines in a figure."""
+"""Largest number of curves in a figure."""
 NEEDS = {"output": "--table or a range", "figure": "a range"}
 NEEDS |= dict.fromkeys(("decimal", "encoding"), "--table")
 """Options of `predict` that are allowed only with another option."""
 FRICTION = ["mu_apparent", "mu_apparent_error", "friction_force_N", "friction_force_error_N"]
-"""Columns of a friction table, besides its axes."""
+"""Columns of a table of friction, in addition to its axes."""
 
 
 def point(motion: str, **arguments: Any) -> Answer:
     """Compute macroscopic friction at one (velocity, amplitude), in dimensionless quantities.
 
-    The answer is mu_macro, the mean forward friction force divided by mu F_z, with an error
+    The result is mu_macro, the mean forward friction force divided by mu F_z, with an error
     estimate.  This ratio is 1 if the vibration has no effect, and 0 if no friction remains.  The
     apparent coefficient of friction is mu_apparent = mu mu_macro.  F_z is the load without
     oscillation (the reference load), u_lim the tangential displacement at which the whole contact
@@ -73,15 +73,15 @@ def predict(motion: str, table: str | None = None, **arguments: Any) -> Answer:
 
     The contacts can also be the rows of a table, or an input can be a range.
 
-    The answer has error estimates, and warnings where the theory does not apply.  Every quantity
-    has a unit.  mu_macro is a ratio: friction with vibration divided by friction without.
-    mu_apparent is the coefficient of friction with vibration.  For a quantity with a standard
-    uncertainty, such as '0.15 +- 0.05' or '10 N +- 5 %', the answer has intervals and the
-    probability of each outcome.  A quantity can be a range: '0..2 um' gives 11 equally spaced
-    values, '0..2 um, 21' gives 21, and '0.1..10 mm/s, 21, log' gives 21 logarithmically spaced
-    values.  The answer is then a table.  For an oscillating normal load, there are two reference
-    loads.  Stiffness, mass and damping are made dimensionless by mu times the load without
-    oscillation, force and mu_macro by mu times the mean load.
+    The result has error estimates, and warnings if the theory does not apply.  Every quantity has a
+    unit.  mu_macro is the friction with vibration divided by the friction without.  mu_apparent is
+    the coefficient of friction with vibration.  For a quantity with a standard uncertainty, such as
+    '0.15 +- 0.05' or '10 N +- 5 %', the result has intervals, and under a force the probability of
+    each outcome. A quantity can be a range: '0..2 um' gives 11 equally spaced values, '0..2 um, 21'
+    gives 21, and '0.1..10 mm/s, 21, log' gives 21 logarithmically spaced values.  The result is
+    then a table.  For an oscillating normal load, there are two reference loads.  Stiffness, mass
+    and damping are made dimensionless by mu times the load without oscillation, force and mu_macro
+    by mu times the mean load.
     """
     from microslip.si.inputs import is_range, read_inputs
 
@@ -112,7 +112,7 @@ def predict(motion: str, table: str | None = None, **arguments: Any) -> Answer:
             allowed = f"one range, or with a second one of at most {MOST_LINES} values"
             raise InputError("figure", files["figure"], f"allowed with {allowed}")
         return _predictions(cases)
-    read_inputs(motion, **arguments)  # most refusals, before the import of the solver
+    read_inputs(motion, **arguments)  # refuses most invalid input before the solver is imported
     from microslip.si.predict import checked_contact, predict_contact
 
     contact = checked_contact(motion, **arguments)
@@ -206,7 +206,7 @@ def fit(
 ) -> Answer:
     """Fit the coefficient of friction and u_lim to measured friction.
 
-    The answer contains the coefficient of friction without vibration, and the displacement u_lim at
+    The result contains the coefficient of friction without vibration, and the displacement u_lim at
     which the whole contact slides, or the shear modulus.  Each row of the CSV file is a measurement
     of friction under vibration.  The heading names the columns and their units: friction [N] or mu;
     some of speed [mm/s], amplitude [um], frequency [kHz], load [N]; and optionally friction_error
@@ -228,7 +228,7 @@ def fit(
 def response(path: str, output: str | None = None, **arguments: Any) -> Answer:
     """Compute the forces of a contact that follows a path from a file.
 
-    The answer contains forces, torque, dissipated energy and stick fraction, with error estimates.
+    The result contains forces, torque, dissipated energy and stick fraction, with error estimates.
     The columns of the file are forward, lateral, angle, and load or indentation, with units as in
     forward [um].  `load` is the load of the reference state.
     """
@@ -299,8 +299,8 @@ def iwan(output: str | None = None, **arguments: Any) -> Answer:
 
     The model consists of parallel Jenkins elements, each a spring in series with a slider, for a
     contact that moves along a line.  The table contains the stiffness and the limit force of each
-    element.  At nu = 0 the model with many elements is exact for every load path.  At nu > 0 it is
-    compared with the full contact, and the difference is part of the error.
+    element.  At nu = 0 the model with many elements is exact for every load path.  At nu > 0, the
+    model is compared with the full contact, and the difference is part of the error.
     """
     import microslip
 

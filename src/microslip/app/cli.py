@@ -35,8 +35,8 @@ def main(words: list[str]) -> int:
     Returns
     -------
     int
-        0 if the answer is complete, 1 if not, 2 for bad input.  `sweep` returns the exit code of
-        Snakemake.
+        Exit code: 0 if the answer is complete, 1 if not, 2 for bad input.  `sweep` returns the exit
+        code of Snakemake.
     """
     if words[:1] == ["sweep"]:
         from microslip.app import sweep  # late, as it imports what other commands do not need

@@ -25,7 +25,7 @@ def job_log(path: str | Path, shown: int = logging.WARNING) -> Iterator[logging.
         sys.exit(f"Error: {advice('write', path, error)}")
     log = logging.getLogger("microslip")
     log.setLevel(logging.INFO)
-    logging.raiseExceptions = False  # what a full disk has refused is written or reported below
+    logging.raiseExceptions = False  # errors of a full disk are handled below
     screen = logging.StreamHandler()
     screen.setLevel(shown)
     for handler in (file, screen):

@@ -140,8 +140,8 @@ class Plan:
 class Results:
     """The folder with the results of a plan.
 
-    A file that is damaged, or in which points have failed, is not replaced: the new file gets
-    another name with a number, such as data/bore.0123456789abcdef-1.nc.
+    A file that is damaged, or in which points have failed, is not replaced.  Instead, the new file
+    has a number in its name, such as data/bore.0123456789abcdef-1.nc.
 
     Attributes
     ----------
@@ -153,8 +153,10 @@ class Results:
     """
 
     def __init__(self, plan: Plan, folder: str | Path, here: bool = True, whole: bool = False):
-        """here: False for a folder in remote storage, which counts as empty.  whole: if True, list
-        the inputs of all products."""
+        """Find the complete files of all products, and the missing inputs of the others.
+
+        here: False for a folder in remote storage, which counts as empty.  whole: if True, list the
+        inputs of all products."""
         self.plan, self.folder, self.here = plan, Path(folder), here
         self._listed = cache(self._list)
         self.stems: dict[str, str] = {}
@@ -184,7 +186,8 @@ class Results:
     def link(self) -> None:
         """Link the plain names of products to their files, if the files exist.
 
-        The other links get an old date, since Snakemake replaces a link only if an input is newer.
+        The dates of other links are set far back, since Snakemake replaces a link only if an input
+        is newer.
         """
         for plain, (_, path) in self.plain().items():
             link = self.folder / plain
@@ -193,7 +196,7 @@ class Results:
             elif link.exists():
                 os.utime(link, (1, 1), follow_symlinks=False)
             elif link.is_symlink():
-                link.unlink()  # its file is gone, for which Snakemake fails
+                link.unlink()  # Snakemake fails for a link without its file
 
     def stems_of(self, rule: str) -> list[str]:
         """Return the names, without extension, of the missing files that a rule makes."""

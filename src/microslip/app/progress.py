@@ -16,8 +16,8 @@ earlier."""
 def progress(title: str, total: int | None = None) -> Iterator[Callable[[str], None]]:
     """Context manager that shows a title, the number of finished steps and the elapsed time.
 
-    It yields a function that counts a step and shows a text about it.  Nothing is shown if standard
-    error is not a terminal.
+    It yields a function that counts a step and shows a string about this step.  Nothing is shown if
+    standard error is not a terminal.
     """
     if not sys.stderr.isatty():
         yield lambda text: None
@@ -34,7 +34,7 @@ def progress(title: str, total: int | None = None) -> Iterator[Callable[[str], N
             bar.set_description_str(" ".join([title, text]).strip(), refresh=False)
             bar.update()
 
-        def tick() -> None:  # the elapsed time goes on between two steps
+        def tick() -> None:  # updates the elapsed time between two steps
             while not ended.wait(BETWEEN):
                 bar.update(0)
 

@@ -1,8 +1,8 @@
 """The command `microslip sweep`: run this package's workflow with Snakemake in the current folder.
 
 For bad input, Snakemake prints a list of all its options or a traceback, and returns exit code 1.
-So the arguments and the configuration are checked here first.  Bad input then gives one line and
-exit code 2.
+Therefore, this module checks the arguments and the configuration first.  It reports bad input in
+one line and returns exit code 2.
 """
 
 from __future__ import annotations
@@ -48,10 +48,10 @@ def main(arguments: list[str]) -> int:
     It runs in the current folder and writes datasets to results/, and figures to results/figures/.
     Existing results are not computed again.  A CONFIGURATION is a name in the folder config, here
     or in the package; the default is config/config.yaml.  A TARGET is a dataset or a figure of the
-    configuration, such as bore, or a file, such as results/bore.nc; without a TARGET, all of them
-    are made.  All other options are passed to Snakemake, see snakemake --help; default options are
-    in profiles/default.  The exit code is 2 for bad input, and otherwise the exit code of
-    Snakemake. Examples: microslip sweep --cores 2; microslip sweep extended --dry-run; microslip
+    configuration, such as bore, or a file, such as results/bore.nc; without a TARGET, all datasets
+    and figures are made.  All other options are passed to Snakemake (see snakemake --help); default
+    options are in profiles/default.  The exit code is 2 for bad input, and otherwise the exit code
+    of Snakemake. Examples: microslip sweep --cores 2; microslip sweep extended --dry-run; microslip
     sweep --configfile mine.yaml --config points_per_job=10.
     """
     if {"-h", "--help"} & set(arguments):

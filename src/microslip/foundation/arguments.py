@@ -40,7 +40,7 @@ def without_array(value: Any) -> Any:
 
 
 def is_real(value: object) -> TypeGuard[float]:
-    """True for real numbers, except booleans and NumPy time spans."""
+    """Return True for real numbers, except booleans and NumPy time spans."""
     if isinstance(value, int | float):
         return not isinstance(value, bool)
     import numpy as np  # late, since configurations do not need NumPy

@@ -172,7 +172,7 @@ def table_of(argument: str, source: Any, names: Mapping[str, str | None], **form
 
 
 def _is_missing(value: Any) -> bool:
-    """True for None, and for NaN, NA and NaT."""
+    """Return True for None, NaN, NA and NaT."""
     missing = type(value).__name__ in ("NoneType", "NAType", "NaTType")
     return missing or isinstance(value, float) and value != value
 

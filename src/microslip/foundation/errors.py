@@ -7,7 +7,7 @@ import errno
 import os
 
 NO_WRITING = (errno.ENOSPC, errno.EDQUOT, errno.EROFS)
-"""Operating system errors whose message already makes the remedy clear."""
+"""Error numbers of operating system errors whose message makes the remedy clear."""
 
 LONGEST = 400
 """Largest length of a value in a message, in characters.  The middle of a longer value is

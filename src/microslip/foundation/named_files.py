@@ -298,7 +298,7 @@ def _class_in(file: NamedFile, base: type) -> type:
 
 
 class Family(Generic[T]):
-    """A function that returns a motion or a pressure for a name.
+    """Callable that returns the motion or the pressure with a given name.
 
     The most recent objects of data files are stored, so that files with equal content share one
     object.
@@ -310,7 +310,7 @@ class Family(Generic[T]):
     base : type
         Base class.
     classes : iterable of types
-        Classes of the package, in the order in which they are listed to users.
+        Classes of the package, in the order of the lists in messages.
     create : callable
         create(file, content) returns the object for a data file; see read_object.
 

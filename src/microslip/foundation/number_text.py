@@ -42,8 +42,8 @@ def number_text(
     Returns
     -------
     str
-        A text such as "0.2263 +- 0.0072 N".  The error is rounded up to two significant digits, and
-        the number is rounded to the last decimal of the error.  If the error is too small to be
+        A string such as "0.2263 +- 0.0072 N".  The error is rounded up to two significant digits,
+        and the number is rounded to the last decimal of the error.  If the error is too small to be
         printed, trailing zeros of the number are kept.  For a number without an error, trailing
         zeros are removed.  A number that is 0 within its error, or within the rounding error of
         numbers near 1, is printed as 0.  Its printed error is then the error plus the absolute
@@ -93,16 +93,16 @@ def _rounded(number: float, digits: int, rounding: str | None = None) -> Decimal
 
 
 def interval_text(low: float, high: float, unit: str = "", *, error: float = 0.0) -> str:
-    """Format an interval.  Both ends are rounded outwards to two significant digits of the width.
+    """Format an interval.  Both bounds are rounded outwards to two significant digits of the width.
 
     Parameters
     ----------
     low, high : float
-        Ends of the interval, in the unit.
+        Bounds of the interval, in this unit.
     unit : str
         Unit to print after the numbers.
     error : float
-        Error estimate of both ends, in the unit.  It extends the interval on both sides.  An
+        Error estimate of both bounds, in this unit.  It extends the interval on both sides.  An
         interval of positive numbers is not extended below 0.
     """
     low, high = float(low), float(high)
@@ -133,6 +133,6 @@ def prefixed(value: float, unit: str) -> tuple[str, float]:
 
 
 def prefixed_text(value: float, unit: str, digits: int = EXACT_DIGITS) -> str:
-    """Format an exact quantity with a metric prefix.  value: in the SI unit."""
+    """Format an exact quantity with a metric prefix.  value: value in the SI unit."""
     name, size = prefixed(value, unit)
     return number_text(value / size, unit=name, digits=digits)

@@ -30,7 +30,7 @@ OUTER = {"app", "bundle", "config", "datasets", "foundation", "report", "si", "s
 NUMBERS = {"foundation/compiled.py", "sweeps/evaluate.py", "sweeps/period_codec.py"}
 """Files in OUTER on which results depend: compilation, and conversion of the solver's output."""
 METHODS = "periodic/methods/"
-"""Folder whose files count only for requests that name them."""
+"""Folder of comparison methods.  A file counts only for requests with its method."""
 ENDINGS = {".py", ".csv", ".html", ".css", ".js"}
 """File name extensions of modules, of their tables, and of parts of pages."""
 

@@ -19,7 +19,8 @@ NUMBER = re.compile(
 WHOLE = re.compile(r"[+-]?[0-9]{1,18}", re.ASCII)
 MINUS = "\N{MINUS SIGN}"
 HALVES = {"diameter": "radius", "stroke": "amplitude", "peak_to_peak": "amplitude"}
-"""Quantities that are half of another one, keyed by words in the name of the latter."""
+"""Quantities that are half of another quantity, keyed by words in the name of the other
+quantity."""
 
 
 def read(argument: str, text: str, whole: bool = False) -> float | int:
@@ -143,8 +144,8 @@ def refuse_outside(
 
 
 def name_of(cls: type) -> str:
-    """Return the name of a class in strings, such as "continuous-bore" for ContinuousBore.  A class
-    in a user's file has the attribute `text_name`."""
+    """Return the name of a class for use in strings, such as "continuous-bore" for ContinuousBore.
+    A class in a user's file has the attribute `text_name`."""
     name = re.sub(r"(?<=[a-z0-9])(?=[A-Z])", "-", cls.__name__).lower()
     return vars(cls).get("text_name", name)
 

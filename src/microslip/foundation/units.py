@@ -1,4 +1,4 @@
-"""Quantities: one number, one unit, and possibly a standard uncertainty, converted to SI units.
+"""Quantities with one number, one unit, and possibly a standard uncertainty, converted to SI units.
 
 A string has the form NUMBER UNIT or NUMBER UNIT +- NUMBER UNIT.  A number has the digits 0 to 9, a
 decimal point and an exponent.  A unit is a product of the units in UNITS with integer exponents, as
@@ -36,12 +36,12 @@ DEFINITIONS = {
     "kn,kt,knot=1852*m/h mph=mi/h kph=1e3*m/h mps=m/s fps=ft/s": {"": 0},
     "meter,metre=m second=s gram=g radian=rad newton=N pascal=Pa degree=deg": SPELLED_PREFIXES,
 }
-"""Prefixes by definitions.  A definition is a number times known units.  One hertz is one turn per
-second, which differs from 1 rad/s by 2 pi."""
+"""Allowed prefixes, keyed by definitions of units.  A definition is a number times known units.
+One hertz is one turn per second, which differs from 1 rad/s by 2 pi."""
 CYCLIC = re.compile(r"\w{0,2}(Hz|cps)")
 """Names of cyclic frequencies, which are accepted alone but not in products."""
 ANGULAR = re.compile(r"\w?rad(/s|\s*s\^?-1|·?s⁻¹)?")
-"""Units that are of the kind of rad or rad/s."""
+"""Units of the same kind as rad or rad/s."""
 NUMBER = re.compile(r"[+-]?(?:(\d+)\.?(\d*)|\.(\d+))(?:[eE]([+-]?\d+))?", re.A)
 FACTOR = re.compile(
     r"\s*([*/·⋅]?)\s*([^\W\d⁻¹²³]+|°)(?:\s*(?:\^|\*\*)\s*(-?[1-9])(?!\d)|(⁻?[¹²³])(?!\w))?"
@@ -55,7 +55,7 @@ EXAMPLES = {
     **{"rad": "0.5 deg", "rad/s": "60 rpm", "kg/m^3": "7850 kg/m^3", "N/m": "10 N/um", "": "0.3"},
     **{"kg": "20 g", "N*s/m": "5 N*s/m", "m^2/N": "1e-5 mm^3/N/m"},
 }
-"""An example of a quantity for each SI unit."""
+"""Example of a quantity, keyed by SI unit."""
 RATE = ", which may mean Hz or rad/s; they differ by 2 pi, so write one of them"
 HINTS = {
     "Hz": {"s^-1": RATE},

@@ -28,7 +28,7 @@ ROUND = 1e-6
 """Largest relative difference between two radii that count as equal."""
 OUT_OF_RANGE = "outside the range of floating-point numbers; allowed are sizes of real bodies"
 DRIVES = {"force": "force", "drive_stiffness": "stiffness", "mass": "mass", "damping": "damping"}
-"""Arguments of microslip.solve, keyed by the inputs of the drive."""
+"""Arguments of microslip.solve, keyed by the inputs of `predict` that describe the drive."""
 INPUT_OF = {"velocity": "speed"} | {group: name for name, group in DRIVES.items()}
 """Inputs of `predict`, keyed by the arguments of microslip.solve."""
 
@@ -53,9 +53,9 @@ class Contact:
     radius : float or array
         Radius of relative curvature, 1/R = 1/R1 + 1/R2, m.
     mean_radius : float or array
-        Geometric mean of both radii of relative curvature of a Hertz contact, m.
+        Geometric mean of the two radii of relative curvature of a Hertz contact, m.
     ratio : float or array
-        Shorter divided by longer axis of a Hertz contact; 1 for other contacts.
+        Ratio of the shorter axis to the longer axis of a Hertz contact; 1 for other contacts.
     contact_radius : float or array
         Contact radius, or half the longer side of the contact, m.
     u_lim : float or array
@@ -172,7 +172,7 @@ class Contact:
     @cached_property
     def motion(self) -> str | Motion:
         """The motion for microslip.solve.  If it has several amplitudes, they are divided by the
-        largest."""
+        largest one."""
         if not self.kind.several:
             return self.kind.name
         largest = float(self.amplitude)
@@ -234,8 +234,8 @@ class Contact:
 
     @property
     def coordinates(self) -> dict[str, Any]:
-        """Dimensionless groups on which the result of the solver depends, as arrays.  The static
-        limit depends only on the groups before the velocity."""
+        """Dimensionless groups on which the result of the solver depends, keyed by name.  The
+        static limit depends only on the groups before the velocity."""
         inputs, stroke = self.inputs, self.kind.stroke
         groups = {"poisson": self.poisson, "ratio": self.ratio, "phase": inputs.phase}
         if stroke is None:
@@ -324,7 +324,7 @@ def hertz_ellipse(ratio: Any) -> tuple[Any, Any, Any]:
         divided by 3 F R / (4 E*), where R is the larger radius of relative curvature (K. L.
         Johnson, Contact Mechanics, 4.2); and G* in working units (see scene.hertz.Ellipse).
     """
-    from scipy.special import ellipe, ellipk  # late: refusals do not need SciPy
+    from scipy.special import ellipe, ellipk  # late, since invalid input is refused without SciPy
 
     m = np.where(ratio == 1.0, 0.5, 1.0 - ratio**2)
     first, second = ellipk(m), ellipe(m)

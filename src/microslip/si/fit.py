@@ -14,8 +14,8 @@ profile likelihood.  It does not depend on the parametrisation, and may be infin
 
 Without a map, the solver computes a coarse map first, which is used only for the change of friction
 between two guesses of u_lim.  Then, the solver computes the rows at the best guess, and the coarse
-map is corrected by the difference.  This is repeated.  At the end, the remaining error due to the
-coarse map is of second order.
+map is corrected by the difference.  The last two steps are repeated.  At the end, the remaining
+error due to the coarse map is of second order.
 """
 
 from __future__ import annotations
@@ -60,7 +60,7 @@ for _name, _unit in (("friction", "N"), ("mu", "")):
     COLUMNS[_name] = Input("", _unit, "", -math.inf, exact=True)
     COLUMNS[f"{_name}_error"] = Input("", _unit, "", exact=True)
 UNITS = {name: one.unit or "" for name, one in COLUMNS.items()}
-"""SI unit of each allowed column."""
+"""SI unit of each allowed column, keyed by name."""
 PARAMETERS = {"mu": "", "u_lim": "m", "shear_modulus": "Pa"}
 """SI unit of each fitted parameter."""
 LISTS = "understood", "warnings", "left_out"
@@ -93,14 +93,14 @@ MOST_PASSES, SETTLED = 6, 5e-4
 no further correction is made."""
 SMALLEST_MU = 1e-5
 WIDEST_MU = 2.0
-"""Largest allowed ratio between the upper and the lower end of the interval for mu."""
+"""Largest allowed ratio of the upper to the lower bound of the interval for mu."""
 UNLIKELY = 0.01
 """Probability (p-value) of the sum of squares below which a warning is given."""
 REGION = 801
 """Number of values of ln u_lim at which the confidence region is computed."""
 PIECES = 60
-"""Number of linearly spaced points on each curve of the figure.  The curve has as many
-logarithmically spaced points."""
+"""Number of linearly spaced points on each curve of the figure.  The number of logarithmically
+spaced points is the same."""
 ROW_UNITS = {"_Pa": "Pa", "_m_s": "m s-1", "_Hz": "Hz", "_N": "N", "_m": "m", "_si": "m"}
 """Units of the variables in a dataset, keyed by the last part of the name."""
 
@@ -253,8 +253,8 @@ def fit(
         A CSV file with a heading line such as `speed [mm/s],amplitude [um],friction [N]`, or
         columns with such names.  Columns without a unit are in SI units.  The columns are speed,
         amplitude, frequency, load; friction (mean forward force) or mu (friction divided by load);
-        optionally their standard errors friction_error or mu_error, and text columns named label,
-        name, id, sample or comment.
+        optionally the standard errors friction_error or mu_error of the measured values, and text
+        columns named label, name, id, sample or comment.
     map : xarray.Dataset, optional
         Dataset of a sweep of this motion; see `open_map`.  Interpolation in a map is fast.
         Without a map, the solver computes every point.
@@ -469,8 +469,8 @@ def _of_solver(rows: Rows, motion: str, poisson: float, tolerance: float) -> Fri
 
 
 def _lengths(rows: Rows, load: float | None = None) -> np.ndarray:
-    """Return the dimensionless velocity and amplitude of the rows times u_lim at the mean load, m,
-    as an array of shape (2, n)."""
+    """Return the dimensionless velocity and amplitude of the rows, multiplied by u_lim at the mean
+    load, as an array of shape (2, n) in m."""
     speed, amplitude, loads, frequency = (rows[key] for key in KEYS)
     share = (loads / (load or loads.mean())) ** (2.0 / 3.0)
     return np.stack([speed / (2.0 * math.pi * frequency), amplitude]) / share

@@ -42,9 +42,9 @@ class Input(NamedTuple):
     low, high : float
         Finite values with low < value <= high are allowed.
     zero : bool
-        Whether `low` itself is allowed.
+        True if `low` itself is allowed.
     exact : bool
-        Whether the input cannot have an uncertainty.
+        True if the input cannot have an uncertainty.
     """
 
     group: str
@@ -126,7 +126,7 @@ class Kind:
     Attributes
     ----------
     name, description : str
-        Name for microslip.solve, and description of the sphere's movement.
+        Name for microslip.solve, and description of how the sphere moves.
     unit : str or None
         SI unit of the amplitude if the motion has only one; empty if the amplitude is a factor for
         the samples of a file.
@@ -194,15 +194,16 @@ normal         || load_amplitude frequency \
   | while its normal load oscillates, alone or with a motion
 continuous-bore|| rotation            | | and spins steadily about the contact normal
 """)
-"""Motions with inputs of their own.  All other motions have one amplitude or a rotation."""
+"""Kinds of the motions that need their own list of inputs.  All other motions have one amplitude or
+a rotation."""
 AT_REST = Kind("", "rests", needed=())
 """Kind of a contact without a motion."""
 
 
 def kind_of(motion: Any) -> Kind:
     """Return the Kind of a motion.  The motion is a name, a name with parameters, a user's motion,
-    or a file with one period, with units.  Raises InputError if the unit of its amplitude is not
-    unique."""
+    or a file with one period in SI or other units.  Raises InputError if the unit of its amplitude
+    is not unique."""
     if isinstance(motion, str) and motion in MOTIONS:
         return MOTIONS[motion]
     if isinstance(motion, str) and motion.startswith("file:"):
@@ -338,16 +339,16 @@ def read_inputs(motion: Any, **given: Any) -> Inputs:
     Parameters
     ----------
     motion : str or None
-        Motion, as for `microslip.predict`; None for a contact without a motion, which has the
-        inputs of the groups "bodies" and "load".
+        Motion, as for `microslip.predict`; None for a contact without a motion, for which only
+        inputs of the groups "bodies" and "load" are allowed.
     **given
-        Inputs by the names in INPUTS.  None is a missing input.
+        Inputs, with their names in INPUTS.  An input that is None counts as missing.
 
     Raises
     ------
     InputError
-        If inputs are missing (the message names all of them), contradict each other, or are out of
-        range.
+        If inputs are missing, contradict each other, or are out of range.  The message lists all
+        missing inputs.
     """
     kind = AT_REST if motion is None else kind_of(motion)
     given = {name: value for name, value in given.items() if value is not None}
@@ -367,7 +368,7 @@ def read_inputs(motion: Any, **given: Any) -> Inputs:
 
 
 def is_range(name: str, value: object) -> bool:
-    """Whether the value of a quantity is a text with a range."""
+    """Return True if the value of a quantity is a string with a range."""
     quantity = name in INPUTS and INPUTS[name].unit is not None
     return quantity and isinstance(value, str) and ".." in value
 
@@ -395,9 +396,9 @@ def read_quantity(name: str, value: Any, one: Input) -> Quantity:
 
 
 def _check(motion: Any, kind: Kind, given: Mapping[str, Any]) -> str | None:
-    """Raise InputError for inputs that contradict each other or are missing.
+    """Check that the inputs are complete and do not contradict each other.  Raises InputError.
 
-    Returns the input that a reduction replaces.
+    Returns the name of the input that a reduction replaces, or None.
     """
 
     def refuse(arguments: str, is_wrong: object, allowed: str) -> None:

@@ -1,4 +1,4 @@
-"""Materials by name, with the sources of their properties, and hardness scales."""
+"""Materials with the sources of their properties, and hardness scales."""
 
 from __future__ import annotations
 
@@ -19,8 +19,8 @@ ROCKWELL |= {65: 832, 68: 940}
 """Vickers numbers of steels, keyed by Rockwell C numbers (ASTM E140, Table 1)."""
 VICKERS = 9.80665e6 / 0.9272
 """Mean pressure for a Vickers number of 1, Pa.  The Vickers number is the force in kgf divided by
-the area of the indent's faces in mm^2.  The projected area is sin(68 degrees) times that of the
-faces."""
+the area of the indent's faces in mm^2.  The projected area of the indent is sin(68 degrees) times
+the area of the faces."""
 BRINELL = 0.95
 """Brinell number divided by Vickers number, for steels from 80 to 650 HV (ISO 18265, Table A.1)."""
 SCALES = re.compile(r"(.*?)\s*(HV|HRC|HBW?|HBS|HR[ABD-Z]|HK|HS|Shore.*|Mohs)", re.S)
@@ -42,7 +42,7 @@ class Material:
     poisson : float
         Poisson's ratio, 0 to 0.5, dimensionless.
     density, hardness : float or None
-        Density, kg/m^3, and mean pressure under a hardness indenter, Pa; None if unknown.
+        Density, kg/m^3, and hardness as the mean pressure under the indenter, Pa; None if unknown.
     source : str
         Source of the properties.
 
@@ -140,7 +140,7 @@ def read_hardness(value: object) -> Quantity:
     if scale == "HRC":
         if not 20.0 <= number <= 68.0:
             raise ValueError("allowed is 20 to 68 HRC, or a Vickers hardness")
-        from numpy import interp  # late: most refusals come before the import of NumPy
+        from numpy import interp  # late, since NumPy is slow to import
 
         number = float(interp(number, [*ROCKWELL], [*ROCKWELL.values()]))
     pressure = number * VICKERS
@@ -155,4 +155,4 @@ def _materials() -> dict[str, Material]:
 
 
 MATERIALS = _materials() | {"rigid": Material(math.inf, 0.0)}
-"""Materials by name, from materials.csv in SI units."""
+"""Materials from materials.csv in SI units, keyed by name."""

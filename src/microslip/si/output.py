@@ -27,8 +27,8 @@ class Output(NamedTuple):
         Sentence that is printed after the number.
     factors : str
         Names of the factors whose product is the output.  A factor is an item of
-        predict.factors_of, or an attribute of a Contact.  By default, the only factor has the name
-        of the output.
+        predict.factors_of, or an attribute of a Contact.  By default, there is one factor, with the
+        same name as the output.
     """
 
     unit: str
@@ -167,7 +167,7 @@ def input_column(name: str, unit: str, kind: str = "value") -> str:
 
 @dataclass(frozen=True, kw_only=True)
 class Prediction:
-    """Friction of a vibrated contact in SI units.
+    """Friction of a vibrated contact in SI units, as returned by `predict`.
 
     Every column of `to_dict` is also an attribute.  Each output has a value, such as `mu_macro` or
     `friction_force_N`, and an error estimate, such as `friction_force_error_N`.  If inputs are
@@ -187,8 +187,8 @@ class Prediction:
     model : str
         Name of the contact model, "closed-form" or "map".
     converged, reason : bool, str
-        True if the error estimate of mu_macro, or of the speed under a force, is at most the
-        tolerance.  Otherwise, `reason` is set.
+        `converged` is True if the error estimate of mu_macro, or of the speed under a force, is at
+        most the tolerance.  Otherwise, `reason` is the reason why it is not.
     outcome : str or None
         Outcome under a prescribed force: "moves", "stays", "runs away", or "undecided" if the speed
         is below its error estimate.  None at a prescribed speed, and if the solver failed.
@@ -324,8 +324,8 @@ def _scaled(size: float, unit: str) -> tuple[str, float]:
 
 
 def _lines(title: str, one: Value, sentence: str) -> list[str]:
-    """Format a Value: a line with its error, and if the inputs are uncertain a line with its
-    uncertainty."""
+    """Format a Value: one line with its error, and a second line with its uncertainty if the inputs
+    are uncertain."""
     value, error = one.value, one.error
     size = max(abs(value), error if abs(value) <= error < math.inf else 0.0)
     name, scale = _scaled(size, one.unit)

@@ -75,7 +75,7 @@ def predict_response(
     progress: Callable[[int, int], None] | None = None,
     **contact: object,
 ) -> RealResponse:
-    """Compute the forces of a contact of two bodies along a measured path, in SI units.
+    """Compute the forces in a contact of two bodies that follows a measured path, in SI units.
 
     Parameters
     ----------
@@ -104,7 +104,7 @@ def predict_response(
     """
     real = only_contact(contact)
     columns = read_path(path, decimal=decimal, encoding=encoding)
-    from microslip.answer.along import response  # late: refusals do not need the solver
+    from microslip.answer.along import response  # late, to refuse invalid input fast
 
     units = scales(real, columns)
     body: Any = {"pressure": real.pressure, "poisson": real.poisson}
@@ -169,7 +169,7 @@ def read_path(path: Any, **form: str) -> dict[str, np.ndarray]:
 def predict_iwan(
     *, elements: int | None = None, tolerance: float | None = None, **contact: object
 ) -> Iwan:
-    """Compute the Iwan model of a contact of two bodies: parallel springs with sliders, in SI
+    """Compute an Iwan model (parallel springs with sliders) of a contact of two bodies, in SI
     units.
 
     Parameters
@@ -186,7 +186,7 @@ def predict_iwan(
     Returns
     -------
     Iwan
-        Elements with stiffnesses in N/m and forces in N.
+        The elements, with stiffnesses in N/m and forces in N.
 
     Raises
     ------
@@ -194,7 +194,7 @@ def predict_iwan(
         If an argument is invalid.  The message contains its name.
     """
     real = only_contact(contact)
-    from microslip.answer.along import iwan  # late: refusals do not need the solver
+    from microslip.answer.along import iwan  # late, to refuse invalid input fast
 
     try:
         model = iwan(real.pressure, poisson=real.poisson, elements=elements, tolerance=tolerance)

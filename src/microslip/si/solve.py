@@ -64,7 +64,7 @@ class NoSolutionError(InputError):
 
 
 class _SolverFailureError(Exception):
-    """The solver has no result at a point of the search."""
+    """The solver failed at a point of the search."""
 
 
 def answer_of(contact: Contact) -> Prediction:
@@ -110,13 +110,13 @@ def answer_of(contact: Contact) -> Prediction:
 
 
 def solve_at(contact: Contact, velocity: float | None, tolerance: float, **changes: Any) -> Result:
-    """The Result of microslip.solve, or of a map, for a contact.
+    """Return the Result of microslip.solve, or of a map, for a contact.
 
     velocity: dimensionless velocity; None under a prescribed force.  A velocity above the range of
     the solver is replaced by the largest allowed velocity, at which the vibration has no effect.
     changes: dimensionless force, stiffness, mass and damping.
 
-    Raises InputError.  The message names the input of `predict`.
+    Raises InputError about the input of `predict`.
     """
     inputs, settings = contact.inputs, settings_of(contact)
     if velocity is not None:
@@ -161,8 +161,8 @@ def largest_force(contact: Contact) -> float:
     """Return the smallest constant force at which the contact runs away, divided by mu times the
     mean load.
 
-    It is 1 for a body with a mass.  Otherwise it is the smallest normal load in a period divided by
-    the mean load.
+    This force is 1 for a body with a mass.  Otherwise, it is the smallest normal load in a period
+    divided by the mean load.
     """
     if contact.inputs.mass or contact.steady:
         return 1.0
@@ -217,7 +217,7 @@ def _friction(
     if abs(gap) <= error:
         reason = "the force differs from its threshold by less than the error of the threshold, "
         reason += f"{error:.1e} of mu times the load"
-        from microslip.answer.force import GAP_MARGIN  # late: compiled code
+        from microslip.answer.force import GAP_MARGIN  # late, since it loads compiled code
 
         drive["force"] = min(force - gap + GAP_MARGIN * error, limits.LARGEST_FORCE)
         faster = solve_at(contact, None, tolerance, **drive).mean_velocity
@@ -268,7 +268,7 @@ def _rest(contact: Contact) -> tuple[dict[str, Value], str]:
         return {}, "computed for a contact without mass only"
     if not contact.shape.is_round:
         return {}, "computed for a round contact only"
-    from microslip.answer.force import shakedown  # late: compiled code
+    from microslip.answer.force import shakedown  # late, since it loads compiled code
 
     try:
         rest = shakedown(contact.motion, force=float(drive["force"]), **settings_of(contact))
@@ -291,7 +291,7 @@ def simplifications(contact: Contact, answer: Prediction) -> list[str]:
     inputs, friction, sentences = contact.inputs, answer.values["friction"], []
     if inputs.force is not None or not answer.converged or answer.model not in MODELS:
         return []
-    # the choice of a model distinguishes a velocity of 0 from others
+    # for the choice of a model, only velocity 0 differs from other velocities
     problem = replace(problem_of(contact), velocity=min(contact.velocity, 1.0))
     drive, tolerance = within_range(contact.drive(contact.mean_load)), inputs.tolerance or TOLERANCE
     for sentence, change in SIMPLER.items():
@@ -318,7 +318,8 @@ class FrictionMap:
     Raises
     ------
     InputError
-        If the dataset has another motion or pressure, or a drive.
+        If the dataset is for another motion or pressure, or for a drive other than a prescribed
+        velocity.
     """
 
     def __init__(self, dataset: Any, motion: str, pressure: str = "hertz"):
@@ -444,7 +445,8 @@ def _check_share(inputs: Inputs, share: float, tolerance: float) -> None:
 
 
 def _line(inputs: Inputs, name: str, share: float) -> tuple[float, float, float, float, float]:
-    """Express the unknown as scale * exp(power * place).  Friction decreases with increasing place.
+    """Express the unknown as scale * exp(power * place), where friction decreases as `place`
+    increases.
 
     Returns
     -------

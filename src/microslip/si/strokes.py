@@ -42,11 +42,12 @@ class Stroke:
     columns : dict of str to np.ndarray, shape (rows,)
         Columns with names from UNITS.  Displacements are relative to their mean over the period.
     frequency, mean_load : float or None
-        Frequency from the column `time`, Hz, and mean of the load, N; None without such a column.
+        Frequency from the column `time`, Hz, and mean of the column `load`, N; None if the column
+        is missing.
     reach, pace : tuple of float
         `reach` contains the largest tangential displacement from the mean, m, and the largest
-        rotation, rad.  `pace` contains the largest speeds of both, divided by the angular
-        frequency.
+        rotation, rad.  `pace` contains the largest speeds of displacement and rotation, divided by
+        the angular frequency.
     hint : str
         Hint for a period with many rows; empty for other periods.
     """
@@ -60,8 +61,8 @@ class Stroke:
     hint: str
 
     def deviations(self, contact: Any) -> dict[str, np.ndarray]:
-        """Return the columns in the units of `microslip.Sampled`.  The mean load or indentation,
-        which is 1, is subtracted."""
+        """Return the columns in the units of `microslip.Sampled`.  From a load or indentation, its
+        mean of 1 is subtracted."""
         units = scales(contact, self.columns)
         return {name: one / units[name] - (name in NORMAL) for name, one in self.columns.items()}
 
@@ -87,8 +88,8 @@ def scales(contact: Any, columns: dict[str, np.ndarray]) -> dict[str, float]:
 
 
 def factors(units: Mapping[str, str | None]) -> dict[str, float]:
-    """Return the unit of each column divided by its SI unit; 1 for a column without a unit.  Raises
-    ValueError for a wrong unit."""
+    """Return the factor from the unit of each column to the SI unit; 1 for a column without a unit.
+    Raises ValueError for a wrong unit."""
     result = {}
     for name, unit in units.items():
         try:

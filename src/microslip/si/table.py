@@ -123,7 +123,7 @@ def predict_table(
     ------
     InputError
         If the table is invalid or has no valid case.  If no case is valid, the error of the first
-        case is raised.  An error due to the table contains the number of the case.
+        case is raised.  The message of an error in the table contains the number of the case.
     """
     table = read_cases(motion, cases, shared, decimal=decimal, encoding=encoding)
     return dataset_of(table, list(predictions(table)))
@@ -199,8 +199,8 @@ def values_of(name: str, text: str) -> list[str]:
 
 
 def grid_of(motion: str, given: Mapping[str, Any]) -> Cases:
-    """Return all combinations of the values of ranges and sequences.  The last axis changes
-    fastest.
+    """Return all combinations of the values of ranges and sequences.  The values of the last axis
+    change fastest.
 
     Raises InputError if a range is invalid, if there is no range, or if there are too many
     combinations.
@@ -316,7 +316,7 @@ def _cell(value: Any, is_number: bool) -> Any:
 def table_text(cases: Cases, answers: Answers) -> str:
     """Return the printed table, with a row for each contact and remarks below."""
     predicted = [one for one in answers if isinstance(one, Prediction)]
-    rows = [one.input_values | one.values for one in predicted]  # the speed is one of them
+    rows = [one.input_values | one.values for one in predicted]  # speed: input or output
     columns = {title: [row.get(name) for row in rows] for name, title in PRINTED.items()}
     for name in dict.fromkeys(one.search for one in predicted if one.search not in (None, "speed")):
         roots = [one.input_values[name] if one.search == name else None for one in predicted]

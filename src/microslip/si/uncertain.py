@@ -2,13 +2,13 @@
 a prescribed force.
 
 The uncertain inputs are independent and normally distributed.  The draws form a low-discrepancy
-sequence, so that equal inputs have equal draws.  A draw outside the range of its input is replaced
-by the closest value of the range.  All closed forms are evaluated for each draw.  The result of the
-solver depends on the draw through a few dimensionless groups.  If the groups of all draws lie on a
-line, the solver computes the result at a few points of this line, and the result is interpolated
-between them.  In general, the changes along several lines are added.  The lines are the principal
-axes of the groups, or the axes of the inputs if the inputs are not more numerous than the principal
-axes.
+sequence, so that the same inputs always have the same draws.  A draw outside the range of its input
+is replaced by the closest value of the range.  All closed forms are evaluated for each draw.  The
+result of the solver depends on the draw through a few dimensionless groups.  If the groups of all
+draws lie on a line, the solver computes the result at a few points of this line, and results are
+interpolated between these points.  In general, the changes along several lines are added.  The
+lines are the principal axes of the groups, or the axes of the inputs if the inputs are not more
+numerous than the principal axes.
 """
 
 from __future__ import annotations
@@ -32,14 +32,15 @@ from microslip.si.solve import NoSolutionError, answer_of, find_reduction, stati
 DRAWS = 2**15
 """Number of draws.  The error of a probability is about 1e-3."""
 LEVELS = (-3.0, -1.5, 1.5, 3.0)
-"""Points along a line at which the solver computes the answer, in standard deviations.  Draws
+"""Points along a line at which the solver computes the result, in standard deviations.  Draws
 beyond the outermost points are replaced by these points, which reduces a standard deviation by
 0.25 % (1.1 % with points at 2.5)."""
 STATIC_LEVELS = (-3.0, -1.96, -1.3, -0.65, 0.65, 1.3, 1.96, 3.0)
-"""Points along a line at which the static limit is computed.  The ends of a 95 % interval are at
-1.96."""
+"""Points along a line at which the static limit is computed.  The bounds of a 95 % interval are at
+-1.96 and 1.96."""
 NEARER = (1.0, 0.75, 0.5, 0.25)
-"""Factors of a level, tried in this order until the inputs are within the range of the theory."""
+"""Factors by which a level is multiplied.  They are tried in this order until the inputs are within
+the range of the theory."""
 REFINEMENTS = 3
 """Number of bisections for the smallest amplitude with a static limit of 0, and number of further
 points with a static limit close to the force."""
@@ -78,7 +79,8 @@ class _Line(NamedTuple):
     nodes: list[tuple[float, float, dict[str, float]]]
 
     def add(self, solve: Callable[[Inputs], dict[str, float]], *levels: float) -> None:
-        """Add nodes at levels.  If a level has no values, a level nearer to the centre is used."""
+        """Add nodes at the given levels.  If a level has no values, a level nearer to the centre is
+        used."""
         for level in levels:
             for one in (factor * level for factor in NEARER):
                 try:

@@ -147,8 +147,8 @@ rubbers > 0: a Poisson's ratio of {RUBBERY} or more is that of rubber and soft p
 modulus increases with the frequency: give Young's modulus at this frequency; internal losses, \
 which add to friction, are neglected
 """)
-"""Groups of rules.  The warnings have the order of the groups.  In each group, the first rule that
-applies gives the warning."""
+"""Groups of rules.  The warnings are in the order of the groups.  In each group, the first rule
+that applies gives the warning."""
 PROPERTIES = {"hardness": "whether the bodies stay elastic", "density": "inertia"}
 """Checks that need an optional property of a body, keyed by the property's name."""
 MISSING = "{what} (the {name} of {whose} is missing)"
@@ -252,10 +252,10 @@ def _pull_off(contact: Contact) -> tuple[float | None, float | None]:
     A paraboloid pulls off at the same force as a sphere whose radius is the geometric mean of its
     two radii of relative curvature.  This is exact in the DMT theory (B. V. Derjaguin, Kolloid-Z.
     69, 1934).  In the JKR theory it is an upper bound, which slender ellipses do not reach (K. L.
-    Johnson and J. A. Greenwood, J. Phys. D 38, 2005).  Another indenter of revolution pulls off
-    with the largest sqrt(8 pi E* w c^3) - F(c), where F(c) is the load without adhesion at the
-    contact radius c (D. Maugis, Contact, Adhesion and Rupture of Elastic Solids, 4.2).  For a flat
-    punch, this is Kendall's force (J. Phys. D 4, 1971).
+    Johnson and J. A. Greenwood, J. Phys. D 38, 2005).  The pull-off force of another axisymmetric
+    indenter is the largest value of sqrt(8 pi E* w c^3) - F(c), where F(c) is the load without
+    adhesion at the contact radius c (D. Maugis, Contact, Adhesion and Rupture of Elastic Solids,
+    4.2).  For a flat punch, this is Kendall's force (J. Phys. D 4, 1971).
     """
     shape, crack = contact.shape, 8.0 * math.pi * contact.E_star * ADHESION
     if shape.hertzian:
