@@ -1,4 +1,4 @@
-"""Tables of all keys of a configuration for config/README.md, from microslip.config.settings.
+"""Make the tables of all configuration keys in config/README.md from microslip.config.settings.
 
 ``python docs/make_configuration_tables.py config/README.md`` replaces the tables.
 """
@@ -25,14 +25,14 @@ SECTIONS: dict[str, type[Settings]] = {
     "`stability`: a block of `axes`": settings.Block,
     "`claims`": settings.Claims,
 }
-"""Models of the tables by heading."""
+"""Settings class of each table, keyed by heading."""
 BEGIN, END = "<!-- keys: begin -->", "<!-- keys: end -->"
 LONGEST = 60
 """Largest number of characters of a default in a table."""
 
 
 def tables() -> str:
-    """Markdown of all tables in SECTIONS."""
+    """Return the Markdown of all tables in SECTIONS."""
     return "\n".join(line for title, model in SECTIONS.items() for line in _section(title, model))
 
 

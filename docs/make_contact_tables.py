@@ -1,4 +1,4 @@
-"""Page of the inputs and outputs of a prediction, from microslip.si.inputs and microslip.si.output.
+"""Make the page of a prediction's inputs and outputs from microslip.si.inputs and .output.
 
 ``python docs/make_contact_tables.py docs/reference/contacts.md`` writes the page.
 """
@@ -30,7 +30,7 @@ in `friction_force_error_N`.
 
 
 def page() -> str:
-    """Markdown of the page."""
+    """Return the Markdown of the page."""
     inputs = [
         f"| `{name}` | {'text' if one.unit is None else one.range} | {one.help} |"
         for name, one in INPUTS.items()

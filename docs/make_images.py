@@ -2,7 +2,7 @@
 
     python docs/make_images.py results [NAME ...]
 
-NAME: names of figures, without .png. By default all images that have a figure in the folder.
+NAME: names of figures, without .png. Default: all images that have a figure in the folder.
 A palette of 128 colours makes a file a quarter as large.
 """
 

@@ -1,4 +1,4 @@
-"""Formulas as MathML, which browsers render without scripts, fonts or a network.
+"""Write formulas as MathML, which browsers render without scripts, fonts or a network.
 
 Docutils translates the formulas.
 """

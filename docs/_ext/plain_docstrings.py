@@ -10,7 +10,7 @@ import re
 
 
 def _names(what, obj):
-    """Names that a docstring can describe as ``name: ...``."""
+    """Return the names that a docstring can describe as ``name: ...``."""
     if dataclasses.is_dataclass(obj):
         return [field.name for field in dataclasses.fields(obj)]
     try:
@@ -28,7 +28,7 @@ def _paragraphs(lines):
 
 
 def _as_list(text, names):
-    """Lines of a paragraph, with a list of its entries and own lines for results and errors."""
+    """Return the lines of a paragraph, with its entries as a list, and results and errors apart."""
     name = "|".join(sorted(map(re.escape, names), key=len, reverse=True)) or "(?!)"
     group = rf"(?:{name})(?: (?:>=?|<=?) [\d.]+)?(?: \([^()]*\))?"
     many = rf"{group}(?:,? (?:and )?{group})*"
