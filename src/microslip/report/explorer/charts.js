@@ -1,4 +1,4 @@
-// The static charts: map, cuts, forces.
+// The static charts: map, cuts and forces.
 
 const INK = "#000000", BLUE = "#0072B2", VERMILLION = "#D55E00", GREY = "#6E6E6E";
 const FONT = { family: "DejaVu Sans, Verdana, Arial, sans-serif", size: 11, color: INK };
@@ -7,9 +7,9 @@ const FORWARD = "forward force / (<i>μF<sub>z</sub></i>)";
 const PHONE = matchMedia("(max-width: 700px)"); // as in style.css
 const RATIOS = { type: "log", dtick: 1, exponentformat: "power" }; // settings of a logarithmic axis
 const LEGEND = { orientation: "h", x: 0, xanchor: "left", y: 1.01, yanchor: "bottom" };
-const BAR = 32; // height of the margin above a chart, where the bar of buttons hides no data
+const BAR = 32; // height of the margin above a chart, so that the buttons hide no data
 
-// On a phone a finger scrolls the page, so the charts do not zoom and have no buttons.
+// On a phone, a finger scrolls the page, so charts have no zoom and no buttons.
 function config() {
   const bar = { displayModeBar: PHONE.matches ? false : "hover", modeBarButtons: [["toImage", "resetScale2d"]] };
   return { responsive: true, displaylogo: false, ...bar };
@@ -30,8 +30,8 @@ function layout(more) {
   };
 }
 
-// Edges of cells around points, half-way between neighbours. The first and last points are in the
-// middle of their cells.
+// Returns the edges of cells around points, half-way between neighbours. The first and the last
+// point are in the middle of their cells.
 function edges(points) {
   const inner = points.slice(1).map((value, k) => (value + points[k]) / 2);
   const last = points.length - 1;
@@ -39,18 +39,18 @@ function edges(points) {
   return [first, ...inner, inner.length ? 2 * points[last] - inner[last - 1] : points[0] + 0.5];
 }
 
-// Indices of the columns of the map with a velocity above 0.
+// Returns the indices of the map's columns with a velocity above 0.
 function shownColumns(map) {
   return map.velocity.map((_, j) => j).filter((j) => map.velocity[j] > 0);
 }
 
-// Edges of the map's cells. Between velocities, an edge is half-way by ratio.
+// Returns the edges of the map's cells. Edges between velocities are geometric means.
 function cellEdges(map) {
   const exponents = shownColumns(map).map((j) => Math.log10(map.velocity[j]));
   return { x: edges(exponents).map((exponent) => 10 ** exponent), y: edges(map.amplitude) };
 }
 
-// contact: position [velocity, amplitude] of the form's contact, or null.
+// Draws the map. contact: position [velocity, amplitude] of the contact in the form, or null.
 function drawMap(element, map, row, column, contact) {
   const columns = shownColumns(map);
   const pick = (table) => table.map((row) => columns.map((j) => row[j]));
@@ -100,7 +100,7 @@ function drawMap(element, map, row, column, contact) {
     shapes: cross(map, row, column),
     legend: LEGEND,
   }), config());
-  Plotly.Plots?.resize(element); // its height depends on the panel beside it
+  Plotly.Plots?.resize(element); // the height of the chart depends on the panel beside it
 }
 
 // Marks the selected cell of the map and the two cuts through it.
@@ -108,7 +108,7 @@ function cross(map, row, column) {
   const velocity = map.velocity[column], amplitude = map.amplitude[row];
   const line = { color: VERMILLION, width: 1.2, dash: "dot" };
   const across = { type: "line", xref: "paper", x0: 0, x1: 1, y0: amplitude, y1: amplitude, line };
-  if (velocity === 0) return [across]; // not on the logarithmic axis
+  if (velocity === 0) return [across]; // 0 is not on the logarithmic axis
   const up = { type: "line", yref: "paper", y0: 0, y1: 1, x0: velocity, x1: velocity, line };
   const { x, y } = cellEdges(map);
   const j = column - map.velocity.length + x.length - 1; // the first velocity may be 0
@@ -128,7 +128,7 @@ function muText(map, row, column) {
   return `mu_macro ${mu.toFixed(5)} ± ${error === null ? "unknown" : error.toPrecision(2)}`;
 }
 
-// Values of a limit along a cut: its fine curve, its values at the points, or a constant.
+// Returns a limit along a cut: the fine curve, the values at the points, or a constant.
 function limitAlong(map, given, along, fixed) {
   const points = map[along];
   const other = along === "velocity" ? "amplitude" : "velocity";
@@ -140,8 +140,8 @@ function limitAlong(map, given, along, fixed) {
   return [points, along === "velocity" ? given.values[fixed] : given.values.map((row) => row[fixed])];
 }
 
-// Draws a cut through the map. along: the axis of the cut; fixed: index on the other axis;
-// hidden: labels of limits that are switched off.
+// Draws a cut through the map. along: axis of the cut. fixed: index along the other axis. hidden:
+// labels of limits that are switched off.
 function drawCut(element, map, along, fixed, selected, hidden) {
   const inVelocity = along === "velocity";
   const indices = inVelocity ? shownColumns(map) : map.amplitude.map((_, i) => i);
@@ -179,9 +179,8 @@ function inDegrees(phase) {
   return (phase * 180) / Math.PI;
 }
 
-// Draws the forward force against time with the mean force of the dataset, and against the other
-// component of the force.
-// A dot marks the frame.
+// Draws the forward force against time, with the mean force from the dataset, and against the other
+// component of the force. A dot marks the frame.
 function drawForces(history, loop, period, mu, error, frame) {
   const degrees = period.phase.map(inDegrees);
   const [first, last] = [degrees[0], degrees[0] + 360];

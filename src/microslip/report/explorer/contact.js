@@ -1,10 +1,11 @@
-// A real contact in SI units: from the texts of the form to a point on the map, and its friction.
+// Converts the texts of the form for a real contact to a point on the map and to friction in SI
+// units.
 //
 // `SI` has the fields, units, materials, rules and texts that contact_form.py packs.
 
 const SI = NUMBERS.si;
 
-// An error for invalid input, with a one-line message.
+// Error for invalid input, with a one-line message.
 class Refusal extends Error {}
 
 function refuse(name, value, allowed) {
@@ -15,7 +16,7 @@ function sum(values) {
   return values.reduce((all, one) => all + one, 0);
 }
 
-// The number of a field in its SI unit.
+// Returns the number of a field in the SI unit.
 function siValue(id, texts) {
   const field = SI.fields[id], text = texts[id].trim(), unit = texts[`${id}_unit`];
   const value = /^[+-]?(\d+\.?\d*|\.\d+)(e[+-]?\d+)?$/i.test(text) ? Number(text) * SI.units[unit] : NaN;
@@ -27,7 +28,7 @@ function siValue(id, texts) {
   return value;
 }
 
-// A body by its name, or by Young's modulus and Poisson's ratio. A rigid body has an infinite modulus.
+// Returns a body by name, or by Young's modulus (infinite for a rigid body) and Poisson's ratio.
 function bodyOf(side, texts) {
   const known = SI.materials[texts[side]];
   if (known) return { ...known, young: known.young ?? Infinity };
@@ -35,7 +36,8 @@ function bodyOf(side, texts) {
   return { young, poisson, density: null, hardness: null };
 }
 
-// The Hertzian contact of a sphere and a flat, and its point on the map; see si/contact.py.
+// Returns the Hertzian contact of a sphere and a flat, with its point on the map (see
+// si/contact.py).
 function contactOf(texts) {
   const { motion } = texts, turns = motion === "bore", bodies = Object.keys(SI.sides).map((side) => bodyOf(side, texts));
   const [radius, load, mu, speed, frequency] =
@@ -66,7 +68,7 @@ function contactOf(texts) {
   };
 }
 
-// Quantities of the rules by name, see si/warnings.py. A quantity that is not known is missing.
+// Returns the quantities of the rules by name (see si/warnings.py). Unknown quantities are omitted.
 function measuresOf(contact) {
   const { motion, bodies, shear, a, pressure, radius, load, mu, u_lim, stiffness, speed, omega, swing, reach } = contact;
   const { adhesion, range, short, rubbery } = SI.adhesion;
@@ -87,7 +89,8 @@ function measuresOf(contact) {
   return { ...values, crossing: (omega * a) / wave, slip_speed: (speed + omega * reach) / wave };
 }
 
-// Warnings (for each group of rules the first rule that applies), and checks that are not possible.
+// Returns the warnings, of which there is at most one for each group of rules (the first that
+// applies), and the checks that are not possible.
 function warningsOf(contact) {
   const measures = measuresOf(contact), value = (side) => (typeof side === "string" ? measures[side] : side);
   const applies = (rule) => rule.where.every(([left, factor, right]) => value(left) > factor * value(right));
@@ -103,7 +106,8 @@ function warningsOf(contact) {
   return [...warnings, ...unchecked];
 }
 
-// Friction and its error bound from a table, interpolated linearly along each axis; null outside.
+// Interpolates friction and its error bound in a table linearly along each axis. Returns null
+// outside the table.
 function lookUp(table, velocity, amplitude, poisson) {
   const ends = [table.velocity.map(Math.log), table.amplitude, table.poisson];
   const place = [Math.log(velocity), amplitude, poisson].map((at, d) => {
@@ -124,7 +128,7 @@ function lookUp(table, velocity, amplitude, poisson) {
   return error === 65535 ? null : { value: value / 65535, error: error * table.error_step };
 }
 
-// The command that computes a contact, for any contact.
+// Returns the command that computes a contact. It also works outside the range of the maps.
 function commandOf(texts) {
   const quoted = (id) => {
     const text = `${texts[id].trim()} ${texts[`${id}_unit`]}`.trim();
@@ -140,7 +144,7 @@ function commandOf(texts) {
   return [...words, "--amplitude", quoted(SI.amplitude_of[texts.motion])].join(" ");
 }
 
-// The largest unit prefix for which a value is at least 1, and its size.
+// Returns the largest unit prefix with which a value is at least 1, and the size of the prefix.
 function prefixOf(value) {
   return SI.prefixes.find(([, size]) => (Math.abs(value) || 1) >= size) ?? SI.prefixes.at(-1);
 }

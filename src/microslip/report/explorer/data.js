@@ -2,14 +2,15 @@
 
 const NUMBERS = JSON.parse(document.getElementById("numbers").textContent);
 
-// Base64 to typed arrays, little-endian.
+// Decodes base64 to typed arrays, little-endian.
 function bytesOf(text) {
   return Uint8Array.from(atob(text), (sign) => sign.charCodeAt(0));
 }
 
-// The stored period of a point of a map: forces over mu F_z and phases in rad at every frame, radii
-// over a and bounds over mu F_z/a^2 of the rings, and for each cell the density of the dissipated
-// energy in arbitrary units. If there is no period, returns null, and `whyNone` has the reason.
+// Returns the stored period of a point: forces divided by mu F_z and phases in rad at every frame,
+// radii divided by a and bounds divided by mu F_z/a^2 for each ring, and the density of the
+// dissipated energy in arbitrary units for each cell. If there is no period, returns null, and
+// `whyNone` is the reason.
 function periodAt(map, row, column) {
   const stored = map.periods?.[row][column];
   if (!stored?.tractions) return null;
@@ -34,13 +35,13 @@ function whyNone(map, row, column) {
   return "No period is stored for this point: the page has one for some points of each axis only.";
 }
 
-// Angles of the sectors from the lateral axis: the stored half of the disc, then the other half.
+// Returns the angles of the sectors from the lateral axis, first for the stored half of the disc.
 function sectorAngles({ angles, turned }) {
   const kept = Array.from({ length: angles }, (_, j) => ((j + 0.5) * Math.PI) / angles);
   return kept.concat(kept.map((angle) => (turned ? angle + Math.PI : -angle)));
 }
 
-// Cells of a frame, sector by sector and ring by ring: tractions over the bound, and slip.
+// Returns tractions divided by the bound, and slip, for the cells of a frame, by sector and ring.
 function cellsOf(period, frame) {
   const { frames, angles, cells, turned, tractions, slips } = period;
   const half = frames / 2;
@@ -65,7 +66,7 @@ function cellsOf(period, frame) {
   return found;
 }
 
-// A number with `count` digits; small numbers like 1.2e-4.
+// Formats a number with `count` digits, and a small number like 1.2e-4.
 function digits(value, count = 4) {
   if (value === null) return "none";
   if (value !== 0 && Math.abs(value) < 1e-3) return value.toExponential(Math.min(count - 1, 2));

@@ -1,11 +1,11 @@
-// The contact at one phase: cells in stick, cells in slip, and tractions. Lines enclose the cells that
-// dissipate half the energy of the period.
+// Draws the contact at one phase: sticking cells, slipping cells, and tractions. Lines enclose the
+// cells that dissipate half the energy of the period.
 
 const STICK = "#56B4E9", SLIP = "#E69F00";
-const LONGEST = 0.17; // arrow length, divided by a, where the traction equals the largest bound
+const LONGEST = 0.17; // length of an arrow, divided by a, for a traction equal to the largest bound
 const CLOSEST = 0.14; // smallest distance between arrows on a ring, divided by a
 
-// The parts common to all frames: outlines of the cells, and positions and lengths of the arrows.
+// Returns the parts common to all frames: outlines of cells, and positions and lengths of arrows.
 function discOf(period) {
   const { angles, cells } = period;
   const theta = sectorAngles(period);
@@ -32,7 +32,8 @@ function discOf(period) {
   return disc;
 }
 
-// Indices of the fewest cells in half the disc that dissipate half the energy.
+// Returns the indices of the smallest set of cells in half the disc that dissipates half the
+// energy.
 function hottestCells({ densities, cells }, rims) {
   const energy = densities.map((one, k) => one * (rims[(k % cells) + 1] ** 2 - rims[k % cells] ** 2));
   const enough = energy.reduce((all, one) => all + one, 0) / 2;
@@ -44,14 +45,14 @@ function hottestCells({ densities, cells }, rims) {
   });
 }
 
-// Outlines of the hottest cells in both halves of the disc, as one line with gaps.
+// Returns the outlines of the hottest cells in both halves of the disc, as one line with gaps.
 function hottestLines({ outlines, hottest, period }) {
   const half = period.densities.length;
   const every = hottest.flatMap((k) => [outlines[k], outlines[k + half]]);
   return [0, 1].map((axis) => every.flatMap((ring) => [...ring[axis], null]));
 }
 
-// Outlines of all slipping cells, or of all sticking cells, as one line with gaps.
+// Returns the outlines of all slipping or all sticking cells, as one line with gaps.
 function filled(disc, cells, slipping) {
   const x = [], y = [];
   disc.outlines.forEach(([xs, ys], k) => {
@@ -59,10 +60,10 @@ function filled(disc, cells, slipping) {
     x.push(...xs, null);
     y.push(...ys, null);
   });
-  return x.length ? [x, y] : [[NaN], [NaN]]; // keeps the name in the legend
+  return x.length ? [x, y] : [[NaN], [NaN]]; // keeps the entry in the legend
 }
 
-// Arrows as one line with gaps: shaft, and two barbs at the tip.
+// Returns the arrows as one line with gaps. An arrow has a shaft and two barbs at the tip.
 function arrowLines(disc, cells) {
   const x = [], y = [];
   disc.arrows.forEach((arrow, k) => {
@@ -104,7 +105,7 @@ function drawDisc(element, disc, frame) {
   }), config());
 }
 
-// Draws another phase by changing three lines.
+// Draws another phase by changing three of the lines.
 function moveDisc(element, disc, frame) {
   const cells = cellsOf(disc.period, frame);
   const parts = [filled(disc, cells, false), filled(disc, cells, true), arrowLines(disc, cells)];

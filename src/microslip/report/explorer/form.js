@@ -1,4 +1,4 @@
-// The form for a real contact: the fields, and the text of the answer.
+// The form for a real contact: the fields, and the text of the result.
 
 const TEXTS = {}; // contents of the form, by field name
 const ROWS = {}; // elements of the fields
@@ -13,14 +13,15 @@ function fillField(id, text) {
   else control.value = before;
 }
 
-// Position of the form's contact on a map: [velocity, amplitude], or null for another motion.
+// Returns the position [velocity, amplitude] of the form's contact on a map, or null for another
+// motion.
 function contactOn(map) {
   const { contact } = STATE;
   const same = contact && contact.motion === map.motion && map.pressure === "hertz";
   return same && contact.velocity > 0 ? [contact.velocity, contact.amplitude] : null;
 }
 
-// A value with its significant digits.
+// Formats the significant digits of a value, and the error.
 function withError(value, error) {
   const places = Math.min(Math.max(1 - Math.floor(Math.log10(error)), 0), 8);
   return error < 1e-8 ? digits(value, 6) : `${value.toFixed(places)} ± ${error.toPrecision(2)}`;
@@ -47,7 +48,7 @@ function choice(id, label, options) {
   return select;
 }
 
-// An input for a number, with a list of units.
+// Returns an input for a number, with a list of units.
 function quantity(id) {
   const field = SI.fields[id], input = document.createElement("input");
   Object.assign(input, { id: `si-${id}`, type: "text", value: field.example });
@@ -82,13 +83,13 @@ function offerContact() {
     arrange();
     if (STATE.asking) answerForm();
     redraw();
-    // In one column the page scrolls to the form.
+    // In the layout with one column, the page scrolls to the form.
     if (STATE.asking && ONE_COLUMN.matches) element("contact-view").scrollIntoView?.({ block: "start" });
     writeLink();
   });
 }
 
-// Answers the form, and marks its contact on the map of the motion.
+// Shows the result for the form, and marks the contact on the map of the motion.
 function answerForm() {
   for (const [side, fields] of Object.entries(SI.sides)) {
     for (const id of fields) ROWS[id].hidden = TEXTS[side] !== SI.of_numbers;

@@ -1,9 +1,9 @@
-// The state of the page in the fragment of its address, so that a link restores it.
+// Stores the state of the page in the fragment of the address, so that a link restores the state.
 
 const LINK_DELAY = 250; // ms; browsers refuse more than about 200 changes of the address in 30 s
 let linkTimer = 0;
 
-// The address fragment for a state.
+// Returns the address fragment for a state.
 function linkOf(state) {
   const { shown, map } = state, said = new URLSearchParams();
   said.set("sweep", shown.name);
@@ -30,7 +30,7 @@ function writeLink() {
   linkTimer = setTimeout(() => history.replaceState(null, "", `#${linkOf(STATE)}`), LINK_DELAY);
 }
 
-// Index of the value with this text, or else the selected index.
+// Returns the index of the value with this text, or else the selected index.
 function indexNamed(values, text, selected) {
   const index = values.findIndex((value) => String(value) === text);
   return index < 0 ? selected : index;
@@ -51,7 +51,7 @@ function readLink(address) {
   const { map, shown } = STATE;
   if (shown === map) {
     const frame = Number(said.get("frame"));
-    if (frame >= 0) STATE.frame = Math.floor(frame); // drawn no later than the last one
+    if (frame >= 0) STATE.frame = Math.floor(frame); // limited to the last frame when drawn
     selectAndMark(indexNamed(map.amplitude, said.get("amplitude"), STATE.row),
       indexNamed(map.velocity, said.get("velocity"), STATE.column));
   } else {

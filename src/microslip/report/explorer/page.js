@@ -1,9 +1,9 @@
-// The page: selection, controls, texts.
+// The page: selection, controls and texts.
 
 const element = (id) => document.getElementById(id);
 const STATE = { shown: null, map: null, row: 0, column: 0, frame: 0, period: null, disc: null,
   at: 0, hidden: new Set(), asking: false, contact: null };
-const SECONDS = 4; // that a period takes while playing
+const SECONDS = 4; // duration of a period while playing
 let playing = 0; // id of the next animation frame, 0 while paused
 
 // Shows a sweep at one Poisson's ratio.
@@ -26,12 +26,12 @@ function show(entry) {
   }
 }
 
-// A label without HTML.
+// Returns a label without HTML.
 function plainText(label) {
   return label.replace(/<[^>]*>/g, "");
 }
 
-// Shows a point of lines: all values with their errors, and the limits.
+// Shows a point of the lines: all values with errors, and the limits.
 function selectOnLine(at) {
   const { shown } = STATE, { x, y, series, limits, beside } = shown;
   STATE.at = at;
@@ -67,7 +67,7 @@ function redraw() {
   select(row, column);
 }
 
-// Arranges the panels. An open form replaces the texts of the point.
+// Arranges the panels. An open form replaces the texts about the point.
 function arrange() {
   const isMap = STATE.shown.kind === "map";
   // On a wide page with an open form or without periods, the cuts are on the right.
@@ -116,7 +116,7 @@ function select(row, column) {
   writeLink();
   element("inside").hidden = STATE.period === null;
   if (!STATE.period || STATE.asking) {
-    pause(); // a hidden panel has no size to draw in
+    pause(); // a hidden panel has no size, so nothing can be drawn in it
     return;
   }
   const { mu_macro, mu_macro_error } = map.points;
@@ -128,13 +128,14 @@ function select(row, column) {
   tellPhase();
 }
 
-// The points of the map with a period: [row, column] of each.
+// Returns [row, column] for each point of the map with a period.
 function withPeriods(map) {
   return (map.periods ?? []).flatMap((line, i) =>
     line.flatMap((stored, j) => (stored?.tractions ? [[i, j]] : [])));
 }
 
-// The nearest point of the map with a period: [row, column]; null without periods.
+// Returns [row, column] of the nearest point of the map with a period, or null if there are no
+// periods.
 function nearestPeriod(map, row, column) {
   const distance = ([i, j]) => Math.hypot(i - row, j - column);
   return withPeriods(map).sort((a, b) => distance(a) - distance(b))[0] ?? null;
@@ -269,7 +270,7 @@ function connect() {
   element("play").addEventListener("click", () => (playing ? pause() : play()));
 }
 
-// The legend of the cuts, with a check box for every limit.
+// Makes the legend of the cuts, with a check box for each limit.
 function offerLimits(map) {
   const boxes = map.limits.map((given) => {
     const label = document.createElement("label"), box = document.createElement("input");
@@ -286,7 +287,7 @@ function offerLimits(map) {
   element("limits").replaceChildren(...boxes);
 }
 
-// A sample of the line of a limit.
+// Returns a sample of the line of a limit.
 function lineLike(given) {
   const svg = (name) => document.createElementNS("http://www.w3.org/2000/svg", name);
   const piece = svg("svg"), line = svg("line");

@@ -2,7 +2,8 @@
 
 const COLOURS = [BLUE, VERMILLION, "#009E73", "#CC79A7", "#E69F00", "#56B4E9", GREY, INK];
 
-// Sweeps in the order of the page, each with its maps or lines by ascending Poisson's ratio.
+// Sweeps in the order of the page, each with its maps or lines in ascending order of Poisson's
+// ratio.
 const SWEEPS = [...new Set(NUMBERS.sweeps.map((one) => one.name))].map((name) => {
   const entries = NUMBERS.sweeps.filter((one) => one.name === name).sort((a, b) => a.poisson - b.poisson);
   return { ...entries[0], entries };
