@@ -43,4 +43,4 @@ KINDS = {
     "claims_static": Kind("studies.static", "claims"),
     "claims_patches": Kind("studies.patches", "claims"),
 }
-"""Kinds of figures by name."""
+"""All kinds of figures, keyed by name."""

@@ -20,7 +20,7 @@ T = TypeVar("T")
 MOST_BYTES = 1_000_000
 """Largest size of a configuration in bytes.  PyYAML reads about 100 kB per second."""
 MOST_VALUES = 100_000
-"""Largest number of keys and values in a file after expansion of aliases."""
+"""Largest number of keys and values in a file, counted after expansion of aliases."""
 ROLES = ("motion", "pressure")
 """Keys of a sweep whose values can name files."""
 

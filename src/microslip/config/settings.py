@@ -27,7 +27,7 @@ from microslip.periodic.methods import split as split_method
 MOST_POINTS = 1_000_000
 """Largest number of points in a sweep.  With more points, planning takes more than a minute."""
 MOST_MAP_POINTS = 10_000
-"""Largest number of points in a map of a study.  Every model computes all of these points."""
+"""Largest number of points in a map of a study.  All models are run at each of these points."""
 MOST_ON_PAGE = 20_000
 """Largest number of points on a page of the explorer.  Each point takes about 80 bytes."""
 LOOSEST_POINTS = 1e-2
@@ -38,7 +38,7 @@ SHARE_OF_POINTS = 0.3
 STATIC_AMPLITUDES = {"transverse": 1.0, "bore": 5.0}
 """Largest amplitude at which the paper's map of a motion shows static friction."""
 AXES = ("mass", "damping", "stiffness", "poisson", "amplitude", "velocity", "force")
-"""Axes of a sweep, in the order of dataset dimensions."""
+"""Axes of a sweep, in the order of the dimensions of datasets."""
 STUDIES = ("accuracy", "stability", "claims")
 """Keys of the studies. They are also the names of the datasets."""
 SOLVING = ("all", "solve_batch", "solve_map")
@@ -303,16 +303,17 @@ class Sweep(Settings):
     """Title of the dataset, also used in figures. It is plain text: $ and \\ have no special
     meaning."""
     velocity: Axis = ()
-    """Forward velocity in the unit of the motion. The value 0 requests the static limit. With a
-    stiffness, it is the velocity of the far end of the spring."""
+    """Forward velocity in the unit of the motion. The value 0 requests the static limit. If a
+    stiffness is given, the velocity is that of the far end of the spring."""
     force: Axis = ()
-    """Prescribed force P divided by mu times the mean normal load. It replaces the velocity."""
+    """Prescribed force P divided by mu times the mean normal load. It is given instead of a
+    velocity."""
     amplitude: Axis = ()
-    """Amplitude in the unit of the motion. It is required unless the motion is steady."""
+    """Amplitude in the unit of the motion. An amplitude is required unless the motion is steady."""
     poisson: Annotated[tuple[float, ...], _axis(0, 0.5)] = (0.0,)
     """Poisson's ratio of the half-space."""
     stiffness: Axis = ()
-    """Stiffness of a spring divided by mu F_z / u_lim, above 0."""
+    """Stiffness of the spring divided by mu F_z / u_lim. It must be above 0."""
     mass: Axis = ()
     """Mass of the body divided by mu F_z / (u_lim omega^2)."""
     damping: Axis = ()
@@ -387,7 +388,7 @@ class Sweep(Settings):
 
 
 class Figure(Settings):
-    """A figure.  Its kind determines what is drawn."""
+    """A figure.  The key `kind` determines its contents."""
 
     kind: Annotated[str, _one_of(*KINDS)]
     """Kind of figure. map shows friction over two axes, and curves shows it along one axis, with a
@@ -412,7 +413,7 @@ class Figure(Settings):
 
     @property
     def run(self) -> dict[str, Any]:
-        """Settings of the single run; empty if there is none."""
+        """Settings of the single run; empty if the figure shows no single run."""
         defaults = KINDS[self.kind].run
         return defaults | self.model_dump(include={*defaults}, exclude_none=True)
 
@@ -531,7 +532,7 @@ class Block(Settings):
     """Parameter `step` of the methods. Methods without this parameter are omitted from the
     block."""
     title: Title = None
-    """Heading of the block. The default is the name of the varied quantity."""
+    """Heading of the block in the figure. The default is the name of the varied quantity."""
 
     @property
     def quantity(self) -> str:

@@ -1,4 +1,4 @@
-"""The accessor `dataset.microslip`: friction between the points of a map, with an error bound."""
+"""The accessor `dataset.microslip`, which interpolates friction on a map and bounds the error."""
 
 from __future__ import annotations
 

@@ -86,8 +86,8 @@ def build(
 
 
 def report(dataset: xr.Dataset, name: str) -> Iterator[str]:
-    """Yield lines of text: the number of points, the error bound of the map, and the number of
-    cells with a larger error."""
+    """Yield a line with the number of points and the largest error bound of the map and, if the
+    error bound of some cells is too large, a line with the number of these cells."""
     errors = dataset["cell_error"].values
     failed = int(dataset["mu_macro"].isnull().sum())
     converged = f"{failed} not converged" if failed else "all converged"

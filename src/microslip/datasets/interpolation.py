@@ -24,7 +24,7 @@ from microslip.sweeps.map_coordinates import MapCoordinates
 NODES = 4
 """Number of nodes of a local cubic."""
 COORDINATES = "map_coordinates"
-"""Attribute of a certified map that contains its coordinates as JSON."""
+"""Name of the attribute of a certified map that contains the scaled coordinates as JSON."""
 BORDERS = {
     "velocity": ("cell_left", "cell_right"),
     "amplitude": ("cell_low", "cell_high"),
@@ -280,7 +280,7 @@ def of_map(dataset: xr.Dataset, name: str) -> Grid | Cells:
 def cells_of(dataset: xr.Dataset) -> Cells:
     """Read the cells of a certified map.
 
-    Raises InputError with the name of a missing variable.
+    Raises InputError with the name of the variable if one is missing.
     """
     text = dataset.attrs[COORDINATES]
     try:

@@ -86,7 +86,7 @@ def _subdivided(axis: Axis) -> np.ndarray:
 
 
 def _refined(axis: Axis, coordinates: np.ndarray, table: np.ndarray) -> np.ndarray:
-    """Interpolate a table along its first axis and clip it to the range of each cell."""
+    """Interpolate a table along its first axis, and clip the values to the range of each cell."""
     cell, share, nodes, weights = axis.cubics(coordinates)
     cubic = np.einsum("pn,pn...->p...", weights, table[nodes])
     low, high = table[cell], table[np.minimum(cell + 1, len(table) - 1)]

@@ -146,14 +146,14 @@ def _of_runs(runs: list[dict]) -> dict[str, dict]:
 
 
 def provenance(title: str, settings: dict, versions: set, **more: object) -> dict:
-    """Return the attributes with the provenance of a dataset.
+    """Return the attributes of a dataset that state the provenance.
 
     Parameters
     ----------
     title : str
         Title of the dataset.
     settings : dict
-        Settings of the configuration, stored as JSON.
+        Settings from the configuration, which are stored as JSON.
     versions : set of str
         Versions of the libraries that computed the results.
     **more : object
@@ -189,7 +189,8 @@ def report(dataset: xr.Dataset, name: str) -> Iterator[str]:
 
 
 def describe_axes(dataset: xr.Dataset, sweep: Sweep) -> None:
-    """Set the attributes of the axes.  The attribute `formula` defines the coordinate."""
+    """Set the attributes of the axes.  The attribute `formula` contains the definition of the
+    coordinate."""
     motion = motion_named(sweep.motion)
     texts = {name: (one.text, one.unit, one.description) for name, one in DRIVES.items()}
     for name, of_paper, formula in (

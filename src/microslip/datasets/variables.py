@@ -36,7 +36,7 @@ def rows(path: Path) -> list[dict[str, str]]:
 
 
 TABLE = {row["name"]: row for row in rows(Path(__file__).with_suffix(".csv"))}
-"""Rows of variables.csv by the name of the variable."""
+"""Rows of variables.csv, keyed by the name of the variable."""
 
 
 def rows_of(*groups: str) -> dict[str, dict[str, str]]:
@@ -83,7 +83,7 @@ def columns(
 def described(
     row: Mapping[str, str], values: ArrayLike, dims: str | Sequence[Hashable] | None = None
 ) -> tuple:
-    """Return a variable as a tuple for xarray.Dataset.
+    """Return a variable as the tuple (dims, values, attributes) for xarray.Dataset.
 
     Parameters
     ----------

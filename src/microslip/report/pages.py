@@ -155,7 +155,7 @@ def _with_error(value: float, error: float) -> str:
 def _static(dataset: xr.Dataset, motion: str) -> SimpleNamespace:
     """Return the table of the static limit, with a row for each amplitude.
 
-    The table also contains the excess of each formula over the limit.
+    The largest excess of each formula over the limit is also returned.
     """
     names = {name: FORMS[motion][form].equation for name, form in FORMULAS[motion].items()}
     gaps = [

@@ -22,7 +22,7 @@ def columns(dataset: xr.Dataset, *names: str) -> tuple[np.ndarray, ...]:
 
 
 def at_each_poisson(dataset: xr.Dataset) -> list[xr.Dataset]:
-    """Split a dataset by Poisson's ratio, in ascending order."""
+    """Return the part of a dataset at each Poisson's ratio, in ascending order of the ratio."""
     if "poisson" not in dataset.dims:
         return [dataset]
     return [dataset.sel(poisson=nu) for nu in np.sort(dataset["poisson"].values)]

@@ -44,7 +44,7 @@ TRUTH_SHARE = 0.1
 LARGE = 64
 """Number of squares along a side from which on a run takes as long as all coarser runs together."""
 AS_CHEAP = 1.5
-"""Two measured times count as equal if their ratio is below this number."""
+"""Ratio of two measured times below which they count as equal."""
 MODELS = "models"
 """Name of the contest between the models with the shipped method and the methods that replace the
 whole run."""

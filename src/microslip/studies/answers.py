@@ -32,7 +32,7 @@ class Answers:
     """
 
     def __init__(self, answer: Callable[[dict], dict]):
-        """answer: function that returns the record of a request, see sweeps.batch.lookup."""
+        """answer: function that returns the record of a request (see sweeps.batch.lookup)."""
         self._answer = answer
         self.rows: dict[str, tuple[dict, Row]] = {}
         self.versions: set[str] = set()

@@ -36,7 +36,7 @@ if TYPE_CHECKING:
     from microslip.config.settings import Claims
 
 PAPER_VELOCITY = 0.005
-"""Smallest velocity in the paper's maps of the two motions."""
+"""Smallest velocity in the paper's maps for the two oscillating motions."""
 PAPER_SQUARES, PAPER_STEPS = 32, 100
 """Number of squares along a side, as in the paper, and number of steps per period in our run."""
 PAPER_TOLERANCE = 1e-3
@@ -59,7 +59,7 @@ STIFF_EXPONENTS = (100, 50, 25)
 STIFF_AMPLITUDES, STIFF_RATIOS = (0.4, 0.8), (0.02, 0.1, 0.2, 0.35, 0.5, 0.7, 0.9)
 """Amplitudes of the indentation depth, and ratios of the velocity to the amplitude."""
 COLUMNS = ("amplitude", "velocity", "run", "other_run", "other", "value", "error")
-"""Columns of a table of evidence."""
+"""Columns of a table of evidence that has no lines."""
 
 
 # Requests

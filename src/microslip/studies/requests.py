@@ -47,7 +47,7 @@ class Point(NamedTuple):
 
 
 AnyPoint = Union[Point, "StudyPoint"]
-"""A point of a study, or a point of the configuration."""
+"""Type of points: a point of a study, or a point of the configuration."""
 
 
 class Level(NamedTuple):

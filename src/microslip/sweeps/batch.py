@@ -34,15 +34,15 @@ from microslip.sweeps.request import is_settled, key_of, label, row_of
 log = logging.getLogger(__name__)
 
 NOT_FINAL = b" not final\n"
-"""End of the checksum line if the solver failed at a point or reached its time limit.  Such a point
-is computed again by the next run."""
+"""End of the checksum line if the solver failed at a point or reached its time limit there.  The
+next run computes such a point again."""
 BETWEEN_FLUSHES = 1.0
 """Seconds between two flushes of a journal to disk, which limit the loss if the computer
 crashes."""
 
 
 Compute = Callable[[Sequence[dict]], Iterable[tuple[dict, float]]]
-"""Function that yields the record and the CPU time of each request."""
+"""Type of functions that yield the record and the CPU time of each request."""
 
 
 class SourcesEdited(CacheError):
@@ -96,7 +96,7 @@ def _checksum(content: bytes, final: bool) -> bytes:
 
 
 def _checked(path: str | Path) -> tuple[bytes, bool]:
-    """Return the content of a file without the checksum, and whether the records are final.
+    """Return the content of a file without the checksum, and True if the records are final.
 
     Raises CacheError if the file is missing or damaged.
     """
@@ -127,7 +127,8 @@ class Job(ExitStack):
     """
 
     def __init__(self, path: str | Path):
-        """path: file of the batch.  Raises CacheError if its folder cannot be written."""
+        """path: path of the batch file.  Raises CacheError if the folder of this file cannot be
+        written."""
         super().__init__()
         self.path = Path(path)
         files.refuse_unwritable(self.path.parent)
@@ -157,11 +158,12 @@ class Job(ExitStack):
         return [self.records[key] for key in keys]
 
     def finish(self, records: Sequence[dict]) -> dict:
-        """Write the batch file with these records, and remove the journals that it replaces.
+        """Write the given records to the batch file, and remove the journals that this file
+        replaces.
 
-        Returns the statistics: the number of records, the number of computed records, and their CPU
-        time.  Points that did not converge are logged.  Raises SolverError if the solver failed at
-        all points.
+        Returns statistics: the number of records, the number of computed records, and the CPU time
+        of the computed records.  Points that did not converge are logged.  Raises SolverError if
+        the solver failed at all points.
         """
         results = [record["result"] for record in records]
         for record, result in zip(records, results, strict=True):

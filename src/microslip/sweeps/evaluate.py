@@ -115,7 +115,7 @@ def _trial(repeats: int, **arguments: Any) -> dict:
 
 
 def _choice(repeats: int, **arguments: Any) -> dict:
-    """Time `solve` with a tolerance and automatic settings."""
+    """Time a call of `solve` with a tolerance and automatic settings."""
     return _timed(partial(_point, **arguments), repeats)
 
 

@@ -22,7 +22,7 @@ from microslip.foundation.canonical import canonical_json
 from microslip.theory.exact import Kinks, kink_velocity
 
 DIGITS = 9
-"""Number of significant digits in a node's coordinates."""
+"""Number of significant digits in the coordinates of a node."""
 CLEAR = 2.0
 """Smallest ratio between the velocity of a kink and either end of the velocity range.  A kink
 closer to an end does not divide the map."""
@@ -36,7 +36,8 @@ resolve a steep rise of friction."""
 SPREAD = 2.0
 """Coefficient of the scaled amplitude log(1 + SPREAD A), used where there are no kinks."""
 DEGREES = {"velocity": 4, "amplitude": 4, "poisson": 2}
-"""Degrees of the polynomials in a cell; friction is nearly linear in Poisson's ratio."""
+"""Degrees of the polynomials in a cell.  The degree along Poisson's ratio is low, because friction
+is nearly linear in Poisson's ratio."""
 
 Box = tuple[tuple[float, ...], tuple[float, ...]]
 """Lower and upper ends of a box in scaled coordinates, by direction."""

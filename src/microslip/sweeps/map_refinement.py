@@ -32,7 +32,7 @@ from microslip.sweeps.request import points_of, solver_names
 from microslip.theory.exact import kinks_of
 
 SHARE = 0.1
-"""Ratio of a cell's polynomial error to its surplus, calibrated by benchmarks/certified.py."""
+"""Ratio of a cell's interpolation error to its surplus, calibrated by benchmarks/certified.py."""
 LOWER_ORDER = 0.35
 """Weight of third differences in the surplus.  They matter in cells where the fourth differences
 cancel by chance."""
@@ -47,7 +47,8 @@ SMALLEST = 2.0**-9
 
 Node = tuple[float, ...]
 Answers = Mapping[Node, tuple[float, float]]
-"""Friction and its error, keyed by node.  Friction is NaN if the point did not converge."""
+"""Type of a mapping from nodes to friction and its error.  Friction is NaN if the point did not
+converge."""
 
 
 class Refinement(NamedTuple):

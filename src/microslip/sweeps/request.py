@@ -23,7 +23,7 @@ FORMAT = 1
 """Version of the content of records.  It must be increased if this content changes without a change
 of the solver."""
 STARTS = ("stress-free", "full-rotation", "full-slip")
-"""Initial states in Figure 5."""
+"""Names of the initial states in Figure 5 of the paper."""
 REALS = {"velocity", "amplitude", "poisson", "tolerance", "travel", *DRIVES}
 """Keys of requests whose values are numbers written as strings."""
 CONTENT_NAME = 16
@@ -49,7 +49,7 @@ class Batch(NamedTuple):
 
     @property
     def requests(self) -> list[dict]:
-        """All requests, row by row."""
+        """All requests, ordered by row."""
         if not self.axis:
             return list(self.rows)
         return [row | {self.axis: value} for row in self.rows for value in self.values]
@@ -62,7 +62,7 @@ class Batch(NamedTuple):
 
     @property
     def folder(self) -> str:
-        """Name of the folder of the batch: the motion, without parameters."""
+        """Name of the batch's folder, which is the name of the motion without parameters."""
         return folder_of(self.rows[0].get("motion", "none"))
 
 

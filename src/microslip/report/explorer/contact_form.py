@@ -28,7 +28,7 @@ LARGEST = 65535
 OF_NUMBERS = "by E and ν"
 """Entry in the list of materials that lets the user enter Young's modulus and Poisson's ratio."""
 ADHESION = ("adhesion", "range", "short", "rubbery")
-"""Constants of si.warnings that the rules on adhesion use, in lower case."""
+"""Lower-case names of the constants in si.warnings that the rules on adhesion use."""
 PRESSURES = ("GPa", "MPa", "kPa", "Pa", "psi")
 FIELDS = {
     "radius": ("radius of the sphere", "radius", ("mm", "um", "m", "inch"), "5"),

@@ -113,7 +113,7 @@ def _values(dataset: xr.Dataset, **names: str) -> dict:
 
 
 def _map(dataset: xr.Dataset, records: Sequence[dict]) -> dict:
-    """Pack a map. records: periods of its points."""
+    """Pack a map. records: records of the periods of points."""
     shown = dataset.transpose("amplitude", "velocity", ...)
     motion = MOTIONS.get(dataset.attrs["motion"])
     return {

@@ -287,7 +287,7 @@ def _rest(axes: Axes, shown: xr.Dataset, scale: Scale) -> None:
 BELOW = "Reds_r"
 """Colour map for friction from 0 to -1. At 0, it is as dark as `style.COLOURMAP`."""
 DARK = 0.5
-"""Lines are white on bands with a luminance below this value, and black on all others."""
+"""Luminance of a band below which lines on it are white. On lighter bands, lines are black."""
 BEYOND = 0.01
 """Largest distance of friction from the range 0 to 1 that is attributed to the errors of the
 points."""
@@ -368,7 +368,7 @@ def friction(datasets: Sequence[xr.Dataset]) -> Scale:
 
 
 def change(datasets: Sequence[xr.Dataset]) -> Scale:
-    """Return the scale of differences of friction. Differences within twice the tolerance are not
+    """Return the scale for differences in friction. Differences within twice the tolerance are not
     significant and have the palest colour."""
     most = max(float(np.abs(dataset["mu_macro_change"]).max()) for dataset in datasets)
     errors = [float(dataset["mu_macro_error"].max()) for dataset in datasets]

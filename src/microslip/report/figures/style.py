@@ -211,7 +211,7 @@ def width(text: str, size: float) -> float:
 
 
 def wrapped(text: str, room: float, size: float) -> str:
-    """Break a text into lines at most `room` inches wide, at a font size in points.
+    """Break a text into lines that are at most `room` inches wide, at a font size in points.
 
     Lines are broken at spaces outside mathtext, and inside words that are wider than a line.
     """
@@ -237,7 +237,7 @@ def letter(index: int) -> str:
 GREEK = {
     name: rf"\{name}" for name in ("alpha", "beta", "delta", "kappa", "mu", "nu", "omega", "Omega")
 } | {"phi": r"\varphi", "theta": r"\vartheta"}
-"""Names of Greek letters and their LaTeX commands."""
+"""LaTeX commands of Greek letters, keyed by the name of the letter."""
 
 _WORD = re.compile(r"([A-Za-z]+)(\d*)(?:_([A-Za-z0-9]+))?")
 
@@ -454,5 +454,5 @@ def computed(axes: Axes, x: np.ndarray, *points: np.ndarray, label: str = "", **
 
 
 def after_layout(figure: Any, finish: Callable[[], None]) -> None:
-    """Register a function that is called after the layout. The function must not move panels."""
+    """Register a function to be called after the layout. This function must not move panels."""
     figure.finishing = [*getattr(figure, "finishing", ()), finish]
