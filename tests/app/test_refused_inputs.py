@@ -139,6 +139,8 @@ LINES = [
     (f"{POINT} --velocity -0.2", "--velocity is given twice"),
     (f"{POINT} --poisson 0.1 --nu=0.2", "--nu is given twice, as --poisson the first time"),
     ("predict transverse --amplitude 1 mm", "unrecognized arguments: mm"),
+    ("predict transverse --table comma.csv", "line 2: '1,5 N' has a decimal comma, in load; "),
+    ("predict transverse --table comma.csv", "or --decimal ','"),  # the option
     ("predict transverse --mu 0.3", "--load: needed; also missing: amplitude, frequency, speed"),
 ]
 """Other command lines, each with a part of the message."""
@@ -165,6 +167,7 @@ TABLES = {
     "units.csv": "forward [N]\n0\n1\n",
     "contacts.csv": "load [N]\n10\n",
     "wrong.csv": "load [mm]\n5\n",
+    "comma.csv": 'load,amplitude [um]\n"1,5 N",1\n',
 }
 
 
@@ -188,16 +191,6 @@ def test_a_bad_command_line_is_one_line(line, part, there):
     assert part in process.stderr
 
 
-def test_a_location_of_bad_cells_is_the_line_of_the_table(there):
-    text = 'load,amplitude [um]\n"1,5 N",1\n'
-    (there / "contacts.csv").write_text(text)
-    options = {"table": "contacts.csv", "load": None, "amplitude": None}
-    process = in_process.run(*shlex.split(command_line("predict", options)))
-    (there / "contacts.csv").write_text(TABLES["contacts.csv"])
-    assert process.returncode == 2 and "line 2" in process.stderr
-    assert "or --decimal ','" in process.stderr  # the option in place of the Python argument
-
-
 # Python.  Objects of other types than numbers and names, which NumPy or Python would convert.
 
 SPAN, HIDDEN = np.timedelta64(16), np.ma.array(0.5, mask=True)
@@ -205,7 +198,32 @@ NO_NUMBERS = [[0.5], "0.5", 0.5j, Decimal("0.5"), np.array([0.5]), HIDDEN, SPAN,
 NO_NUMBERS += [xr.DataArray([0.5, 0.6]), xr.DataArray(0.5, attrs={"units": "mm"}), np.array(True)]
 NO_NAMES = [b"a", HUGE, np.array(["a"]), pd.Series(["hertz", "a"])]
 PLACE = {"motion": "transverse", "velocity": 0.5, "amplitude": 0.5}
+AT = [HIDDEN, HUGE, "1_0", True, None, np.array(["2020-01-01"], "datetime64[ns]"), [0.1, None]]
+AXES = {"velocity": np.geomspace(1e-3, 10, 13), "amplitude": np.linspace(0, 3, 13)}
+DATASETS = {  # of other origin, and damaged
+    "mu_macro = 100.0": lambda d: d.assign(mu_macro=100 * d.mu_macro),
+    "mu_macro = 'of type <U1'": lambda d: d.assign(mu_macro=xr.full_like(d.mu_macro, "a", "<U1")),
+    "mu_macro_error = -0.0001": lambda d: d.assign(mu_macro_error=-d.mu_macro_error),
+    "velocity = 'of type": lambda d: d.assign_coords(velocity=d.velocity.astype(str)),
+    "velocity = -3.0": lambda d: d.assign_coords(velocity=np.log10(d.velocity)),
+    "is there twice": lambda d: xr.concat([d, d.assign(mu_macro=0.5 * d.mu_macro)], "velocity"),
+}
+
+
+def whole():
+    """A map of Eq 6."""
+    mu = paper.large_amplitude_transverse(*np.meshgrid(*AXES.values()))
+    return map_of(mu, *AXES.values(), 1e-4, tolerance=1e-3)
+
+
+def at(change=lambda dataset: dataset, velocity=0.15):
+    """Friction at a point of the map."""
+    return change(whole()).microslip.at(velocity, 1.3)
+
+
 CALLS = [
+    *((at, {"velocity": value}, "velocity = ") for value in AT),
+    *((at, {"change": change}, part) for part, change in DATASETS.items()),
     *((microslip.solve, PLACE | {"velocity": value}, "velocity") for value in NO_NUMBERS),
     *((microslip.solve, PLACE | {"pressure": value}, "pressure") for value in NO_NAMES),
     (microslip.solve, PLACE | {"tolerance": list(range(10**5))}, "tolerance"),
@@ -221,6 +239,7 @@ CALLS = [
 ]
 
 
+@pytest.mark.filterwarnings("error")
 @pytest.mark.parametrize(("function", "arguments", "argument"), CALLS, ids=short)
 def test_a_call_is_refused_in_one_line(function, arguments, argument, there):
     with pytest.raises((InputError, CacheError)) as caught:
@@ -228,51 +247,11 @@ def test_a_call_is_refused_in_one_line(function, arguments, argument, there):
     one_line(caught.value, argument)
 
 
-AT = [HIDDEN, HUGE, "1_0", True, None, np.array(["2020-01-01"], "datetime64[ns]"), [0.1, None]]
-
-
-@pytest.mark.filterwarnings("error")
-@pytest.mark.parametrize("velocity", AT, ids=short)
-def test_a_bad_velocity_is_refused_by_a_map(velocity):
-    with pytest.raises(InputError) as caught:
-        whole().microslip.at(velocity, 0.5)
-    one_line(caught.value, "velocity = ")
-
-
-# Datasets: of other origin, and damaged
-
-AXES = {"velocity": np.geomspace(1e-3, 10, 13), "amplitude": np.linspace(0, 3, 13)}
-
-
-def whole():
-    """A map of Eq 6 that contains (0.15, 1.3)."""
-    mu = paper.large_amplitude_transverse(*np.meshgrid(*AXES.values()))
-    return map_of(mu, *AXES.values(), 1e-4, tolerance=1e-3)
-
-
-DATASETS = {
-    "mu_macro = 100.0": lambda d: d.assign(mu_macro=100 * d.mu_macro),
-    "mu_macro = 'of type <U1'": lambda d: d.assign(mu_macro=xr.full_like(d.mu_macro, "a", "<U1")),
-    "mu_macro_error = -0.0001": lambda d: d.assign(mu_macro_error=-d.mu_macro_error),
-    "velocity = 'of type": lambda d: d.assign_coords(velocity=d.velocity.astype(str)),
-    "velocity = -3.0": lambda d: d.assign_coords(velocity=np.log10(d.velocity)),
-    "is there twice": lambda d: xr.concat([d, d.assign(mu_macro=0.5 * d.mu_macro)], "velocity"),
-}
-
-
-@pytest.mark.parametrize("part", DATASETS)
-def test_a_dataset_that_no_sweep_has_made_is_refused(part):
-    assert whole().microslip.at(0.15, 1.3).mu_macro_error < 0.1
-    with pytest.raises(InputError) as caught:
-        DATASETS[part](whole()).microslip.at(0.15, 1.3)
-    one_line(caught.value, part)
-
-
 @pytest.mark.parametrize("read", [microslip.open_map, loaded])
 def test_a_dataset_half_of_which_is_lost_is_one_line(read, tmp_path):
     path = tmp_path / "map.nc"
     whole().to_netcdf(path)
-    assert loaded(path).identical(whole())
+    assert loaded(path).identical(whole()) and at().mu_macro_error < 0.1
     content = path.read_bytes()
     path.write_bytes(content[: len(content) // 2].ljust(len(content), b"\0"))
     with pytest.raises(CacheError) as caught:

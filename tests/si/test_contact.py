@@ -110,19 +110,20 @@ def test_the_ellipse_of_two_radii_is_pressed_into_shape(across):
         assert middle - displacement(*place) == pytest.approx(fall, rel=1e-6)
 
 
-@pytest.mark.parametrize(("across", "digits"), [(5e-3 * 1.0001, 1e-4), (5e-3, 1e-12)])
-def test_an_ellipse_of_equal_radii_is_the_circle(across, digits):
-    for name in ("contact_radius", "u_lim", "indentation", "largest_pressure"):
-        assert getattr(elliptic(across), name) == pytest.approx(getattr(SPHERE, name), rel=digits)
+CIRCLES = [
+    (elliptic(5e-3 * 1.0001), 1e-4),
+    (elliptic(5e-3), 1e-12),
+    (of_size(SPHERE.contact_radius, "hertz"), 1e-12),
+]
+
+
+@pytest.mark.parametrize(("contact", "digits"), CIRCLES)
+def test_an_ellipse_of_equal_radii_and_a_circle_of_known_size_are_the_sphere(contact, digits):
+    for name in ("contact_radius", "radius", "u_lim", "indentation", "largest_pressure"):
+        assert getattr(contact, name) == pytest.approx(getattr(SPHERE, name), rel=digits)
 
 
 # Contacts of known size
-
-
-def test_a_circle_of_known_size_is_the_sphere_that_makes_it():
-    contact = of_size(SPHERE.contact_radius, "hertz")
-    for name in ("radius", "u_lim", "indentation", "largest_pressure"):
-        assert getattr(contact, name) == pytest.approx(getattr(SPHERE, name), rel=1e-12)
 
 
 LARGEST = {
@@ -196,8 +197,8 @@ def test_the_unit_of_a_bore_leaves_half_the_radius_sticking():
 )
 def test_amplitudes_are_shares_of_the_largest(label, sizes, expected, largest):
     along = [None if size is None else size * SPHERE.u_lim for size in sizes[:2]]
-    parts = {"forward_amplitude": along[1], "rotation_amplitude": sizes[2]}
-    parts |= {"load_amplitude": sizes[3], "phase": 0.5 * math.pi}
+    parts = dict(zip(("rotation_amplitude", "load_amplitude"), sizes[2:], strict=True))
+    parts |= {"forward_amplitude": along[1], "phase": 0.5 * math.pi}
     moving = {"speed": 1e-3, "amplitude": along[0], "frequency": 1e3}
     contact = contact_of(label, **BALL, **moving, **parts)
     name, _, text = contact.motion.partition(":")

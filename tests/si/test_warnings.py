@@ -85,28 +85,19 @@ def test_small_hard_spheres_adhere_by_derjaguin_and_large_soft_ones_by_johnson(
 
 
 KENDALL = math.sqrt(8.0 * math.pi * STEEL * ENERGY * 10e-3**3)
+PUNCH = {"contact_radius": 10e-3, "pressure": "punch:flat=0.99", "load": 1e3}
+PARABOLA = {"contact_radius": 5e-6, "pressure": "power:exponent=2"}
+PARABOLA |= {"load": 4.0 / 3.0 * STEEL * 5e-6**3 / 5e-3}  # that of a sphere of radius 5 mm
+ELLIPSE = {"radius": 5e-3, "radius_across": 50e-6, "load": 1e-3}
 
 
 @pytest.mark.parametrize(
     ("shape", "force", "digits"),
     [
-        ({"contact_radius": 10e-3, "pressure": "punch:flat=0.99", "load": 1e3}, KENDALL, 0.03),
-        # the load at which a sphere of radius 5 mm has a contact radius of 5 um
-        (
-            {
-                "contact_radius": 5e-6,
-                "pressure": "power:exponent=2",
-                "load": 4.0 / 3.0 * STEEL * 5e-6**3 / 5e-3,
-            },
-            1.5 * math.pi * ENERGY * 5e-3,
-            0.02,
-        ),
+        (PUNCH, KENDALL, 0.03),
+        (PARABOLA, 1.5 * math.pi * ENERGY * 5e-3, 0.02),
         # Derjaguin: 2 pi w sqrt(R' R''); an upper bound for a slender ellipse
-        (
-            {"radius": 5e-3, "radius_across": 50e-6, "load": 1e-3},
-            math.pi * ENERGY * 2 * 0.5e-3,
-            0.3,
-        ),
+        (ELLIPSE, math.pi * ENERGY * 2 * 0.5e-3, 0.3),
     ],
 )
 def test_the_pull_off_force_is_that_of_the_shape(shape, force, digits):
@@ -133,10 +124,7 @@ def test_the_time_of_a_wave_is_that_over_the_contact_radius():
 
 @pytest.mark.parametrize(
     ("newtons", "load", "separates"),
-    [
-        ([140, 100, 60, 100], "50 N", False),
-        ([90, 30, 0, 0, 0, 30], None, True),
-    ],
+    [([140, 100, 60, 100], "50 N", False), ([90, 30, 0, 0, 0, 30], None, True)],
 )
 def test_bodies_separate_if_the_load_of_a_file_vanishes(tmp_path, newtons, load, separates):
     rows = "\n".join(f"{one},{0.1 * k}" for k, one in enumerate(newtons))
@@ -180,14 +168,13 @@ def test_a_check_without_its_property_is_named_with_the_body():
 # Materials
 
 
+VICKERS = 9.80665e6 / math.sin(math.radians(68.0))
+"""A kilogram-force a square millimetre of faces at 136 degrees, as a pressure on their plan."""
+
+
 @pytest.mark.parametrize(
     ("text", "pressure"),
-    [
-        ("700 HV", 700 * 9.80665e6 / math.sin(math.radians(68.0))),  # faces at 136 degrees
-        ("62.5HRC", 764.5 * 9.80665e6 / math.sin(math.radians(68.0))),
-        ("7 GPa", 7e9),
-        (7e9, 7e9),
-    ],
+    [("700 HV", 700 * VICKERS), ("62.5HRC", 764.5 * VICKERS), ("7 GPa", 7e9), (7e9, 7e9)],
 )
 def test_a_hardness_is_a_pressure_on_any_scale(text, pressure):
     assert read_hardness(text).si == pytest.approx(pressure, rel=1e-4)
@@ -211,17 +198,17 @@ def test_a_material_has_units():
 
 
 @pytest.mark.parametrize(
-    ("values", "argument", "message"),
+    ("values", "problem"),
     [
-        ((0.0, 0.3), "young", "above 0"),
-        (("210", 0.3), "young", "without a unit"),
-        (("210 GPa +- 1 %", 0.3), "young", "uncertainty"),
-        ((210e9, 0.7), "poisson", "at most 0.5"),
-        ((210e9, 0.3, None, "7 N"), "hardness", "units of Pa"),
+        ((0.0, 0.3), "young = .*above 0"),
+        (("210", 0.3), "young = .*without a unit"),
+        (("210 GPa +- 1 %", 0.3), "young = .*uncertainty"),
+        ((210e9, 0.7), "poisson = .*at most 0.5"),
+        ((210e9, 0.3, None, "7 N"), "hardness = .*units of Pa"),
     ],
 )
-def test_a_bad_material_is_refused(values, argument, message):
-    with pytest.raises(InputError, match=f"^{argument} = .*{message}"):
+def test_a_bad_material_is_refused(values, problem):
+    with pytest.raises(InputError, match=f"^{problem}"):
         Material(*values)
 
 
