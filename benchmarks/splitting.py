@@ -6,9 +6,15 @@ For each value of a constant, the tables show the mean number of iterations per 
 search for the periodic state. The cases are few and many rings, a bore, and squares.
 """
 
+import os
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+
 import numpy as np
 
-from microslip.contact import convolution, ring_contact, splitting
+from microslip.contact import convolution, splitting
 from microslip.contact.modes import polar_contact
 from microslip.contact.ring_contact import RadialContact
 from microslip.periodic.discretise import Resolution
@@ -47,6 +53,26 @@ def table(name, values, set_value, contacts):
         print(f"{value:<20g}" + "".join(f"{count:16.1f}" for count in counts))
 
 
+def at_ratio(value, contacts):
+    """Return the iterations for a ratio of consecutive penalties, in a process of its own.
+
+    Compiled code contains the penalties, so it is compiled anew.  With the ratio 1, all steps have
+    the same penalty.
+    """
+    code = (
+        "import numpy as np; from microslip.contact import splitting as kernels\n"
+        f"kernels.PENALTIES = {value} ** (np.arange(4) - 1.5)\n"
+        "from splitting import CONTACTS, iterations\n"
+        f"print(*(iterations(*CONTACTS[contact]) for contact in {contacts}))"
+    )
+    with tempfile.TemporaryDirectory() as folder:
+        paths = os.pathsep.join([str(Path(__file__).parent), os.environ.get("PYTHONPATH", "")])
+        environment = os.environ | {"NUMBA_CACHE_DIR": folder, "PYTHONPATH": paths}
+        command = [sys.executable, "-c", code]
+        out = subprocess.run(command, env=environment, check=True, capture_output=True, text=True)
+    return [float(count) for count in out.stdout.split()]
+
+
 def main():
     contacts = [name for name in CONTACTS if "squares" not in name]
 
@@ -56,14 +82,10 @@ def main():
     table("BALANCED_RINGS", (3, 6, 12, 24, 48), balanced, contacts)
     balanced(12)
 
-    def ratio(value):
-        """Set the ratio of consecutive penalties. With 1, all steps have the same penalty."""
-        penalties = value ** (np.arange(4) - 1.5)
-        for module in (splitting, ring_contact):
-            module.PENALTIES = penalties
-
-    table("ratio of penalties", (1.0, 1.5, 2.0, 3.0), ratio, contacts)
-    ratio(2.0)
+    print(f"{'ratio of penalties':20s}" + "".join(f"{contact:>16s}" for contact in contacts))
+    for value in (1.0, 1.5, 2.0, 3.0):
+        counts = at_ratio(value, contacts)
+        print(f"{value:<20g}" + "".join(f"{count:16.1f}" for count in counts))
 
     def patience(value):
         convolution.PATIENCE = value
