@@ -15,39 +15,6 @@ NODE = shutil.which("node")
 needs_node = pytest.mark.skipif(NODE is None, reason="node is not installed: apt install nodejs")
 """Mark for tests that run scripts of the page."""
 
-CALLS = """
-const { given, calls, call } = JSON.parse(require("fs").readFileSync(0, "utf8"));
-// JSON has no numbers that are not finite.
-const said = (key, value) =>
-  typeof value === "number" && !Number.isFinite(value) ? String(value) : value;
-process.stdout.write(JSON.stringify(calls.map((one) => {
-  try {
-    return eval(call)(given, ...one);
-  } catch (error) {
-    if (!(error instanceof Refusal)) throw error;
-    return { refused: error.message };
-  }
-}), said));
-"""
-
-
-def answers(scripts, call, inputs, calls):
-    """Results of JavaScript calls, as a list of values or {"refused": message}.
-
-    scripts: names of files, in their order. call: JavaScript function of `given` and one of
-    `calls`.
-    """
-    code = ["'use strict';", *((FOLDER / name).read_text(encoding="utf-8") for name in scripts)]
-    process = subprocess.run(
-        [NODE, "-e", "\n".join([*code, CALLS])],
-        input=json.dumps({"given": inputs, "calls": calls, "call": call}),
-        capture_output=True,
-        text=True,
-        timeout=120,
-    )
-    assert process.returncode == 0, process.stderr
-    return json.loads(process.stdout)
-
 
 class _Ids(HTMLParser):
     """Ids of a page, with their visibility and the ids around each."""

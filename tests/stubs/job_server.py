@@ -1,11 +1,11 @@
-"""Jobs of the workflow as forks of a process that has imported the libraries.
+"""Snakemake and its jobs as forks of a process that has imported the libraries.
 
-Snakemake starts Python for every script, and most of its time goes into imports of libraries.
-The server process does not import this package: each job reads the sources of its own project.
+Snakemake starts Python for every script, and most of the time of both goes into imports of
+libraries. The server process does not import this package: each fork reads the sources of its
+own project.
 
-`python` is a program that Snakemake starts in place of Python. It asks the server for a fork
-with its folder, environment and streams, and ends like the fork. Commands of pages start it,
-too.
+`python` is a program that runs in place of Python. It asks the server for a fork with its
+folder, environment and streams, and ends like the fork. Commands of pages start it, too.
 """
 
 import atexit
@@ -24,16 +24,12 @@ from functools import cache
 from importlib import import_module
 from pathlib import Path
 
-try:
-    from stubs import forked
-except ImportError:  # in the process itself
-    import forked
-
 LIBRARIES = (
     *("numba", "scipy.special", "scipy.linalg", "scipy.optimize"),
     *("netCDF4", "xarray", "dask.array", "pint", "matplotlib.figure", "matplotlib.offsetbox"),
     *("matplotlib.backends.backend_agg", "matplotlib.backends.backend_pdf"),
-    *("yaml", "jsonschema", "tqdm", "snakemake.logging", "snakemake.script"),
+    *("yaml", "jsonschema", "tqdm", "snakemake.cli", "snakemake.script", "snakemake.storage"),
+    *("nbformat", "requests", "smart_open"),
 )
 
 CLIENT = """\
@@ -69,6 +65,19 @@ def python(environment):
     return str(started)
 
 
+def snakemake(arguments, folder, environment, timeout=900):
+    """Result of Snakemake with these arguments in a folder, as from subprocess.run."""
+    return subprocess.run(
+        [python(tuple(sorted(environment.items()))), "-m", "snakemake", *map(str, arguments)],
+        cwd=folder,
+        env=environment,
+        stdin=subprocess.DEVNULL,
+        capture_output=True,
+        text=True,
+        timeout=timeout,
+    )
+
+
 # The server
 
 
@@ -77,6 +86,7 @@ def main(address):
     for name in LIBRARIES:
         with contextlib.suppress(ImportError):
             import_module(name)
+    import_module("snakemake.cli").get_argument_parser()  # imports all plugins
     _load_numba()
     signal.signal(signal.SIGCHLD, _bury)
     server = socket.socket(socket.AF_UNIX)
@@ -119,9 +129,23 @@ def _run(connection):
     paths = request["environment"].get("PYTHONPATH", "").split(os.pathsep)
     sys.path[:0] = filter(None, paths)
     threading.Thread(target=_end_with, args=[connection], daemon=True).start()
-    forked.end_with(
-        lambda: _do(request["arguments"]), lambda code: connection.sendall(str(code).encode())
-    )
+    code = 1
+    try:
+        _do(request["arguments"])
+        code = 0
+    except SystemExit as ended:
+        code = ended.code if isinstance(ended.code, int) else 1 if ended.code else 0
+        if isinstance(ended.code, str):
+            print(ended.code, file=sys.stderr)
+    except BaseException:
+        sys.excepthook(*sys.exc_info())
+    finally:
+        threading._shutdown()
+        atexit._run_exitfuncs()
+        sys.stdout.flush()
+        sys.stderr.flush()
+        connection.sendall(str(code).encode())
+        os._exit(code)
 
 
 def _do(arguments):

@@ -8,7 +8,7 @@ import sys
 from pathlib import Path
 
 import yaml
-from stubs import snakemake_server
+from stubs import job_server
 
 from microslip.foundation import compiled
 
@@ -50,11 +50,6 @@ TINY = {
 ALL_JOBS = {"solve_batch": 5, "make_products": 1, "all": 1}
 
 
-def of_transverse(**changed):
-    """A configuration of the transverse sweep alone, with some of its keys changed."""
-    return {"sweeps": {"transverse": TINY["sweeps"]["transverse"] | changed}, "points_per_job": 4}
-
-
 def jobs_in(message):
     """Number of jobs by rule, from Snakemake's table before a run; {} if there is nothing to do."""
     table = re.search(r"^-+  -+\n(.*?)^total", message, re.MULTILINE | re.DOTALL)
@@ -89,7 +84,7 @@ class Project:
 
     def snakemake(self, *arguments):
         # The virtual environment is not activated: only the path of the executable is used.
-        return snakemake_server.start(arguments, self.folder, ENVIRONMENT)
+        return job_server.snakemake(arguments, self.folder, ENVIRONMENT)
 
     def run(self, *targets):
         done = self.snakemake(*targets, *RUN)

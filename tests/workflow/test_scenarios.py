@@ -9,11 +9,7 @@ import time
 
 import pytest
 import xarray as xr
-from stubs.workflow_project import ENVIRONMENT, ROOT, RUN, SNAKEMAKE, Project, jobs_in
-
-from microslip.config import load
-from microslip.config.settings import Sweep
-from microslip.sweeps import request
+from stubs.workflow_project import ENVIRONMENT, RUN, SNAKEMAKE, Project, jobs_in
 
 pytestmark = pytest.mark.long
 
@@ -99,19 +95,6 @@ def test_a_grown_axis_solves_its_new_points_alone(axis, values, batches, new, pr
     assert len(project.values("velocity")) == 3
 
 
-def test_the_shipped_configuration_grows_by_its_new_points_alone():
-    """README: if you add a value to an axis, only the new points are computed."""
-    mapping = load.read_yaml(ROOT / "config/config.yaml")
-    before = mapping["sweeps"]["transverse"]["velocity"]
-    grown = {**mapping["sweeps"]["transverse"], "velocity": [before, 0.07]}
-    keys = [
-        {request.key_of(r) for r in request.points_of(sweep).requests}
-        for sweep in (Sweep(**mapping["sweeps"]["transverse"]), Sweep(**grown))
-    ]
-    assert keys[0] < keys[1]
-    assert len(keys[1] - keys[0]) == 25
-
-
 def started(project, *arguments):
     """Start a run as the leader of a session."""
     return subprocess.Popen(
@@ -153,11 +136,6 @@ def batch_files(project):
     return list(project.folder.glob("results/batches/*/*.jsonl"))
 
 
-def wait_for_a_point(project, count):
-    """Wait until the solver has been called more than `count` times."""
-    wait_until(lambda: len(project.solved()) > count)
-
-
 def test_kills_of_all_processes_lose_the_points_in_flight_at_most(finished, emptied):
     """Each kill waits until a point is being solved."""
     (emptied.folder / "slow").touch()
@@ -165,7 +143,7 @@ def test_kills_of_all_processes_lose_the_points_in_flight_at_most(finished, empt
     for _ in range(3):
         count = len(emptied.solved())
         running = started(emptied, DATASET, "--nolock")
-        wait_for_a_point(emptied, count)
+        wait_until(lambda before=count: len(emptied.solved()) > before)
         time.sleep(draw.uniform(0.0, 0.3))
         os.killpg(running.pid, signal.SIGKILL)
         running.wait()
@@ -216,31 +194,12 @@ def test_one_run_makes_every_file_after_a_kill_of_snakemake_alone(
     assert emptied.planned(DATASET, FIGURE) == {}
 
 
-def forget(project):
-    shutil.rmtree(project.folder / ".snakemake")
-    return project
-
-
-def copy(project):
-    """Results copied to another working directory, with the dates of copying."""
-    there = project.folder.parent / "there"
-    shutil.copytree(project.folder, there, ignore=shutil.ignore_patterns(".snakemake"))
-    for path in there.rglob("*"):
-        os.utime(path)
-    return Counted.at(there)
-
-
-def share(project):
-    """Another working directory with the same folder of results."""
+def test_what_snakemake_remembers_does_not_count(project):
+    """Another working directory has the same folder of results."""
     there = project.folder.parent / "there"
     shutil.copytree(project.folder, there, ignore=shutil.ignore_patterns(".snakemake", "results"))
     (there / "results").symlink_to(project.folder / "results")
-    return Counted.at(there)
-
-
-@pytest.mark.parametrize("how", [forget, copy, share])
-def test_what_snakemake_remembers_does_not_count(how, project):
-    elsewhere = how(project)
+    elsewhere = Counted.at(there)
     assert elsewhere.planned(DATASET, FIGURE) == {}
     elsewhere.configure(configured(velocity=[0.5, 1]))
     assert elsewhere.planned(DATASET)["make_dataset"] == 1
@@ -292,7 +251,7 @@ def solve(*arguments, **settings):
 def test_a_solver_that_is_edited_during_a_run_ends_it(project):
     project.append("src/microslip/answer/point.py", EDITING)
     before = project.records()
-    process = project.snakemake(DATASET, "-j2", "--configfile", "tiny.yaml")
+    process = project.snakemake(DATASET, *RUN)
     assert process.returncode != 0
     assert "was edited while its code was running" in process.stderr
     assert "Traceback" not in process.stderr
@@ -304,31 +263,21 @@ def test_a_solver_that_is_edited_during_a_run_ends_it(project):
 
 def test_a_collector_that_fails_leaves_the_old_dataset(finished, project):
     project.append("src/microslip/datasets/sweep_dataset.py", "\n\ndef report(*_):\n    1 / 0\n")
-    process = project.snakemake(DATASET, "-j2", "--configfile", "tiny.yaml")
+    process = project.snakemake(DATASET, *RUN)
     assert process.returncode != 0
     assert (project.folder / DATASET).read_bytes() == (finished.folder / DATASET).read_bytes()
 
 
-CUT = {
-    "a dataset cut short": (
-        DATASET,
-        lambda path: os.truncate(path, 1000),
-        {"make_dataset", "draw_figure"},
-    ),
-    "a dataset of another": (
-        DATASET,
-        lambda path: path.write_text("mine"),
-        {"make_dataset", "draw_figure"},
-    ),
-    "no page": ("results/summaries/slide.html", os.unlink, {"make_dataset", "draw_figure"}),
-    "an empty figure": (FIGURE, lambda path: os.truncate(path, 0), {"draw_figure"}),
-    "a figure cut short": (FIGURE, lambda path: os.truncate(path, 9000), {"draw_figure"}),
-}
-
-
-@pytest.mark.parametrize("case", CUT)
-def test_a_damaged_product_is_made_again(case, finished, project):
-    file, damage, rules = CUT[case]
+@pytest.mark.parametrize(
+    ("file", "damage", "rules"),
+    [
+        (DATASET, lambda path: os.truncate(path, 1000), {"make_dataset", "draw_figure"}),
+        ("results/summaries/slide.html", os.unlink, {"make_dataset", "draw_figure"}),
+        (FIGURE, lambda path: os.truncate(path, 0), {"draw_figure"}),
+        (FIGURE, lambda path: os.truncate(path, 9000), {"draw_figure"}),
+    ],
+)
+def test_a_damaged_product_is_made_again(file, damage, rules, finished, project):
     damage((project.folder / file).resolve())
     jobs = jobs_in(project.run(DATASET, FIGURE))
     assert set(jobs) == rules | {"link_file"}
@@ -403,6 +352,6 @@ def test_a_point_that_failed_is_a_gap_and_is_tried_again(project):
 
 def test_an_error_of_the_code_fails_the_run(project):
     project.append("src/microslip/answer/point.py", FAILING.format(error="TypeError"))
-    process = project.snakemake(DATASET, "-j2", "--configfile", "tiny.yaml")
+    process = project.snakemake(DATASET, *RUN)
     assert process.returncode != 0
     assert "TypeError: no luck" in process.stderr

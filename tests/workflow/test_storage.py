@@ -12,7 +12,7 @@ import time
 
 import pytest
 import yaml
-from stubs import snakemake_server
+from stubs import job_server
 from stubs.workflow_project import ENVIRONMENT, RUN, TINY
 
 pytest.importorskip("moto.server")
@@ -63,7 +63,7 @@ def run(folder, address, *arguments):
         "SNAKEMAKE_STORAGE_S3_SECRET_KEY": "b",
     }
     environment = {**ENVIRONMENT, **KEYS, **plugin}
-    process = snakemake_server.start([*arguments, *RUN, *STORAGE], folder, environment, timeout=600)
+    process = job_server.snakemake([*arguments, *RUN, *STORAGE], folder, environment, timeout=600)
     assert process.returncode == 0, process.stderr
     return process.stdout + process.stderr
 

@@ -4,7 +4,7 @@ import shutil
 
 import pytest
 import xarray as xr
-from stubs.workflow_project import ALL_JOBS, COMPILED, ROOT, RUN, TINY, jobs_in
+from stubs.workflow_project import ALL_JOBS, COMPILED, ROOT, TINY, jobs_in
 
 pytestmark = pytest.mark.slow
 
@@ -62,18 +62,3 @@ def test_an_edit_makes_again_what_it_concerns_and_messages_and_dates_do_not_coun
     shutil.rmtree(project.folder / "src")
     shutil.copytree(ROOT / "src", project.folder / "src", ignore=COMPILED)
     assert project.planned() == {}
-
-
-@pytest.mark.long
-def test_datasets_and_figures_are_targets_by_their_names(project):
-    for path in (project.folder / "results").glob("data/fig*.png"):
-        path.unlink()
-    figure = "fig2_transverse_map"
-    assert project.planned(figure) == {"draw_figure": 1, figure: 1}
-    assert project.planned("bore") == {}
-    assert project.planned() == {"make_products": 1, "all": 1}
-    project.run(figure)
-    assert (project.folder / f"results/figures/{figure}.png").exists()
-    process = project.snakemake("fig7", *RUN, "--dry-run")
-    assert process.returncode == 1
-    assert "fig7" in process.stdout
