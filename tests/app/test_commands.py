@@ -263,15 +263,14 @@ def test_a_friction_table_has_the_predictions_with_their_errors(tmp_path):
     comments = answer(f"export table transverse {VIBRATED} {grid} --output {tmp_path / 'a.csv'}")
     assert "unknown along load," in comments
     frame = rows_of((tmp_path / "a.csv").read_text())
-    axes, force = ["load_N", "speed_m_s", "amplitude_m"], "friction_force_N"
-    columns = ["mu_apparent", "mu_apparent_error", force, "friction_force_error_N"]
-    assert list(frame.columns) == axes + columns and len(frame) == 18
-    row = frame.iloc[16]
-    assert row[axes].tolist() == pytest.approx([20.0, 0.02, 2.5e-7])
+    axes = ["load_N", "speed_m_s", "amplitude_m"]
+    numbers = ["mu_apparent", "mu_apparent_error", "friction_force_N", "friction_force_error_N"]
+    assert list(frame.columns) == axes + numbers and len(frame) == 18
+    assert frame.iloc[16][axes].tolist() == pytest.approx([20.0, 0.02, 2.5e-7])
     quantities = {"load": "20 N", "speed": "20 mm/s", "amplitude": "0.25 um"}
     alone = microslip.predict("transverse", **SAME, **quantities, frequency=2e4, tolerance=0.01)
-    assert row[force] == pytest.approx(alone.friction_force_N, rel=1e-12)
-    assert row["mu_apparent_error"] == pytest.approx(alone.mu_apparent_error, rel=1e-9)
+    expected = [getattr(alone, name) for name in numbers]
+    assert frame.iloc[16][numbers].tolist() == pytest.approx(expected, rel=1e-9)
 
 
 def test_a_table_with_a_point_outside_a_map_is_not_written(tmp_path, monkeypatch):

@@ -14,9 +14,8 @@ FULL = Path("/dev/full")
 
 @pytest.fixture(autouse=True)
 def quiet_afterwards():
-    level = logging.getLogger("microslip").level
     yield
-    logging.getLogger("microslip").setLevel(level)
+    logging.getLogger("microslip").setLevel(logging.NOTSET)
 
 
 def test_a_job_that_is_done_leaves_its_log(tmp_path, capsys):

@@ -4,8 +4,7 @@ import json
 import tracemalloc
 
 import pytest
-from stubs.claims_stub import CLAIMS
-from stubs.studies_stub import ACCURACY, STABILITY
+from bad_input_tables.bad_configurations import STUDIED
 from stubs.sweep_stub import configured
 from stubs.workflow_project import AXES, TINY
 
@@ -15,7 +14,6 @@ from microslip.foundation import source_digest
 from microslip.report.figures import drawing
 from microslip.sweeps import batch, content
 
-STUDIES = {"accuracy": ACCURACY, "stability": STABILITY, "claims": CLAIMS}
 FIGURES = {
     "profile": {"kind": "accuracy_profile"},
     "explorer": {"kind": "explorer", "sweep": ["transverse", "bore"]},
@@ -26,7 +24,7 @@ def plan(sweeps=None, **changed):
     figures = TINY["figures"] | FIGURES
     sweeps = TINY["sweeps"] | (sweeps or {})
     return Plan(
-        load.from_mapping(TINY | STUDIES | {"figures": figures, "sweeps": sweeps} | changed)
+        load.from_mapping(TINY | STUDIED | {"figures": figures, "sweeps": sweeps} | changed)
     )
 
 
@@ -42,7 +40,7 @@ def test_the_name_of_a_product_changes_with_its_own_settings_alone():
     figures = TINY["figures"] | FIGURES | {"fig1_force_history": history}
     assert changed(plan(), plan(figures=figures)) == names  # the run is in the dataset
     assert changed(plan(), plan(points_per_job=1)) == set()
-    assert changed(plan(), plan(claims=CLAIMS | {"tolerance": 2e-3})) == {"claims"}
+    assert changed(plan(), plan(claims=STUDIED["claims"] | {"tolerance": 2e-3})) == {"claims"}
 
 
 def test_another_way_to_write_a_motion_computes_nothing():
@@ -57,7 +55,7 @@ def test_an_edit_of_a_builder_or_of_the_script_renames_what_it_makes(monkeypatch
     axes = {"velocity": [0.1, 10], "amplitude": [0, 1]}
     sure = {"sure": axes | {"motion": "bore", "error": 0.01}}
     before, digest = plan(sure), source_digest.of_builder
-    parts = {"studies": {*STUDIES, "profile"}, "sweeps/map_refinement.py": {"sure"}}
+    parts = {"studies": {*STUDIED, "profile"}, "sweeps/map_refinement.py": {"sure"}}
     for part, names in parts.items():
 
         def edited(*files, part=part):

@@ -87,7 +87,7 @@ VALUES = {
         "figure": ["a.jpg"],
     },
     "fit": {"map": ["m.csv", "nosuch.nc"], "output": ["fit.csv"], "CSV": ["none.csv"]},
-    "fold": {"output": [None, "none/a.csv"], "CSV": ["a-file"]},
+    "fold": {"output": [None, "none/a.csv", "new.nc"], "CSV": ["a-file", "path.csv"]},
     "response": {"output": ["none/a.csv", "path.csv"], "CSV": ["none.csv", "units.csv"]},
     "export iwan": {"elements": ["2.5", "0"], "mu": [None]},
     "export table": {"amplitude": ["1 um", "-1..1 um, 3", "1e-7..1 m, 2"], "mass": ["1 g"]},
@@ -140,6 +140,7 @@ LINES = [
     (f"{POINT} --poisson 0.1 --nu=0.2", "--nu is given twice, as --poisson the first time"),
     ("predict transverse --amplitude 1 mm", "unrecognized arguments: mm"),
     ("predict transverse --table comma.csv", "line 2: '1,5 N' has a decimal comma, in load; "),
+    ("fold noise.csv --output new.csv --frequency '40 Hz'", " um: peak to peak at "),
     ("predict transverse --table comma.csv", "or --decimal ','"),  # the option
     ("predict transverse --mu 0.3", "--load: needed; also missing: amplitude, frequency, speed"),
 ]
@@ -161,12 +162,15 @@ def named(name, value):
 SINGLE = [(c, {n: v}) for c, of in VALUES.items() for n, values in of.items() for v in values]
 COMMAND_LINES = [(command_line(c, new), named(*[*new.items()][-1])) for c, new in SINGLE + CHANGES]
 COMMAND_LINES += LINES
+WHITE = np.random.default_rng(4).normal(size=2000)
+NOISE = "\n".join(f"{t},{x:.4f}" for t, x in enumerate(WHITE))
 TABLES = {
     "a-file": "kept\n",
     "path.csv": "forward [um]\n0\n1\n",
     "units.csv": "forward [N]\n0\n1\n",
     "contacts.csv": "load [N]\n10\n",
     "wrong.csv": "load [mm]\n5\n",
+    "noise.csv": f"time [ms],lateral [um]\n{NOISE}\n",
     "comma.csv": 'load,amplitude [um]\n"1,5 N",1\n',
 }
 

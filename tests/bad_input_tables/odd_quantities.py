@@ -32,7 +32,6 @@ LENGTHS = [
     ("0", 0.0),  # the same in all units
     ("1/4 inch", "did you mean '0.25 inch'?"),
     (Fraction(1, 8), 0.125),
-    (Q(5, "mm"), 5e-3),
     ("1,5 mm", "decimals follow a point"),
     ("1 \u00b1 0.1 um", "in it '1': 1 is a number without a unit"),
     ("5 mm*rad", "the unit is mm*rad"),
@@ -62,19 +61,15 @@ OTHERS = [
     ("0.5\u00b0", "rad", 0.5 * pi / 180),
     (Q(0.5, "deg"), "rad", 0.5 * pi / 180),
     ("30 %", "", 0.3),
-    (Q(30, "percent"), "", 0.3),
     (Q(3, "N") / Q(0.01, "kN"), "", 0.3),
-    ("210 kN/mm^2", "Pa", 210e9),
     ("210 Mpa", "Pa", "capitals count (did you mean MPa or mPa?)"),
     ("500 g", "N", "for its weight write gf or kgf, as in '500 gf'"),
-    ("3.6 km/h", "m/s", 1.0),
     ("100 rpm", "m/s", "its speed is the rate in rad/s times a radius"),
     ("5 N/(m/s)", "N*s/m", "stopped at '/(m/s)'"),
 ]
 OTHERS += [
     ("1" + "0" * 5000 + "e-5000 m", "m", 1.0),
     ("30e6 psi", "Pa", 30e6 * POUND * GRAVITY / INCH**2),
-    ("2 kips", "N", 2000 * POUND * GRAVITY),
     ("50\N{NO-BREAK SPACE}%", "", 0.5),
     ("5e m", "m", "'e' is none of the units"),
     ("1 m/m", "m/s", "that of a pure number"),

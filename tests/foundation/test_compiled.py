@@ -12,6 +12,7 @@ with suppress(ImportError):
     import pty
 
 import pytest
+from stubs.in_process import run_apart
 from stubs.new_process import PACKAGE, output, run
 
 TWO_TYPES = """
@@ -174,13 +175,7 @@ def test_a_terminal_shows_that_the_solver_is_compiled(tmp_path):
 
 @pytest.mark.parametrize("command", ["point transverse --velocity 1 --amplitude 1", "sweep -n"])
 def test_without_a_compiler_one_line_refuses(command, tmp_path):
-    process = subprocess.run(
-        [sys.executable, "-m", "microslip", *command.split()],
-        cwd=tmp_path,
-        env=os.environ | {"NUMBA_DISABLE_JIT": "1"},
-        capture_output=True,
-        text=True,
-    )
+    process = run_apart(*command.split(), folder=tmp_path, NUMBA_DISABLE_JIT="1")
     assert (process.returncode, process.stdout) == (2, "")
     (line,) = process.stderr.splitlines()
     assert ": NUMBA_DISABLE_JIT = 1: " in line

@@ -24,12 +24,6 @@ def double(x, *, factor=2.0):
     if x > LIMIT:
         raise ValueError(f"{x} is too large")
     return factor * x, "a b".split()
-
-
-class Thing:
-    """Docstring."""
-
-    name: str = "thing"
 '''
 EDITS = [
     ("  # a comment", "", False),

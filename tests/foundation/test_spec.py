@@ -31,9 +31,3 @@ def test_other_texts_are_refused(text):
 def test_other_texts_than_whole_numbers_are_refused(text):
     with pytest.raises(InputError, match="allowed is a whole number$"):
         spec.read("cells", text, whole=True)
-
-
-@pytest.mark.parametrize("value", ["1e-400", "1e400", "x", ""])
-def test_a_number_after_a_name_is_refused_with_its_text(value):
-    with pytest.raises(InputError, match=f"in it 'penalty={value}': .* as in admm:key=0.5"):
-        spec.numbers_in(f"penalty={value}", "admm", "method", "admm")

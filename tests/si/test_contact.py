@@ -189,21 +189,22 @@ def test_the_unit_of_a_bore_leaves_half_the_radius_sticking():
 @pytest.mark.parametrize(
     ("label", "sizes", "expected", "largest"),
     [
-        ("elliptic", (2.0, 1.0, None, None), {"lateral": 1.0, "forward": 0.5}, 2.0),
-        ("transverse-bore", (1.0, None, 0.0, None), {"lateral": 1.0, "angle": 0.0}, 1.0),
-        ("normal", (0.2, None, None, 5.0), {"lateral": 0.4, "load": 1.0}, 0.5),
-        ("normal", (None, 0.5, None, 2.5), {"forward": 1.0, "load": 0.5}, 0.5),
+        ("elliptic", {"amplitude": 2.0, "forward_amplitude": 1.0}, (1.0, 0.5), 2.0),
+        ("transverse-bore", {"amplitude": 1.0, "rotation_amplitude": 0.0}, (1.0, 0.0), 1.0),
+        ("normal", {"amplitude": 0.2, "load_amplitude": 5.0}, (0.4, 1.0), 0.5),
+        ("normal", {"forward_amplitude": 0.5, "load_amplitude": 2.5}, (1.0, 0.5), 0.5),
     ],
 )
 def test_amplitudes_are_shares_of_the_largest(label, sizes, expected, largest):
-    along = [None if size is None else size * SPHERE.u_lim for size in sizes[:2]]
-    parts = dict(zip(("rotation_amplitude", "load_amplitude"), sizes[2:], strict=True))
-    parts |= {"forward_amplitude": along[1], "phase": 0.5 * math.pi}
-    moving = {"speed": 1e-3, "amplitude": along[0], "frequency": 1e3}
+    units = {"amplitude": SPHERE.u_lim, "forward_amplitude": SPHERE.u_lim}
+    parts = {name: size * units.get(name, 1.0) for name, size in sizes.items()}
+    moving = {"speed": 1e-3, "frequency": 1e3, "phase": 0.5 * math.pi}
     contact = contact_of(label, **BALL, **moving, **parts)
     name, _, text = contact.motion.partition(":")
     result = {k: float(v) for k, v in (part.split("=") for part in text.split(","))}
     assert name == label and result.pop("phase") == pytest.approx(90.0)
-    assert result == pytest.approx(expected)
+    parts = {"forward": "forward", "rotation": "angle", "load": "load", "amplitude": "lateral"}
+    names = [parts[one.partition("_")[0]] for one in sizes]
+    assert result == pytest.approx(dict(zip(names, expected, strict=True)))
     assert contact.amplitude == pytest.approx(largest)
     assert contact.velocity == pytest.approx(1e-3 / (2e3 * math.pi * SPHERE.u_lim))

@@ -11,24 +11,6 @@ SHAKEN = BALL | {"speed": "10 mm/s", "amplitude": "0.3 um", "frequency": "20 kHz
 SHAKEN |= {"tolerance": 1e-2}
 
 
-def test_a_steady_spin_needs_a_torque():
-    """Torque and force at v = 1/2 follow from Eqs 22 and 21.
-
-    The torque is (3 pi/16) mu F a (1 - v^2 + 3/8 v^4), the force (3 pi/8) mu F (v - v^3/4).
-    """
-    at_rest = microslip.predict("continuous-bore", **BALL, speed="1 mm/s", rotation="1 rad/s")
-    a = at_rest.contact_radius_m
-    spin = BALL | {"speed": 0.5 * a * 100.0, "rotation": "100 rad/s"}
-    result = microslip.predict("continuous-bore", **spin)
-    whole = 3.0 * math.pi / 16.0 * 3.0 * a
-    assert result.torque_N_m == pytest.approx(whole * (1.0 - 0.25 + 0.375 * 0.5**4), rel=2e-3)
-    force = 3.0 * 3.0 * math.pi / 8.0 * (0.5 - 0.125 / 4.0)
-    assert result.drag_power_W == pytest.approx(force * 50.0 * a, rel=2e-3)
-    assert result.vibration_power_W == pytest.approx(100.0 * result.torque_N_m)
-    both = result.drag_power_W + result.vibration_power_W
-    assert result.energy_per_cycle_J == pytest.approx(both * 2.0 * math.pi / 100.0)
-
-
 def test_the_powers_of_an_oscillation_add_up_to_the_dissipation():
     result = microslip.predict("transverse", **SHAKEN)
     point = result.velocity, result.amplitude

@@ -155,13 +155,11 @@ def test_chi_square_detects_errors_that_are_too_small(closed):
 def test_the_curve_is_the_model_between_the_rows(closed):
     table = conditions(8)
     result = fitted(table | {"friction": force(table)})
-    rows, curve = result.rows, result.curve
-    assert len(curve["fitted"]) > 10 * len(rows["fitted"])
-    for speed, amplitude, value in zip(
-        rows["speed_m_s"], rows["amplitude_si"], rows["fitted"], strict=True
-    ):
-        here = (curve["speed_m_s"] == speed) & (curve["amplitude_si"] == amplitude)
-        assert curve["fitted"][here] == pytest.approx([value], rel=1e-9)
+    curve = result.curve
+    assert len(curve["fitted"]) > 10 * len(result.rows["fitted"])
+    place = [curve[name] for name in ("speed_m_s", "amplitude_si")]
+    for speed, amplitude in zip(table["speed"], table["amplitude"], strict=True):
+        assert np.isclose(place, [[speed], [amplitude]], rtol=1e-9, atol=0.0).all(axis=0).sum() == 1
     fine = {"speed": curve["speed_m_s"], "amplitude": curve["amplitude_si"]}
     assert curve["fitted"] == pytest.approx(force(fine), rel=5e-3)
     for name in ("speed", "amplitude"):  # rows that share no condition

@@ -8,8 +8,6 @@ from microslip.foundation.units import BASES, CYCLIC, UNITS, read
 
 HALF_A_DIGIT = 1e-15
 """Relative rounding error of a few floats and of pi."""
-LONGEST_LINE = 1500
-"""Largest number of characters of an error message; longer values are shortened."""
 
 
 def name_of(value):

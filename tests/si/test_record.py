@@ -1,7 +1,6 @@
 """Periods from records with noise and drift, compared with the known motion."""
 
 import json
-import re
 
 import numpy as np
 import pytest
@@ -181,22 +180,3 @@ def test_a_bad_record_is_refused_in_one_line(time, columns, options, problem):
     with pytest.raises(InputError, match=problem) as refused:
         microslip.fold(time, columns, **options)
     assert "\n" not in str(refused.value)
-
-
-ROWS = "\n".join(f"{t},{x:.4f}" for t, x in enumerate(WHITE["lateral"]))
-
-
-@pytest.mark.parametrize(
-    ("text", "output", "message"),
-    [
-        ("lateral [um]\n" + "0\n1\n" * 20, "stroke.csv", "no column time"),
-        (f"time [ms],lateral [um]\n{ROWS}\n", "stroke.csv", r"lateral = [0-9.]+ um: .* Hz"),
-        (f"time [ms],lateral [um]\n{ROWS}\n", "stroke.nc", "a name that ends in .csv"),
-    ],
-)
-def test_bad_files_are_refused_by_the_command(tmp_path, capsys, text, output, message):
-    (tmp_path / "record.csv").write_text(text)
-    words = ["fold", str(tmp_path / "record.csv"), "--output", str(tmp_path / output)]
-    assert main([*words, "--frequency", "40 Hz"]) == 2
-    assert re.search(message, capsys.readouterr().err)
-    assert not (tmp_path / output).exists()
