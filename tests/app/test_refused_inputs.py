@@ -50,6 +50,8 @@ GOOD = {
     "export table": {"MOTION": "transverse"} | CONTACT | VIBRATED | {"amplitude": "0..1 um"},
 }
 """Positional arguments are in capitals."""
+STROKES = ["file:bare.csv", "file:newton.csv", "file:time.csv", "file:both.csv"]
+"""Columns without a unit, with a wrong unit, and of both a load and an indentation."""
 VALUES = {
     "point": {
         "MOTION": ["bores", "elliptic:forward", "elliptic:forward=2", "elliptic:phas=2"],
@@ -64,7 +66,7 @@ VALUES = {
         "method": ["shiped", "../euler", "projected-gradient:step=1,step=2"],
     },
     "predict": {
-        "MOTION": ["Transverse", "normal:lateral=0.5", "transverse-bore:angle=0.5"],
+        "MOTION": ["Transverse", "normal:lateral=0.5", "transverse-bore:angle=0.5", *STROKES],
         "amplitude": [None, "1 deg", "-1 um", "1 m"],
         "frequency": ["0 Hz", "20 s^-1"],
         "load": [None, "nan N", "1\n2 N", "10 N +- 1 mm", "10 +- 1 N"],
@@ -171,6 +173,10 @@ TABLES = {
     "contacts.csv": "load [N]\n10\n",
     "wrong.csv": "load [mm]\n5\n",
     "noise.csv": f"time [ms],lateral [um]\n{NOISE}\n",
+    "bare.csv": "lateral\n1\n2\n3\n4\n5\n",
+    "newton.csv": "lateral [N]\n1\n2\n3\n4\n5\n",
+    "time.csv": "time,lateral [um]\n1,1\n2,2\n3,3\n4,4\n5,5\n",
+    "both.csv": "load [N],indentation [um]\n1,1\n2,2\n3,3\n4,4\n5,5\n",
     "comma.csv": 'load,amplitude [um]\n"1,5 N",1\n',
 }
 

@@ -28,7 +28,7 @@ REFUSED = {
     "-nj0": "--jobs = 0",
     "--no-such-option": "unrecognized arguments: --no-such-option",
     "--cores 1 --configfile": "argument --configfile",
-    "al": "TARGET = 'al': did you mean all?",
+    "al --configfile good.yaml": "TARGET = 'al': did you mean all?",
     "-n --config poisson": "--config = 'poisson'",
     "-n --configfile none.yaml": "--configfile = 'none.yaml'",
     "--configfile made.nc": "--configfile = 'made.nc'",

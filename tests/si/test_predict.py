@@ -89,12 +89,8 @@ def test_a_load_amplitude_above_the_load_separates_the_bodies():
     assert any(f"{mean:.4g} N" in text for text in result.warnings)
 
 
-OWN_BORE = """from dataclasses import dataclass
+OWN_BORE = """from microslip.scene.named import Bore
 
-from microslip.scene.named import Bore
-
-
-@dataclass(frozen=True)
 class OwnBore(Bore):
     summary = "turning as it likes"
 """

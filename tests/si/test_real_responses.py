@@ -4,7 +4,6 @@ import numpy as np
 import pytest
 
 import microslip
-from microslip.foundation.errors import InputError
 
 STEEL = {"mu": 0.3, "load": "10 N", "radius": "5 mm", "material": "steel"}
 
@@ -42,21 +41,3 @@ def test_a_dataset_has_the_columns_with_their_units():
     plain = microslip.response(0.0 * one, angle=one, poisson=0.3)
     whole = 3.0 * real.contact_radius_m * 3.0 * np.pi / 16.0
     assert real.torque_N_m == pytest.approx(whole * plain.torque, rel=2e-3)
-
-
-@pytest.mark.parametrize(
-    ("path", "contact", "argument"),
-    [
-        ({"forward [N]": [0, 1]}, {}, "path"),
-        ({"forward": [0, None]}, {}, "path"),
-        ({"forward": 1.0}, {}, "forward"),
-        ({"speed": [0, 1]}, {}, "path"),
-        ({"forward": [0, 1], "load": [10.0, -1.0]}, {}, "path"),
-        ({"forward": [0, 1]}, {"mu": None}, "mu"),
-        ({"forward": [0, 1]}, {"speed": "1 m/s"}, "speed"),
-    ],
-)
-def test_bad_paths_and_contacts_are_refused_by_name(path, contact, argument):
-    with pytest.raises(InputError) as error:
-        microslip.predict_response(path, **{**STEEL, **contact})
-    assert error.value.argument == argument

@@ -149,6 +149,7 @@ KEPT, ROW = np.arange(len(FINE)) != 12_000, np.arange(len(FINE))
 WHITE = {"lateral": np.random.default_rng(0).standard_normal(1000)}
 REFUSED = [
     (np.round(FINE, 5)[KEPT], {"lateral": SINE[KEPT]}, {}, "time = .*not equally spaced"),
+    (np.delete(np.arange(1001.0), 500), WAVE, {}, "time = .*not equally spaced"),
     (None, WAVE, {}, "time = None: allowed is an array"),
     (TIME[::-1], WAVE, {}, "allowed are increasing times"),
     ([0.0], {"lateral": [1.0]}, {}, "the record is too short"),
@@ -161,6 +162,7 @@ REFUSED = [
     (TIME, {"load": WAVE["lateral"] - 2.0}, {}, "load = .*allowed is a mean above 0"),
     (TIME, {"load": TIME, "indentation": TIME}, {}, "one of the two"),
     (TIME, {"lateral": np.full(1000, 0.1)}, {}, "columns = .*constant"),
+    (TIME, {"lateral": np.full(1000, 0.1)}, {"frequency": 0.04}, "constant"),
     (TIME, WHITE, {}, "times its standard error|periods of .* samples;"),
     (TIME, WHITE, {"frequency": 0.04}, "times its standard error|periods of .* samples;"),
     (TIME, {"lateral": np.sin(np.pi * 3.9e-3 * TIME)}, {}, r" [\d.]+ Hz, the strongest comp.*are"),

@@ -85,6 +85,13 @@ REFUSED = [
     (microslip.predict_grid, {"amplitude": "0..1 s"}, "amplitude"),
     (microslip.predict_grid, {"amplitude": "0..1 um", "load": "1 kg"}, "load"),
     (microslip.predict_grid, {"amplitude": "0..1 um", "speeds": "0..1 m/s"}, "speeds"),
+    (microslip.predict_response, {"path": {"forward [N]": [0, 1]}}, "path"),
+    (microslip.predict_response, {"path": {"forward": [0, None]}}, "path"),
+    (microslip.predict_response, {"path": {"forward": 1.0}}, "forward"),
+    (microslip.predict_response, {"path": {"speed": [0, 1]}}, "path"),
+    (microslip.predict_response, {"path": {"forward": [0, 1], "load": [10.0, -1.0]}}, "path"),
+    (microslip.predict_response, {"path": {"forward": [0, 1]}, "mu": None}, "mu"),
+    (microslip.predict_response, {"path": {"forward": [0, 1]}, "speed": "1 m/s"}, "speed"),
     (microslip.predict_table, {"cases": {}}, "cases"),
     (microslip.predict_table, {"cases": pd.DataFrame()}, "cases"),
     (microslip.predict_table, {"cases": {"load": ["10 N"], "speed": [0.1, 0.2]}}, "cases"),
@@ -95,10 +102,12 @@ REFUSED = [
 
 
 @pytest.mark.parametrize(("function", "arguments", "argument"), REFUSED)
-def test_bad_tables_and_grids_are_refused_by_name(function, arguments, argument):
-    shared = SHARED if function is microslip.predict_table else WHOLE
+def test_bad_tables_grids_and_paths_are_refused_by_name(function, arguments, argument):
+    given = {"motion": "transverse"} | (SHARED if "cases" in arguments else WHOLE) | arguments
+    if "path" in arguments:
+        given = {"radius": "5 mm", "load": "10 N", "mu": 0.3, "material": "steel"} | arguments
     with pytest.raises(InputError) as error:
-        function("transverse", **shared | arguments)
+        function(**given)
     assert error.value.argument == argument
 
 
