@@ -61,6 +61,7 @@ OTHERS = [
     ("0.5\u00b0", "rad", 0.5 * pi / 180),
     (Q(0.5, "deg"), "rad", 0.5 * pi / 180),
     ("30 %", "", 0.3),
+    (Q(30, "percent"), "", 0.3),
     (Q(3, "N") / Q(0.01, "kN"), "", 0.3),
     ("210 Mpa", "Pa", "capitals count (did you mean MPa or mPa?)"),
     ("500 g", "N", "for its weight write gf or kgf, as in '500 gf'"),
