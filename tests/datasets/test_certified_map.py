@@ -22,12 +22,6 @@ MAPS = {
     "static": STATIC,
     "static poisson": STATIC | {"poisson": [0, 0.5]},
 }
-DIRECTIONS = {
-    "plain": "velocity amplitude",
-    "poisson": "velocity amplitude poisson",
-    "static": "amplitude",
-    "static poisson": "amplitude poisson",
-}
 
 
 def friction(velocity, amplitude, poisson):
@@ -68,16 +62,17 @@ def dataset(made, tmp_path_factory):
 @pytest.mark.parametrize("name", MAPS)
 def test_answers_are_within_their_errors_and_these_within_what_was_asked(name, tmp_path):
     data, settings, count = reopened(made_of(name), tmp_path), MAPS[name], 5000
+    directions = [axis for axis in AXES if len(settings.get(axis, ())) > 1]
     decades = np.log10(settings["velocity"]) if len(settings["velocity"]) > 1 else (0, 0)
     velocity, amplitude = places(count, decades, settings["amplitude"])
-    velocity = velocity if "velocity" in DIRECTIONS[name] else 0.0 * velocity
+    velocity = velocity if "velocity" in directions else 0.0 * velocity
     poisson = places(count, amplitude=settings.get("poisson", (0, 0)), seed=2)[1]
     more = {"poisson": poisson} if "poisson" in settings else {}
     answer = data.microslip.at(velocity, amplitude, **more)
     miss = abs(answer.mu_macro - friction(velocity.values, amplitude.values, poisson.values))
     assert float((miss <= answer.mu_macro_error).mean()) >= 0.999
     assert float(answer.mu_macro_error.max()) <= settings["error"]
-    assert data.directions == DIRECTIONS[name]
+    assert data.directions == " ".join(directions)
     assert data.sizes["point"] == len(np.unique(data.cell_node))
     solved = [np.broadcast_to(data[axis], data.sizes["point"]) for axis in AXES]
     assert data.points == len(set(zip(*solved, strict=True)))

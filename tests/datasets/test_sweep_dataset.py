@@ -4,7 +4,6 @@ import errno
 import json
 import time
 import warnings
-from types import SimpleNamespace
 from unittest.mock import Mock
 
 import netCDF4
@@ -223,9 +222,6 @@ VERBS = {
     "transpose": lambda data: data.transpose(),
     "stack": lambda data: data.stack(point=("velocity", "amplitude")).unstack(),
     "where": lambda data: data.where(data.converged),
-    "sortby": lambda data: data.sortby("velocity", ascending=False),
-    "reindex": lambda data: data.reindex(velocity=[0.1, 0.5]),
-    "roll": lambda data: data.roll(velocity=1),
     "part": lambda data: data.isel(velocity=[0, 2]),
     "table": lambda data: data.to_dataframe().to_xarray(),
 }
@@ -264,41 +260,17 @@ def test_codes_of_texts_are_equal_in_all_files_and_texts_are_stored_exactly(tmp_
         microslip.texts(xr.DataArray(1.0, name="mu_macro"))
 
 
-def test_texts_come_back_whole_and_long_ones_are_cut(tmp_path, monkeypatch, solver):
-    message = ["no \u03bd " + "\u03b1" * 300, "short", ""]
-    answer = solver.solve
-
-    def solve(motion, velocity, *rest, **more):
-        result = answer(motion, velocity, *rest, **more).to_dict()
-        result["reason"] = message[[0.1, 1.0, 10.0].index(velocity)]
-        return SimpleNamespace(to_dict=lambda: result)
-
-    monkeypatch.setattr("microslip.solve", solve)
-    reason = built("continuous_bore", tmp_path).reason.values.tolist()
-    assert reason[1:] == message[1:]
-    assert message[0].startswith(reason[0].removesuffix("...")) and reason[0].endswith("\u03b1...")
-    assert len(reason[0]) == sweep_dataset.LONGEST_TEXT
-
-
-@pytest.mark.slow
-def test_plots_have_labels(tmp_path, solver):
-    with on_disk("transverse", tmp_path) as data:
-        shown = data.mu_macro.plot()
-    labels = shown.axes.get_xlabel(), shown.axes.get_ylabel(), shown.colorbar.ax.get_ylabel()
-    assert [" ".join(text.split()) for text in labels] == [
-        "forward velocity, v0 / (omega u_lim) [1]",
-        "amplitude, y0 / u_lim [1]",
-        "mean forward force divided by mu F_z [1]",
-    ]
-
-
-def test_a_dataset_of_many_points_can_be_opened(tmp_path):
+def test_a_dataset_of_many_points_can_be_opened_and_long_texts_are_cut(tmp_path):
     """A file with fewer bytes than values is taken for a damaged one."""
+    text = "no \u03bd " + "\u03b1" * 300
     axes = {"velocity": np.geomspace(0.01, 1, 70).tolist(), "amplitude": np.arange(70).tolist()}
     configuration, path = sweep_stub.configured({"transverse": axes}), tmp_path / "transverse.nc"
-    record = {"versions": {}, "result": {"reason": "no periodic state"}}
+    record = {"versions": {}, "result": {"reason": text}}
     netcdf.write(path, *sweep_dataset.build(configuration, "transverse", [record] * 4900))
-    assert microslip.open_map(path).reason.shape == (70, 70)
+    reason = microslip.texts(microslip.open_map(path).reason).values
+    assert reason.shape == (70, 70) and reason[0, 0].endswith("\u03b1...")
+    assert text.startswith(reason[0, 0].removesuffix("..."))
+    assert len(reason[0, 0]) == sweep_dataset.LONGEST_TEXT
 
 
 @pytest.mark.slow

@@ -1,6 +1,5 @@
 """A small configuration of the explorer, with points from formulas and a computed period."""
 
-import numpy as np
 from stubs import sweep_stub
 from stubs.sweep_stub import EFFORT
 
@@ -73,8 +72,3 @@ def _dataset(folder, configuration, name):
     path = folder / f"{name}.nc"
     netcdf.write(path, *sweep_dataset.build(configuration, name, points))
     return netcdf.whole(path)
-
-
-def mean_over(phase, values):
-    """Mean over a period of values at uneven phases."""
-    return np.trapezoid(values, phase) / (phase[-1] - phase[0])

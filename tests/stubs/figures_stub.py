@@ -196,9 +196,9 @@ def predictions():
     )
 
 
-def fitted(rows=12, errors=True, fine=50):
+def fitted():
     """Rows of a fit at two amplitudes: friction that increases with speed, with residuals of up to
-    two standard errors. fine: number of points of each model curve."""
+    two standard errors."""
 
     def columns(count):
         speed = np.tile(np.geomspace(1e-3, 0.3, count), 2)
@@ -208,13 +208,13 @@ def fitted(rows=12, errors=True, fine=50):
         names["fitted"] = 3.0 * speed / (speed + 1e4 * amplitude)
         return names | {"fitted_error": np.full(2 * count, 3e-3)}
 
-    result, residual = columns(rows // 2), 2.0 * np.cos(3.0 * np.arange(rows))
+    result, residual = columns(6), 2.0 * np.cos(3.0 * np.arange(12))
     result |= {"measured": result["fitted"] + 0.05 * residual, "residual": residual}
-    result["measured_error"] = np.full(rows, 0.05 if errors else np.nan)
+    result["measured_error"] = np.full(12, 0.05)
     numbers = {"mu": 0.3, "mu_low": 0.29, "mu_high": 0.31}
     numbers |= {"u_lim_m": 3e-7, "u_lim_low_m": 2.8e-7, "u_lim_high_m": 3.3e-7}
     variables = {name: ("row", values) for name, values in result.items()} | numbers
-    curve = {f"curve_{name}": ("curve_point", values) for name, values in columns(fine).items()}
+    curve = {f"curve_{name}": ("curve_point", values) for name, values in columns(50).items()}
     return xr.Dataset(variables | curve, attrs={"motion": "transverse", "quantity": "friction"})
 
 
