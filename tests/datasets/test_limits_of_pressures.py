@@ -79,12 +79,8 @@ def _share(v, r, t):
 
 
 def test_datasets_of_other_pressures_have_them():
-    cone = Sweep(
-        motion="transverse",
-        pressure="power:exponent=1",
-        velocity=[0.1, 1.0],
-        amplitude=[0.2, 0.5],
-    )
+    axes = {"velocity": [0.1, 1.0], "amplitude": [0.2, 0.5]}
+    cone = Sweep(motion="transverse", pressure="power:exponent=1", **axes)
     result = theory_limits.variables(cone)
     names = {"mu_large_amplitude", "mu_static_slider", "mu_static_stick_zone", "mu_static"}
     assert names <= result.keys()

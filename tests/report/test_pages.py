@@ -88,12 +88,10 @@ def test_text_of_a_dataset_is_escaped(data):
     page = pages.page(sly, ["<i>"])
     assert "<b>" not in page
     assert "<i>" not in page
-    assert "&lt;b&gt;&amp;" in page
+    assert page.startswith("<!DOCTYPE html>") and "&lt;b&gt;&amp;" in page
 
 
-@pytest.mark.parametrize("study", ["claims", "stability"])
-def test_a_page_is_html(study, data):
-    dataset = data if study == "claims" else studies()[study]
-    text = pages.page(dataset, ["a <line>"])
+def test_a_page_of_another_study_is_html():
+    text = pages.page(studies()["stability"], ["a <line>"])
     assert text.startswith("<!DOCTYPE html>")
-    assert "a &lt;line&gt;" in text and ('<h2 id="runs"' in text) == (study == "claims")
+    assert "a &lt;line&gt;" in text and '<h2 id="runs"' not in text

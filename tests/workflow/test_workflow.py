@@ -4,7 +4,7 @@ import shutil
 
 import pytest
 import xarray as xr
-from stubs.workflow_project import ALL_JOBS, COMPILED, ROOT, TINY, jobs_in
+from stubs.workflow_project import ALL_JOBS, COMPILED, ROOT, jobs_in
 
 pytestmark = pytest.mark.slow
 
@@ -26,19 +26,6 @@ def test_one_run_makes_the_datasets_and_the_figures(finished):
         assert data.history_force_forward.size == 17
     assert len(finished.records()) == 10 + 5
     assert "bore: 4 points, all converged" in finished.said
-
-
-def test_a_new_amplitude_computes_its_points_only(project):
-    before = project.records()
-    axes = TINY["sweeps"]["transverse"] | {"amplitude": [0, 0.5, 1]}
-    project.configure({**TINY, "sweeps": {**TINY["sweeps"], "transverse": axes}})
-    assert project.planned() == {"solve_batch": 2, "make_products": 1, "all": 1}
-    project.run("transverse")
-    after = project.records()
-    assert len(after) == len(before) + 2
-    assert {key: after[key] for key in before} == before
-    with xr.open_dataset(project.folder / "results" / "transverse.nc") as data:
-        assert list(data.amplitude.values) == [0, 0.5, 1]
 
 
 def test_an_edit_makes_again_what_it_concerns_and_messages_and_dates_do_not_count(project):
