@@ -15,7 +15,7 @@ from bad_input_tables.odd_quantities import Q
 import microslip
 from microslip.answer.answer import DRIVE, Estimate
 from microslip.app import cli
-from microslip.si import inputs
+from microslip.si import inputs, output
 from microslip.si import solve as module
 
 BALL = {"radius": "5 mm", "load": "10 N", "mu": 0.3, "speed": "1 mm/s"}
@@ -182,6 +182,33 @@ def test_an_unconverged_static_limit_does_not_matter_for_friction_at_a_speed(mon
     text = capsys.readouterr().out
     assert "NOT CONVERGED: static friction: lost on the way" in text
     assert "NOT CONVERGED: mu_macro" not in text
+
+
+# One table of inputs and one of outputs
+
+
+def test_a_new_input_takes_one_line_in_the_table(monkeypatch, capsys):
+    entry = inputs.Input("bodies", "K", "temperature of the room, such as '293 K'")
+    monkeypatch.setitem(inputs.INPUTS, "temperature", entry)
+    table = microslip.predict_table("continuous-bore", {"temperature [K]": [280, 300]}, **SPUN)
+    assert table.temperature_K.values.tolist() == [280.0, 300.0]
+    words = options(**SPUN, temperature="293 K")
+    assert cli.main(["predict", "continuous-bore", *words, "--json"]) == 0
+    assert json.loads(capsys.readouterr().out)["temperature_K"] == 293
+    assert cli.main(["predict", "--help"]) == 0
+    assert "temperature of the room" in " ".join(capsys.readouterr().out.split())
+
+
+def test_a_new_output_takes_one_line_in_the_table(monkeypatch):
+    """The area of Hertz's contact is pi a^2, proportional to the load to the power 2/3."""
+    entry = output.Output("m^2", "area of the contact", "area")
+    monkeypatch.setitem(output.OUTPUTS, "contact_area", entry)
+    result = microslip.predict("continuous-bore", **SPUN | {"load": "10 N +- 1 N"})
+    area = math.pi * result.contact_radius_m**2
+    assert result.contact_area_m2 == pytest.approx(area) and result.contact_area_error_m2 == 0.0
+    assert result.contact_area_spread_m2 == pytest.approx(2.0 / 3.0 * 0.1 * area, rel=0.02)
+    assert re.search(r"^contact area +\S+ m\^2: area of the contact$", str(result), re.M)
+    assert result.to_xarray().contact_area_m2.attrs["units"] == "m^2"
 
 
 def test_the_reference_page_is_that_of_the_tables(tmp_path):
