@@ -156,11 +156,6 @@ def _panel(axes: Axes, lines: Sequence[Line], alone: bool, joined: bool = True) 
         if line.limit is not None:
             x, y, form = line.limit
             several, first = len(shared[k]) > 1, shared[k][0]
-            if several:  # one black line; its style depends on the number of such lines before it
-                color = look.BLACK
-                ls = look.STYLES[
-                    len({id(one[0]) for one in shared[:k] if one and one[0] is not first})
-                ]
             # With several datasets, the points and the limit of a line share one legend entry.
             joint = not (alone or several)
             own: look.Ink = ink | {"label": label} if joint else {"color": color, "label": form}
