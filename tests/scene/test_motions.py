@@ -57,9 +57,35 @@ class OwnWave(Motion):
     waves = {"lateral": Wave(form=lambda phase: phase)}  # not periodic
 
 
-class OwnDisplacement(Motion):
-    def displacement(self, phase, velocity, amplitude, poisson):
-        return velocity * phase, amplitude * phase, 0.0 * phase
+def own(*parts):
+    """A class of motions with these displacements, as functions of phase and velocity."""
+
+    class Own(Motion):
+        def displacement(self, phase, velocity, amplitude, poisson):
+            return tuple(part(phase, velocity) for part in parts)
+
+    return Own
+
+
+def ahead(phase, velocity):
+    return velocity * phase
+
+
+def aside(phase, velocity):
+    return np.sin(phase)
+
+
+OWN = [
+    OwnWave,
+    own(ahead, lambda phase, velocity: phase, aside),  # not periodic
+    own(aside, aside, aside),  # does not advance
+    own(ahead, aside),
+    own(ahead, lambda phase, velocity: 1j * phase, aside),
+]
+
+
+def test_an_own_displacement_is_accepted():
+    assert own(ahead, aside, aside)().drift(0.5, 1.0, 0.0) == pytest.approx(0.5)
 
 
 @pytest.mark.parametrize(
@@ -68,7 +94,7 @@ class OwnDisplacement(Motion):
         (Force, {"force": math.nan}, "force"),
         (Force, {"force": 0.5, "mass": -1.0}, "mass"),
         (Spring, {"stiffness": -1.0}, "stiffness"),
-        *((own, {}, "motion = ") for own in (OwnWave, OwnDisplacement)),
+        *((one, {}, "motion = ") for one in OWN),
         *((Elliptic, {"phase": value}, "phase") for value in (math.nan, math.inf, "1", None)),
     ],
 )

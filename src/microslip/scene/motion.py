@@ -138,14 +138,22 @@ class Motion(spec.Named):
                     "motion", self.name, f"form of {name}: allowed is a function {allowed}"
                 )
         if self.periodic and type(self).displacement is not Motion.displacement:
-            start, end = np.transpose(
-                self.displacement(np.array([0.0, 2.0 * np.pi]), 0.0, 1.0, 0.0)
-            )
-            if not np.allclose(start, end, rtol=0.0, atol=REPEAT):
-                allowed = "equal after a period of 2 pi at velocity 0"
-                raise InputError(
-                    "motion", self.name, f"displacement: allowed is one that is {allowed}"
-                )
+            self._refuse_displacement()
+
+    def _refuse_displacement(self) -> None:
+        """Raise InputError if `displacement` is of the wrong kind at the start or the end of a
+        period."""
+        ends = np.array([0.0, 2.0 * np.pi])
+        still, moving = (np.array(self.displacement(ends, v, 1.0, 0.0)) for v in (0.0, 1.0))
+        allowed = ""
+        if still.shape != (3, 2) or still.dtype.kind not in "if":
+            allowed = "three arrays of real numbers, with the shape of the phase"
+        elif not np.allclose(still[:, 0], still[:, 1], rtol=0.0, atol=REPEAT):
+            allowed = "one that is equal after a period of 2 pi at velocity 0"
+        elif not moving[0, 1] > moving[0, 0]:
+            allowed = "one that advances at velocity 1"
+        if allowed:
+            raise InputError("motion", self.name, f"displacement: allowed is {allowed}")
 
     @property
     def readings(self) -> tuple[Motion, ...]:
