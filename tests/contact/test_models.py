@@ -13,13 +13,14 @@ from hypothesis import strategies as st
 
 from microslip.contact.contact import energy_norm, forces, forward_slip, rigid_displacement
 from microslip.contact.modes import PolarContact
-from microslip.contact.path import EULER, SDIRK2, half_period_phases, make_path
+from microslip.contact.path import EULER, SDIRK2, make_path, phases_between
 from microslip.contact.reduced import slider_contact
 from microslip.contact.ring_contact import RadialContact
 from microslip.contact.squares import CartesianContact
 from microslip.periodic.discretise import Resolution
 from microslip.periodic.search import Goal, PeriodMap, find_periodic_state
 from microslip.periodic.simulate import simulate
+from microslip.scene.motion import HALF_PERIOD
 from microslip.scene.named import Bore, Transverse
 from microslip.scene.problem import Problem
 from microslip.theory import hertz, paper
@@ -253,7 +254,7 @@ def test_order_of_the_integrators_in_the_periodic_mean(name):
     contact = build()
 
     def mean(steps, integrator):
-        phases = half_period_phases(steps, 0.4)
+        phases = phases_between(HALF_PERIOD, steps, 0.4)
         path = make_path(lambda t: motion.displacement(t, 0.5, 2.0, 0.3), phases, integrator)
         start, goal = forward_slip(contact), Goal(1e-7, 1e-9)
         result = find_periodic_state(PeriodMap(contact, path), start, goal)

@@ -7,11 +7,12 @@ from reference_pull import pulled_march
 
 from microslip.contact.contact import Body, forward_slip
 from microslip.contact.modes import PolarContact
-from microslip.contact.path import EULER, SDIRK2, half_period_phases, make_path
+from microslip.contact.path import EULER, SDIRK2, make_path, phases_between
 from microslip.contact.ring_contact import RadialContact
 from microslip.contact.squares import CartesianContact
 from microslip.periodic.search import Goal, PeriodMap, find_periodic_state
 from microslip.scene.by_name import motion_named
+from microslip.scene.motion import HALF_PERIOD
 
 CONTACTS = {
     "rings": (lambda: RadialContact.resolved(5, 0.7), "transverse", 0.0),
@@ -66,7 +67,7 @@ class Case:
 @integrators
 @names
 def test_a_march_is_the_plain_one(name, integrator):
-    case, phases, stages = Case(name), half_period_phases(6), len(integrator.times)
+    case, phases, stages = Case(name), phases_between(HALF_PERIOD, 6), len(integrator.times)
     place = case.contact.bound, case.of_points, phases, case.start, stages
     expected = march(case.matrix, *place)
     result = case.march(phases, 1e-13, integrator)
@@ -78,7 +79,7 @@ def test_a_march_is_the_plain_one(name, integrator):
 
 @pytest.mark.slow
 def test_the_periodic_state_is_the_one_that_the_plain_march_ends_in():
-    case, phases = Case("rings"), half_period_phases(8)
+    case, phases = Case("rings"), phases_between(HALF_PERIOD, 8)
     contact, start = case.contact, forward_slip(case.contact)
     place = contact.bound, case.of_points, phases, start, contact.mirrored
     expected = periodic(case.matrix, *place)
@@ -94,7 +95,7 @@ def test_the_periodic_state_is_the_one_that_the_plain_march_ends_in():
 @pytest.mark.parametrize("body", BODIES)
 @names
 def test_a_pulled_march_is_the_plain_one(name, body, integrator):
-    case, phases, numbers = Case(name), half_period_phases(5), BODIES[body]
+    case, phases, numbers = Case(name), phases_between(HALF_PERIOD, 5), BODIES[body]
     place = case.of_points, phases, case.start, numbers, START, len(integrator.times)
     expected, places = pulled_march(case.plain, *place)
     result = case.march(phases, 1e-12, integrator, body=Body(*numbers), start=START)
@@ -108,7 +109,7 @@ def test_a_pulled_march_is_the_plain_one(name, body, integrator):
 def test_the_error_of_a_driven_march_is_proportional_to_the_tolerance_of_its_steps(body):
     """A step of a soft drive can be solved with different displacements: the residual of a step
     counts the force, and nearly full slip changes the force little."""
-    case, phases, drive = Case("rings"), half_period_phases(8), Body(*BODIES[body])
+    case, phases, drive = Case("rings"), phases_between(HALF_PERIOD, 8), Body(*BODIES[body])
     exact, *others = (
         case.march(phases, tolerance, body=drive, start=START).body[:, 0]
         for tolerance in (1e-13, 1e-9, 1e-7, 1e-5)
@@ -122,7 +123,7 @@ def test_the_error_of_a_driven_march_is_proportional_to_the_tolerance_of_its_ste
 def test_the_work_of_the_drive_is_stored_or_dissipated(name):
     """Energy is balanced exactly in a backward Euler step: work is done by the tractions at its
     end, and each point dissipates its bound times its slip."""
-    case, phases, force = Case(name), half_period_phases(1), 0.7
+    case, phases, force = Case(name), phases_between(HALF_PERIOD, 1), 0.7
     contact, weight = case.contact, case.contact.weight
     result = case.march(phases, 1e-12, EULER, body=Body(0.0, 0.0, 0.0, force), start=START)
     assert result.forces[1:, 0] == pytest.approx(force, abs=1e-10)

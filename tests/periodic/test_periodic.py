@@ -4,12 +4,13 @@ import numpy as np
 import pytest
 
 from microslip.contact.contact import energy_norm, forward_slip
-from microslip.contact.path import half_period_phases, make_path
+from microslip.contact.path import make_path, phases_between
 from microslip.contact.registry import MODELS
 from microslip.periodic import discretise
 from microslip.periodic.discretise import Resolution, contact_of
 from microslip.periodic.search import Goal, PeriodMap, find_periodic_state
 from microslip.periodic.simulate import simulate
+from microslip.scene.motion import HALF_PERIOD
 from microslip.scene.named import Bore, Transverse
 from microslip.scene.problem import Force, Problem, Spring
 from microslip.theory import paper
@@ -45,7 +46,7 @@ def contact_at(name, velocity, amplitude):
 def path_of(name, velocity, amplitude, whole=False):
     """Path over half a period, or over a whole period with the same steps."""
     _, motion, nu, _, _ = CASES[name]
-    phase = half_period_phases(STEPS)
+    phase = phases_between(HALF_PERIOD, STEPS)
     if whole:
         phase = np.concatenate([phase, phase[1:] + np.pi])
 

@@ -1,8 +1,16 @@
 """A stored period, extended by its symmetries to the whole disc and the whole period."""
 
+import base64
+import math
+
 import numpy as np
 
 from microslip.sweeps import period_codec
+
+
+def values_of(text, kind):
+    """Decode a string from `period_codec.text_of` to a flat array."""
+    return np.frombuffer(base64.b64decode(text), np.dtype(kind).newbyteorder("<"))
 
 
 def unpacked(result):
@@ -14,15 +22,19 @@ def unpacked(result):
     """
     angles, radius = result["angles"], np.array(result["radius"])
     answer = {name: np.array(result[name]) for name in period_codec.HISTORIES}
-    steps, slips = period_codec.unpacked_half(result)
-    shares = steps / period_codec.SHARES
+    frames = (len(result["phase"]) + 1) // 2
+    shape = frames, angles, len(radius)
+    steps = values_of(result["tractions"], np.int8)
+    shares = steps.reshape(frames, 2, *shape[1:]) / period_codec.SHARES
+    bits = values_of(result["slips"], np.uint8)
+    slips = np.unpackbits(bits, count=math.prod(shape)).astype(bool).reshape(shape)
     # half a period later: theta to pi - theta, lateral tractions negated
     shares = np.concatenate([shares, shares[1:, :, ::-1] * np.array([[[1]], [[-1]]])])
     slips = np.concatenate([slips, slips[1:, ::-1]])
     theta = (np.arange(angles)[:, None] + 0.5) * np.pi / angles
     forward, lateral = np.sin(theta) * radius, np.cos(theta) * radius
     bound = np.broadcast_to(result["bound"], forward.shape)
-    density = period_codec.values_of(result["densities"], np.uint16) / period_codec.DENSITIES
+    density = values_of(result["densities"], np.uint16) / period_codec.DENSITIES
     turned = result["turned"]
     parts = {
         "forward_position": (forward, -forward),

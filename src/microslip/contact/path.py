@@ -23,8 +23,6 @@ from itertools import pairwise
 
 import numpy as np
 
-from microslip.scene.motion import HALF_PERIOD
-
 _GAMMA = 1.0 - np.sqrt(0.5)
 
 
@@ -208,11 +206,6 @@ def make_path(
             times[:, -1] = phase[1:]  # exact to the last bit, because the next march starts here
         depths = depth(np.concatenate([phase[:1], times.ravel()]))
     return Path(phase, positions, stages, np.array(integrator.carried), integrator.end, depths)
-
-
-def half_period_phases(steps: int, grading: float = 0.0) -> np.ndarray:
-    """Return steps + 1 phases from the turning point -pi/2 to the next one, graded towards both."""
-    return phases_between(HALF_PERIOD, steps, grading)
 
 
 def phases_between(

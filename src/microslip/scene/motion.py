@@ -41,8 +41,9 @@ PLANE = ("forward", "lateral", "angle")
 NORMAL = ("load", "indentation")
 
 
-REPEAT = 1e-6
-"""Tolerance for values of a user-defined motion that must be equal."""
+ROUNDING = 1e-9
+"""Largest rounding error of a value that counts as equal, divided by the largest value.  It applies
+to the symmetries of samples, and to wave forms and displacements of users."""
 
 
 class Wave(NamedTuple):
@@ -148,7 +149,7 @@ class Motion(spec.Named):
         allowed = ""
         if still.shape != (3, 2) or still.dtype.kind not in "if":
             allowed = "three arrays of real numbers, with the shape of the phase"
-        elif not np.allclose(still[:, 0], still[:, 1], rtol=0.0, atol=REPEAT):
+        elif not np.allclose(still[:, 0], still[:, 1], rtol=0.0, atol=ROUNDING):
             allowed = "one that is equal after a period of 2 pi at velocity 0"
         elif not moving[0, 1] > moving[0, 0]:
             allowed = "one that advances at velocity 1"
@@ -396,8 +397,8 @@ def _is_like_sine(form: Callable[[np.ndarray], np.ndarray]) -> bool:
     phase = np.linspace(-2.0 * np.pi, 2.0 * np.pi, 33)
     values = form(phase)
     images = np.stack([-form(-phase), form(np.pi - phase)])
-    same = np.shape(values) == phase.shape and np.allclose(images, values, rtol=0.0, atol=REPEAT)
-    return bool(same and np.allclose(form(np.array([0.5 * np.pi])), 1.0, rtol=0.0, atol=REPEAT))
+    same = np.shape(values) == phase.shape and np.allclose(images, values, rtol=0.0, atol=ROUNDING)
+    return bool(same and np.allclose(form(np.array([0.5 * np.pi])), 1.0, rtol=0.0, atol=ROUNDING))
 
 
 def within_rings(radius: float) -> float:

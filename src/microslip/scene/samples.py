@@ -18,7 +18,7 @@ import numpy as np
 from microslip.foundation import spec
 from microslip.foundation.arguments import LARGEST
 from microslip.foundation.errors import InputError
-from microslip.scene.motion import LOOP, NORMAL, PLANE, Motion, stick_focus, within_rings
+from microslip.scene.motion import LOOP, NORMAL, PLANE, ROUNDING, Motion, stick_focus, within_rings
 from microslip.scene.pressure import Pressure
 
 if TYPE_CHECKING:
@@ -279,8 +279,6 @@ class Sampled(spec.NamedByText, _Samples):
 
 FEWEST_SAMPLES = 4
 """Smallest number of rows in a period, also for the motion through every second row."""
-ROUNDING = 1e-9
-"""Tolerance for the symmetries of samples, divided by the largest sample."""
 
 
 def uneven_row(time: np.ndarray, most: float) -> int | None:

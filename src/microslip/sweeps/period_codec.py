@@ -8,11 +8,9 @@ dissipated energy is stored in 65,535 steps, and forces with seven decimals.  Sl
 from __future__ import annotations
 
 import base64
-import math
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import DTypeLike
 
 if TYPE_CHECKING:
     from microslip.answer.period import Period
@@ -78,27 +76,8 @@ def packed(period: Period, angles: int) -> dict:
     }
 
 
-def unpacked_half(result: dict) -> tuple[np.ndarray, np.ndarray]:
-    """Unpack tractions and slips on half the disc over half the period.
-
-    Returns two arrays.  The forward and lateral tractions are an int8 array of shape (steps/2 + 1,
-    2, angles, cells), in units of bound/127.  The slip flags are a boolean array of shape (steps/2
-    + 1, angles, cells).
-    """
-    frames = (len(result["phase"]) + 1) // 2
-    shape = frames, result["angles"], len(result["radius"])
-    shares = values_of(result["tractions"], np.int8).reshape(frames, 2, *shape[1:])
-    bits = np.unpackbits(values_of(result["slips"], np.uint8), count=math.prod(shape))
-    return shares, bits.astype(bool).reshape(shape)
-
-
 def text_of(values: np.ndarray) -> str:
     """Encode an array as base64 of its little-endian bytes."""
     ordered = np.ascontiguousarray(values)
     ordered = ordered.astype(ordered.dtype.newbyteorder("<"), copy=False)
     return base64.b64encode(ordered.tobytes()).decode("ascii")
-
-
-def values_of(text: str, kind: DTypeLike) -> np.ndarray:
-    """Decode a string from `text_of` to a flat array of type `kind`."""
-    return np.frombuffer(base64.b64decode(text), np.dtype(kind).newbyteorder("<"))

@@ -27,8 +27,8 @@ MOST_ABOVE = 4
 """Largest number of lines from one dataset for which the legend is above a narrow panel."""
 MANY = 12
 """Largest number of lines for which the legend is narrow."""
-ROW = 0.165
-"""Height of a row of the legend, in inches."""
+ABOVE = 2.0
+"""Smallest height of a narrow panel with its labels below the legend, in inches."""
 FINE = 201
 """Number of amplitudes at which a certified map of static friction is drawn."""
 
@@ -78,8 +78,8 @@ def draw(*datasets: xr.Dataset) -> Figure:
         where, ncols = ("upper center", 2) if alone else ("right upper", 1)
         handles = grid[0].get_legend_handles_labels()[0]
         look.legend_of_figure(figure, handles, where, ncols=ncols, handlelength=3.0)
-        rows = sum(str(handle.get_label()).count("\n") + 1 for handle in handles) / ncols
-        figure.set_figheight(max(figure.get_figheight(), ROW * rows + (0.0 if ncols == 1 else 2.0)))
+        least = sum(one.get_window_extent().height for one in figure.legends) / figure.dpi
+        figure.set_figheight(max(figure.get_figheight(), least + (ABOVE if alone else 0.0)))
     return figure
 
 
@@ -147,17 +147,15 @@ def _panel(axes: Axes, lines: Sequence[Line], alone: bool, joined: bool = True) 
         label = look.wrapped(line.title, room, 8.0)
         label = f" {label}" if label.startswith("_") else label  # a leading "_" would hide it
         # Later markers are smaller and in front, so that all markers at one place can be seen.
-        spread = 3.9 if not joined else 2.6 if len(lines) > MOST_ABOVE else 0.0
-        size = (3.6 if spread == 0.0 else 3.2) + min(1.3, spread / len(lines)) * (
-            len(lines) - 1 - k
-        )
+        behind = 0 if joined and len(lines) <= MOST_ABOVE else len(lines) - 1 - k
+        size = 3.4 + min(1.3, 3.0 / len(lines)) * behind
         ink: look.Ink = {"color": color, "marker": marker, "ms": size}
         joining: look.Ink = {"lw": JOINING, "ls": "-" if joined else "none", "label": label}
         if line.limit is not None:
             x, y, form = line.limit
-            several, first = len(shared[k]) > 1, shared[k][0]
+            common, first = len(shared[k]) > 1, shared[k][0]
             # With several datasets, the points and the limit of a line share one legend entry.
-            joint = not (alone or several)
+            joint = not (alone or common)
             own: look.Ink = ink | {"label": label} if joint else {"color": color, "label": form}
             if first is line:
                 axes.plot(x, y, ls=ls, gid="limit", markevery=[], **own)
@@ -179,8 +177,9 @@ def _with_limit_of(line: Line, lines: Sequence[Line]) -> list[Line]:
     if line.limit is None:
         return []
     x, y, form = line.limit
-    others = [one for one in lines if one.limit is not None and one.limit[2] == form]
-    return [one for one in others if np.array_equal([x, y], one.limit[:2])]  # type: ignore[index]
+    limits = [(one, one.limit) for one in lines if one.limit is not None]
+    same = ((one, np.array_equal([x, y], own[:2]) and own[2] == form) for one, own in limits)
+    return [one for one, equal in same if equal]
 
 
 def _references(axes: Axes, points: xr.Dataset, shown: Sequence[xr.Dataset]) -> None:
