@@ -157,7 +157,8 @@ class Answer:
 
 
 def about(problem: Problem) -> dict[str, Any]:
-    """Return the parameters of a problem by name.  Drive parameters that do not apply are None."""
+    """Return a dict of the parameters of a problem.  Drive parameters that do not apply are
+    None."""
     own: dict[str, Any] = {
         "motion": problem.motion.name,
         "pressure": problem.pressure.name,

@@ -169,7 +169,7 @@ def answer_of(request: Request) -> Result:
 
 
 def ladder_of(request: Request, tolerance: float) -> Ladder:
-    """Return the ladder for the problem of a request.
+    """Return the ladder for the problem that a request describes.
 
     Raises InputError if a resolution must be chosen but the request has no tolerance.
     """

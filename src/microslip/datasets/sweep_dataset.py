@@ -1,8 +1,8 @@
 """Build the dataset of a sweep.
 
 Every dataset follows the CF conventions.  Theoretical limits are stored as variables, and the
-provenance as attributes.  The root of a file contains the map.  Groups contain fine curves and
-single runs (see `netcdf`).  All quantities are dimensionless.  Identical results give
+provenance as attributes.  The root of a file contains the map.  Groups contain finely sampled
+curves and single runs (see `netcdf`).  All quantities are dimensionless.  Identical results give
 byte-identical files: a file does not depend on the time, the computer or the number of jobs.
 """
 

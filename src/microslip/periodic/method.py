@@ -1,8 +1,8 @@
 """A numerical method: integrator, step solver and search for the periodic state.
 
 The shipped method is the default of `microslip.solve`.  The other methods are for comparison.  Each
-of them replaces the integrator, the step solver, the search, its initial state, or the whole
-simulation.
+of them replaces one part (the integrator, the step solver, the search or its initial state) or the
+whole simulation.
 """
 
 from __future__ import annotations

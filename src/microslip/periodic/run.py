@@ -182,7 +182,7 @@ class Settings:
     def contact(
         self, problem: Problem, model: str, resolution: Resolution, focus: Focus | None = None
     ) -> Contact:
-        """Build a contact with the method's step solver, whose marches are counted in the budget.
+        """Build a contact with the method's step solver.  Its marches count towards the budget.
 
         Raises Spent, before the contact is built, if one march would exceed the budget.
         """

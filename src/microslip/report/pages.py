@@ -76,7 +76,7 @@ def _ranges(dataset: xr.Dataset) -> Iterator[str]:
 
 
 def claims_page(dataset: xr.Dataset, lines: list[str]) -> str:
-    """Return the HTML of the page of the study `claims`."""
+    """Return the page for the study `claims` as HTML."""
     environment = jinja2.Environment(autoescape=True, trim_blocks=True, lstrip_blocks=True)
     environment.filters.update(number=_number, with_error=_with_error, is_finite=np.isfinite)
     text = Path(__file__).with_name("claims.html").read_text(encoding="utf-8")

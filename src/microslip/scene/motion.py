@@ -1,9 +1,9 @@
 """Motions: forward sliding combined with an oscillation (a wave) along one or more directions.
 
-*Forward* is the direction of sliding, and *lateral* is perpendicular to it.  A positive angle moves
-points with a positive lateral coordinate forward.  Displacements are in u_lim, angles in u_lim / a,
-and time is the phase omega t.  For a motion of amplitude A, each wave adds the following term to
-the displacement along its direction:
+*Forward* is the direction of sliding, and *lateral* is perpendicular to it.  If the angle is
+positive, points whose lateral coordinate is positive move forward.  Displacements are in u_lim,
+angles in u_lim / a, and time is the phase omega t.  For a motion of amplitude A, each wave adds the
+following term to the displacement along its direction:
 
     A share sin(cycles phase + lead).
 
@@ -339,7 +339,8 @@ class Motion(spec.Named):
         return waves[0] if waves else Wave(0.0)
 
     def _depth_at(self, height: np.ndarray, pressure: Pressure) -> np.ndarray:
-        """Return the indentation depth at a load or an indentation; 0 if there is no contact."""
+        """Return the indentation depth for a given load or indentation, and 0 if there is no
+        contact."""
         height = np.maximum(height, 0.0)
         return pressure.of_load(height) if "load" in self.components else height
 

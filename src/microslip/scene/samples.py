@@ -209,7 +209,8 @@ class Sampled(spec.NamedByText, _Samples):
 
     @cached_property
     def cycles(self) -> int:
-        """Root-mean-square number of cycles in a period, for the column where it is largest."""
+        """Root mean square of the number of cycles in a period, in the column with the largest
+        value."""
         power = np.abs(np.fft.rfft(self.rows - self.rows.mean(axis=0), axis=0)) ** 2
         if self.height is not None:
             height = np.abs(np.fft.rfft(self.height - self.height.mean())) ** 2

@@ -184,7 +184,7 @@ class Contact:
 
     @property
     def speed_unit(self) -> Any:
-        """Forward speed at which the dimensionless velocity is 1, m/s."""
+        """Forward speed, in m/s, at which the dimensionless velocity is 1."""
         if self.steady:
             return self.omega * self.contact_radius
         if not self.kind.several and motion_named(self.kind.name).edge_velocity:

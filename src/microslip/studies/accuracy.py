@@ -238,7 +238,8 @@ def cheapest(runs: pd.DataFrame, exact: str, tolerance: float) -> pd.DataFrame:
 
 
 def contest_of(method: str) -> str:
-    """Return the contest of a method.  It depends on the part of a run that the method replaces.
+    """Return the comparison of a method with its competitors.  It depends on the part of a run that
+    the method replaces.
 
     The result is "models" for the shipped method and for methods that replace the whole run, else
     "integrators", "solvers of a step" or "searches".

@@ -66,7 +66,7 @@ def used_share(motion: str, radius: np.ndarray, amplitude: np.ndarray) -> np.nda
 
 
 def left_share(motion: str, radius: np.ndarray, amplitude: np.ndarray) -> np.ndarray:
-    """Return the fraction of the friction bound that remains for the forward direction.
+    """Return how much of the friction bound is left for the forward direction, as a fraction.
 
     The fraction is averaged over the angle.
     """
@@ -80,7 +80,8 @@ def left_share(motion: str, radius: np.ndarray, amplitude: np.ndarray) -> np.nda
 
 
 def values(study: Claims, tables: dict[str, pd.DataFrame]) -> dict[str, Any]:
-    """Return the values of all variables of the static limits. tables: tables of evidence."""
+    """Return the values of all variables of the static limits. tables: the tables of the runs
+    that support the values."""
     radius = np.linspace(0.0, 1.0, RADII)
     entries: dict[str, Any] = {
         "share_radius": radius,

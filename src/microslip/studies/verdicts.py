@@ -1,4 +1,5 @@
-"""Compute verdicts on statements from the margins and errors of checks.
+"""Decide for each statement whether it is true, from the margin and the error of each of its
+checks.
 
 A statement of the paper has parts, and each part is judged by checks.  A check has a margin with an
 error.  It holds if the margin is larger than the error.  It fails if the margin is negative and its

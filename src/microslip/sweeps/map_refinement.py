@@ -215,8 +215,8 @@ def solve_points(sweep: Sweep, path: str | Path, processes: int) -> dict:
 
 
 def _begin(places: dict[str, Path]) -> None:
-    """Prepare a worker process: store the paths of motion and pressure files by digest, and end the
-    process when its parent ends."""
+    """Prepare a worker process: store the paths of motion and pressure files, keyed by their
+    digests, and end the process when its parent ends."""
     named_files.PLACES.update(places)
     Thread(target=_end_with_parent, daemon=True).start()
 

@@ -54,7 +54,8 @@ def static_transverse(pressure: IndenterPressure, amplitude: float) -> float:
 
 
 def torsion_angle(pressure: IndenterPressure, stick_radius: float, poisson: float = 0.0) -> float:
-    """Compute the angle of pure torsion from rest for a stick radius (Eq 24 for a sphere).
+    """Compute the angle at which pure torsion from rest reduces the stick radius to a given value
+    (Eq 24 for a sphere).
 
     Torsion is a superposition of rotating flat punches. Abel's inversion gives
     phi = 1/(2 G) Integral_c^1 g / sqrt(r^2 - c^2) dr.

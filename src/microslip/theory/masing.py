@@ -43,8 +43,8 @@ _HALVINGS = 60
 
 @cache
 def clustered_rule(count: int) -> tuple[np.ndarray, np.ndarray]:
-    """Return a Gauss rule (nodes, weights) on 0..1, clustered at both ends, for half-integer
-    powers."""
+    """Return the nodes and the weights of a Gauss rule on [0, 1], for integrands with
+    half-integer powers at both ends."""
     nodes, weights = np.polynomial.legendre.leggauss(count)
     angles = 0.25 * np.pi * (nodes + 1.0)
     return np.sin(angles) ** 2, 0.25 * np.pi * weights * np.sin(2.0 * angles)

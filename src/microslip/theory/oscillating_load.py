@@ -117,7 +117,7 @@ class _Motion:
         return np.arccos(np.clip((1.0 - height) / self.amplitude, -1.0, 1.0))
 
     def _climbs(self, t: np.ndarray) -> np.ndarray:
-        """Return values that have the sign of phi' and are finite where contact begins."""
+        """Return an array that has the sign of phi' and is finite where contact begins."""
         height = np.maximum(1.0 - self.amplitude * np.cos(t), 0.0)
         if self.by_load:  # the rate of load is proportional to the present stiffness
             radius = self.pressure.radius(self.pressure.of_load(height))

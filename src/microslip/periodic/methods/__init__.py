@@ -34,7 +34,8 @@ METHODS = Path(__file__).parent
 
 @cache
 def names() -> tuple[str, ...]:
-    """Return the names of all methods, "shipped" first, without files that cannot be parsed."""
+    """Return the names of all methods, "shipped" first.  Files that cannot be parsed are left
+    out."""
     stems = (file.stem for file in METHODS.glob("[!_]*.py"))
     # copies and checkpoints of files are not methods
     files = {stem.replace("_", "-") for stem in stems if stem.isidentifier()}

@@ -106,8 +106,9 @@ def _versus(dataset: xr.Dataset, cost: str) -> Figure:
     """Draw the errors of all trials against a cost, with a panel for each point.
 
     Each model with the default method has its own colour and marker; runs of other methods are
-    grey. Trials that lie outside the axes are drawn at the edge, in a circle. These are errors far
-    below the error of the reference, and trials without a result or without a cost.
+    grey. Trials outside the axes are drawn at the edge, each with a circle around its marker.
+    These are errors far below the error of the reference, and trials without a result or without a
+    cost.
     """
     names = {f"trial_{name}": name for name in ("point", "model", "method", "level")}
     names |= {cost: "cost", f"front_{cost}": "front"}
@@ -398,8 +399,8 @@ def patches(dataset: xr.Dataset) -> Figure:
 
 
 def _contact(axes: Axes, at: xr.Dataset) -> ScalarMappable:
-    """Draw sticking points in colours that show traction divided by bound. Slipping points are
-    white."""
+    """Colour each sticking point by the ratio of the traction to the friction bound.  Slipping
+    points are white."""
     share = at["patch_share"].where(at["patch_share"] < 1.0).values
     x, y = columns(at, "patch_lateral", "patch_forward")
     ink: look.Ink = {"cmap": look.COLOURMAP, "vmax": 1.0, "gid": "sticks"}
