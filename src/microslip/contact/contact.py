@@ -1,4 +1,5 @@
-"""The interface of the models: a discretised contact with Coulomb's law and a time integration.
+"""Interface of the models: a discretised contact that obeys Coulomb's law and is integrated in
+time.
 
 The unknowns of a Coulomb step are tractions q with |q| <= g.  The slip is s = b - A q, where A is
 the influence operator and b is the displacement imposed by the rigid motion and the history.  Slip
@@ -10,8 +11,8 @@ convex problem, and is equivalent to the fixed point
 All quantities are dimensionless.
 
 The time integration of a contact along a path is called a march.  For contacts on rings, it is
-compiled (see march.py).  The march in this module is in Python, for contacts whose single steps
-take long to solve.
+compiled (see march.py).  The march in this module is written in Python.  It serves contacts whose
+single steps take long to solve.
 """
 
 from __future__ import annotations
@@ -156,7 +157,7 @@ class Contact(Protocol):
         Force for a uniform displacement u_lim without slip, divided by mu F_z, or an upper bound on
         this ratio.
     sticks : bool
-        Whether points can stick.  If not, the static limit of friction is 0.
+        Whether points can stick.  If no point can stick, the static limit of friction is 0.
     grading : float or None
         Grading of the time steps towards the turning points; None to use the grading of the
         problem.
@@ -178,10 +179,11 @@ class Contact(Protocol):
     grading: float | None = None
     edges: np.ndarray | None = None
     bounds: Any = None
-    """bounds(depths): friction bounds at an array of depths, with one row for each depth."""
+    """Function bounds(depths) that returns the friction bounds at an array of depths, with one row
+    for each depth."""
     bounds_along: Any = None
-    """bounds_along(path): friction bounds at the start and at every stage of a path, with one row
-    for each of these times."""
+    """Function bounds_along(path) that returns the friction bounds at the start and at every stage
+    of a path, with one row for each of these times."""
 
     def displacement(self, state: np.ndarray) -> np.ndarray:
         """Return the elastic displacement A q of each point under tractions q.
@@ -257,8 +259,8 @@ def rigid_displacement(contact: Contact, place: np.ndarray) -> np.ndarray:
 
 
 def forward_slip(contact: Contact) -> np.ndarray:
-    """Return forward tractions equal to the friction bound, which are the state after forward
-    sliding."""
+    """Return the state after forward sliding, in which the forward tractions equal the friction
+    bound."""
     out = np.zeros((2, *contact.forward_position.shape))
     out[FORWARD] = contact.bound
     return out
@@ -276,8 +278,8 @@ def forces(contact: Contact, state: np.ndarray) -> np.ndarray:
 
 
 Step = tuple[np.ndarray, np.ndarray, int, float, float]
-"""Tractions, slip, number of iterations, residual as a force divided by mu F_z, and displacement d
-of a driven body (0 without a body)."""
+"""Result of a step: tractions, slip, number of iterations, residual as a force divided by mu F_z,
+and displacement d of a driven body (0 without a body)."""
 
 
 def march_by_steps(
@@ -292,10 +294,10 @@ def march_by_steps(
 ) -> March:
     """Integrate a contact along a path, step by step.
 
-    The `solver` has two methods that return a Step, starting from a guess of the tractions:
-    solve(b, guess) for the imposed displacement b, and, if there is a driven body, balance(b,
-    guess, stiffness, load), whose result fulfils stiffness d + forward force = load.  For the other
-    arguments, see contact.Contact and RingContact.march.
+    The `solver` has the method solve(b, guess), which returns a Step for the imposed displacement b
+    and an initial guess of the tractions.  If there is a driven body, the solver also has the
+    method balance(b, guess, stiffness, load), which returns a Step with stiffness d + forward force
+    = load.  For the other arguments, see contact.Contact and RingContact.march.
     """
     stages, total, end = len(path.carry), len(path.motion) - 1, path.end
     guess = None if previous is None else previous.fields

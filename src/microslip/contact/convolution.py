@@ -23,9 +23,9 @@ about 64 cells along a side.
 
 The Coulomb steps are solved by a spectral projected gradient method, because no cheap resolvent is
 available for equal cells.  The unknowns are tractions q with |q| <= g.  The slip b - A q occurs
-only where |q| = g, in the direction of q.  Gradient steps have Barzilai-Borwein lengths without a
-line search, because rounding errors of the energy are much larger than those of the tractions.  If
-the residual does not decrease for a number of iterations, shorter steps are used until it
+only where |q| = g, in the direction of q.  Gradient steps have Barzilai-Borwein lengths.  There is
+no line search, because rounding errors of the energy are much larger than those of the tractions.
+If the residual does not decrease for a number of iterations, shorter steps are used until it
 decreases; these steps lower the energy in every iteration.
 """
 

@@ -42,9 +42,9 @@ MOST_MODES = 1 + int(np.ceil(0.5 * DECAY))
 OUTER_POINTS = 8
 INNER_POINTS = 12
 CLUSTER_POWER = 4
-"""Numbers of Gauss points for the outer (averaging) and the inner (singular) ring integral, and the
-exponent that clusters the inner points where the rings are closest, because the kernels have a
-logarithmic singularity there."""
+"""Numbers of Gauss points for the outer (averaging) and the inner (singular) ring integral, and
+exponent that clusters the inner points where the rings are closest.  At this point, the kernels
+have a logarithmic singularity."""
 APART_POINTS = 5
 """Number of Gauss points on each ring of a pair whose distance is at least the width of a ring."""
 
@@ -78,9 +78,9 @@ def elliptic_integrals(kc: np.ndarray, big_k: np.ndarray, big_e: np.ndarray) -> 
 
     kc: complementary moduli, as an array of shape (n,).
 
-    The integrals are computed by the arithmetic-geometric mean.  It converges quadratically, and
-    most slowly for the smallest modulus.  All moduli use the number of steps that this modulus
-    needs, so that the compiler can use vector instructions.
+    The integrals are computed by the arithmetic-geometric mean.  The iteration converges
+    quadratically, and most slowly for the smallest modulus.  All moduli use the number of steps
+    that the smallest modulus needs, so that the compiler can use vector instructions.
     """
     large, small, steps = 1.0, kc.min(), 0
     while large - small > HALF_PRECISION * large:
@@ -140,7 +140,8 @@ def toroidal_kernels(
 def modes_for(r: float, s: float, n: int) -> int:
     """Return the number of values G_m(r, s) from which `n` values C_m can be computed.
 
-    It is n + 2 if the upward recurrence is stable, otherwise more, but at most MOST_MODES (n + 2).
+    The number is n + 2 if the upward recurrence is stable.  Otherwise it is larger, but at most
+    MOST_MODES (n + 2).
     """
     growth = np.log(s / r)
     return n + 2 if (n + 1) * growth < 2.0 else n + 3 + int(DECAY / growth)
@@ -255,8 +256,8 @@ def _weight(r: float) -> float:
 
 @kernel
 def _all_pairs(averaging: Averaging, near: np.ndarray, far: np.ndarray) -> None:
-    """Fill the arrays `near` and `far` of shape (n_modes, rings, rings), which must be zero on
-    entry."""
+    """Fill `near` and `far` with the averages over all pairs of rings.  Both arrays have the shape
+    (n_modes, rings, rings) and must be zero on entry."""
     width = averaging.psi[1:] - averaging.psi[:-1]
     points = np.empty((6, 2 * len(averaging.outer[0]) * len(averaging.inner[0])))
     for one in range(len(width)):

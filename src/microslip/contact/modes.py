@@ -49,8 +49,8 @@ def _single_waves(
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Return the waves at nu = 0 as three arrays.
 
-    The first array contains the number m of each wave.  The others contain the forward and the
-    lateral values of the waves at the points, and have the shape (waves, points).
+    The first array contains the number m of each wave.  The second and the third array contain the
+    forward and the lateral values of the waves at the points, and have the shape (waves, points).
 
     For a rotation, forward tractions are cosines and lateral tractions are sines.  For a
     translation, both are cosines and sines with even numbers m.

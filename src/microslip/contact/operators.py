@@ -37,7 +37,7 @@ def padded(count: int) -> int:
 
 @intrinsic
 def fused(typing: Any, a: Any, b: Any, c: Any) -> Any:
-    """Return a b + c for floats, rounded once."""
+    """Return a * b + c for floats, with a single rounding."""
     if (a, b, c) != (types.float64,) * 3:
         return None
 

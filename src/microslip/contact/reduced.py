@@ -5,9 +5,9 @@ translation, this model is the rigid slider of Eq 6; for a rotation, it is the q
 of Eqs 21, 22 and 29.  The model has no memory, so that only the forces at each phase are evaluated.
 
 slider: one friction element in series with an isotropic spring (Benad et al. 2019).  Like the whole
-contact, the element slides once the displacement exceeds u_lim, so the dimensionless groups are the
-same.  The model neglects partial slip.  It is cheap, and accurate at velocities well above the
-static limit.  Near this limit, its friction is given by Eq 7.
+contact, the element slides once the displacement exceeds u_lim, so both have the same dimensionless
+groups.  The model neglects partial slip.  It is cheap, and accurate at high velocities.  Near the
+static limit, its friction is given by Eq 7.
 
 dahl: the Dahl model in two directions (Tsai and Tseng 2005),
 
@@ -24,7 +24,8 @@ direction (Cattaneo and Mindlin).  For slip in two directions, it is an approxim
 springs do not interact.  Springs at -a < x < a have the stiffness G* and the friction bound G* (1 -
 h(x)) per unit length.  Here h(x) is the depth for the contact radius x divided by the reference
 depth.  So the spring at x begins to slide at the displacement (1 - h) u_lim, which is (1 - x^2)
-u_lim for a sphere.  At d times the reference depth, it begins to slide at (d - h) u_lim if d > h.
+u_lim for a sphere.  At d times the reference depth, the spring begins to slide at (d - h) u_lim if
+d > h.
 """
 
 from __future__ import annotations
@@ -40,7 +41,7 @@ from microslip.scene.pressure import Pressure
 
 GRADING = 0.98
 """Grading of the time steps towards the turning points.  At a turning point, the direction of slip
-reverses within a phase of about v/y."""
+reverses within a phase of about v/y, the ratio of velocity to amplitude."""
 
 
 class RigidContact(contact.Contact):

@@ -109,7 +109,7 @@ def respond(
     response: np.ndarray,
     slope: np.ndarray,
 ) -> None:
-    """Compute the tractions v for d = 1, and their forward force, for each penalty.
+    """For each penalty, compute the tractions v for d = 1 and the forward force of these tractions.
 
     `unit` is a scratch field.
     """

@@ -33,7 +33,8 @@ from microslip.scene.pressure import Pressure
 MOST_DISPLACEMENTS = 60
 """Largest number of trial displacements of a driven body in each step."""
 FLATTEST = 1e-3
-"""Smallest slope of a secant that is used, divided by the largest possible slope."""
+"""Smallest slope in the secant method, divided by the largest possible slope.  Flatter secants are
+replaced by this slope."""
 INNER = 0.3
 """Allowed residual at each trial displacement, divided by the tolerance of the step."""
 ROUNDED = 1e-10

@@ -73,7 +73,8 @@ def resampled(dataset: xr.Dataset, **coordinates: Any) -> xr.Dataset:
 
 
 def closed_forms(dataset: xr.Dataset) -> list[ClosedForm]:
-    """Return the closed forms that a dataset contains, those of the dataset's motion first.
+    """Return the closed forms that a dataset contains. The forms of the dataset's motion come
+    first.
 
     If a form is exact only for Poisson's ratio 0 and the dataset has other ratios, the label of the
     form states "for ν = 0".

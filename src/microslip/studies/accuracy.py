@@ -1,9 +1,9 @@
 """Study of the accuracy and the cost of each model and method.
 
 At each point, every model is run with the shipped method at all levels of its ladder.  Every other
-method is run at the levels of the model that `model="auto"` selects.  A reference and solves at
-several tolerances are also computed for each point.  For two motions, there are also maps, with
-trials of all models on a grid of points.
+method is run at the levels of the model that `model="auto"` selects.  For each point, the study
+also computes a reference, and solves at several tolerances.  For two motions, it computes maps,
+with trials of all models on a grid of points.
 
 The dataset contains performance profiles: E. D. Dolan and J. J. More, Math. Program. 91 (2002)
 201-213, doi:10.1007/s101070100263.  A case is a point and a tolerance.  The cost of a competitor is
@@ -42,9 +42,10 @@ although rings are far more accurate."""
 TRUTH_SHARE = 0.1
 """Tolerance of the references of a map, divided by the tightest tolerance of the map."""
 LARGE = 64
-"""Number of squares along a side from which on a run takes as long as all coarser runs together."""
+"""Smallest number of squares along a side at which a run takes as long as all coarser runs
+together."""
 AS_CHEAP = 1.5
-"""Ratio of two measured times below which they count as equal."""
+"""Two measured times count as equal if their ratio is below this value."""
 MODELS = "models"
 """Name of the contest between the models with the shipped method and the methods that replace the
 whole run."""
@@ -129,7 +130,7 @@ def report(dataset: xr.Dataset) -> Iterator[str]:
 
 
 def _point(name: str, point: StudyPoint, answers: Answers) -> Row:
-    """Return the row of a point, with its reference."""
+    """Return the row of a point, which includes the reference."""
     if point.amplitude is None:
         result: Row = {"mu_macro": float(paper.bore_forward(point.velocity)), "mu_macro_error": 0.0}
         source = "closed form, Eq 21"
@@ -209,8 +210,8 @@ def on_front(cost: ArrayLike, error: ArrayLike) -> np.ndarray:
 
 
 def largest_from(runs: pd.DataFrame, *series: str) -> pd.Series:
-    """Return, for each run, the largest error of this run and of all finer runs in its series.  It
-    is NaN if the run has no error.
+    """Return, for each run, the largest error of this run and of all finer runs in its series.  The
+    value is NaN if the run has no error.
 
     The error of a coarse run can be small by chance, where the error changes its sign.
 
@@ -238,8 +239,8 @@ def cheapest(runs: pd.DataFrame, exact: str, tolerance: float) -> pd.DataFrame:
 
 
 def contest_of(method: str) -> str:
-    """Return the comparison of a method with its competitors.  It depends on the part of a run that
-    the method replaces.
+    """Return the name of the contest in which a method takes part.  The contest depends on the part
+    of a run that the method replaces.
 
     The result is "models" for the shipped method and for methods that replace the whole run, else
     "integrators", "solvers of a step" or "searches".

@@ -12,13 +12,13 @@ from microslip.foundation.canonical import canonical_json
 Row = dict[str, Any]
 """An answer: a dict with the entries of a request and of its result, the name `key` of the result,
 the number of time steps in a period, and the index of the computer.  If the request and the result
-have an entry of the same name, that of the result is used."""
+have an entry of the same name, the entry of the result is used."""
 MOTIONS = ("transverse", "bore")
 """Motions that are inserted for {motion} in the tables of variables and groups."""
 
 
 class Answers:
-    """Function that returns the Row of a request.
+    """Callable object that returns the `Row` of a request.
 
     Attributes
     ----------
@@ -68,7 +68,7 @@ def columns(study: str, dims: str, rows: list[Row], *shape: int) -> dict[str, An
 
 
 def number(row: Row, name: str) -> float:
-    """Return the number with a name in a row, or NaN if the row lacks this number."""
+    """Return the number that a row contains under a name, or NaN if there is no such number."""
     value = row.get(name)
     return math.nan if value is None else float(value)
 

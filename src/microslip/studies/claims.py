@@ -107,8 +107,8 @@ SINGLE_RUNS = {
     "patches": ("tractions over a period", "['least_stick']"),
     "run": ("single run, method {method}", "['mu_macro']"),
 }
-"""For each kind of single run, a short description and the part of the result that is printed by
-the command that repeats the run."""
+"""Short description of each kind of single run, and part of the result that is printed when a
+command repeats the run."""
 
 
 def _description(request: dict) -> str:
@@ -135,8 +135,8 @@ def command(request: dict) -> str:
 
 
 def _patches(study: Claims, answers: Answers) -> dict:
-    """Return the stick patches, with edges, at the smallest velocity and the amplitude closest to
-    1."""
+    """Return the stick patches and their edges at the smallest velocity and at the amplitude
+    closest to 1."""
     rows = [answers(fine) for fine, _ in evidence.periods(study)]
     slowest = min(float(row["velocity"]) for row in rows)
     rows = [r for r in rows if float(r["velocity"]) == slowest and r.get("converged")]
@@ -164,7 +164,7 @@ def _patches(study: Claims, answers: Answers) -> dict:
 def _edges(amplitude: float, moments: np.ndarray) -> dict:
     """Return the theoretical edges of the stick zone for v -> 0 at the moments of the patches.
 
-    The moments are those of stick_area.patches.  Next to a turning point, the stick zone is a
+    The moments are the same as in stick_area.patches.  Next to a turning point, the stick zone is a
     leaf-shaped region on one side of the contact, where |cos angle| >= tau/g.  A point inside the
     leaf slips only at the other turning point.  In mid-stroke, the stick zone is a circle, whose
     radius depends on the rotation since the last turning point.

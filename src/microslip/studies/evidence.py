@@ -1,6 +1,6 @@
 """Evidence for the statements of the paper: requests of runs, and tables of values from the runs.
 
-Most runs are points at the tolerance of the study.  The others are single runs: the paper's own
+Most runs are points at the tolerance of the study.  The other runs are single runs: the paper's own
 runs, transients, fields of tractions, and periods.
 
 Each row of a table of requests contains requests that belong together, such as a fine and a coarse
@@ -215,8 +215,8 @@ def limit_of(closed: Row, rings: Row, squares: Row, own: Row) -> dict:
     """Return the static limit from the closed form, from rings and from squares, and the result of
     the paper's own run.
 
-    The error of the closed form is estimated independently, as the distance from the limit on rings
-    plus the error estimates of these two values.
+    The error of the closed form is estimated independently, as the difference from the limit on
+    rings plus the error estimates of the closed form and of the limit on rings.
     """
     (value, rounding), (resolved, error) = friction(closed), friction(rings)
     return {
@@ -262,9 +262,10 @@ def flat_end_of(*rows: Row) -> dict:
 
 
 def both_of(read: Callable[[Row], tuple[float, float]], fine: Row, coarse: Row) -> dict:
-    """Return a value of a run and the reference for this value.
+    """Return a value of the fine run, the reference for this value, and an error estimate.
 
-    The error is estimated as the change of value minus reference in a run with half as many rings.
+    The error estimate is the change of the difference between value and reference if the number of
+    rings is halved.
 
     read: function that reads the value and the reference from a run.
     """
@@ -279,13 +280,14 @@ def both_of(read: Callable[[Row], tuple[float, float]], fine: Row, coarse: Row) 
 
 
 def traction_ratio(row: Row) -> tuple[float, float]:
-    """Return the smallest ratio of traction to friction bound, and 0."""
+    """Return the smallest ratio of traction to friction bound, and the reference 0."""
     size = np.hypot(row["traction_lateral"], row["traction_forward"])
     return float((size / np.asarray(row["bound"], float)).min()), 0.0
 
 
 def traction_angle(row: Row) -> tuple[float, float]:
-    """Return the largest angle between the tractions and those of Eq 15 in degrees, and 0."""
+    """Return the largest angle in degrees between a traction and the traction of Eq 15, and the
+    reference 0."""
     across, along, lateral, forward = (
         np.asarray(row[name], float)
         for name in ("lateral_position", "forward_position", "traction_lateral", "traction_forward")
@@ -303,8 +305,8 @@ def least_stick(row: Row) -> tuple[float, float]:
 
 
 def lead(row: Row) -> tuple[float, float]:
-    """Return by how much the stick area of one side exceeds that of the other when the total stick
-    area is smallest, and 0.
+    """Return the difference between the stick areas of the two sides when the total stick area is
+    smallest, and the reference 0.
 
     The difference is divided by the total stick area.  Each side must be larger in one half of the
     period; the smaller of the two differences is returned.

@@ -28,8 +28,8 @@ if TYPE_CHECKING:
     from microslip.config.settings import StudyPoint
 
 RINGS_TOLERANCE, TOLERANCE = 1e-6, 3e-5
-"""Tolerance of a reference that is computed with rings, which are cheap, and with angular
-points."""
+"""Tolerances of references computed with rings and with angular points.  Rings are cheap, so that
+their tolerance is tighter."""
 ROTATIONS = ("bore", "continuous-bore")
 """Motions with a rotation.  Only a few models apply to them."""
 OF_ROTATIONS = ("rigid", "polar", "cartesian")
@@ -81,8 +81,8 @@ LADDERS = {
 """Levels of each model, from coarse to fine.  The model with squares has few levels, because it is
 by far the most expensive."""
 OF_OTHER_METHODS = {"radial": 5, "polar": 4, "cartesian": 3}
-"""Number of levels of each model for methods other than the shipped one, which can be slow or use
-dense matrices."""
+"""Number of levels of each model for methods other than the shipped one.  These methods can be slow
+or use dense matrices."""
 COARSEST_TOLERANCE, TOLERANCE_POWER = 3e-5, 1.5
 """Tolerance of the periodic state (force divided by mu F_z) at the first level, and the exponent in
 its dependence 1 / steps^TOLERANCE_POWER.  At every level, the tolerance is below the discretisation
@@ -147,7 +147,7 @@ def of(kind: str, point: AnyPoint, **arguments: Any) -> dict:
 def solve(point: AnyPoint, tolerance: float, model: str = "auto", cells: int | None = None) -> dict:
     """Return the request for a solve at a point. It equals the request of a sweep for this point.
 
-    cells: imposed number of rings or squares.  If None, it follows from the tolerance.
+    cells: imposed number of rings or squares.  If None, the number follows from the tolerance.
     """
     return of("point", point, model=model, tolerance=tolerance, cells=cells, steps=None)
 
@@ -162,8 +162,8 @@ def reference(point: AnyPoint) -> dict:
 def trials(
     point: AnyPoint, methods: Iterable[str], levels: int, repeats: int
 ) -> Iterator[tuple[int, dict]]:
-    """Yield (level number, request) for the timed runs of methods, for all models and levels of
-    each method.
+    """Yield (level number, request) for each timed run.  Every method is run with all models and
+    levels that apply to it.
 
     The number of steps of a steady motion is None.
     """

@@ -5,8 +5,8 @@ A part is one aspect of a statement that numbers can confirm or refute.  stateme
 statements in plain words, and parts.csv contains a row for each part:
 
 - counts: yes if the verdict on the statement depends on the part;
-- evidence, lines: table of evidence, and condition that selects lines of it; if this is empty, all
-  lines are used;
+- evidence, lines: table of evidence, and condition that selects lines of this table; if the
+  condition is empty, all lines are used;
 - formula: reference for the values, a key of FORMULAS;
 - margin: how a value is compared with its reference, a key of MARGINS;
 - limit: key of LIMITS.  The value of the limit appears in the text of the criterion.

@@ -37,7 +37,7 @@ RADII = 201
 
 def remainder() -> float:
     """Return the integral of the remaining friction bound divided by c^2, where c is the radius of
-    the stick zone.  For large amplitudes it is 3/4 (1 - J0(pi)), where J0 is the Bessel
+    the stick zone.  For large amplitudes, the ratio is 3/4 (1 - J0(pi)), where J0 is the Bessel
     function."""
     return 0.75 * (1.0 - scipy.special.j0(np.pi))
 
@@ -100,8 +100,8 @@ def values(study: Claims, tables: dict[str, pd.DataFrame]) -> dict[str, Any]:
 
 
 def _curves(motion: str) -> dict:
-    """Return the static limit and the formulas on a fine axis, and the largest differences between
-    them."""
+    """Return the static limit and the paper's formulas on a fine axis.  The largest excess of each
+    formula over the limit is also returned."""
     amplitude = np.linspace(0.0, STATIC_AMPLITUDES[motion], CURVE_POINTS)
     exact = FORMS[motion][STATIC].function(amplitude)
     entries: dict[str, Any] = {"curve_amplitude": amplitude, "curve_limit": exact}
@@ -118,8 +118,8 @@ def _table(motion: str, limit: pd.DataFrame, march: pd.DataFrame, slow: pd.DataF
 
     The difference is split into a part due to the velocity and a part due to the resolution.
 
-    limit: static limit. march, slow: friction at the smallest velocity of the study and of the
-    paper.  Each table has a line for each amplitude.
+    limit: static limit. march: friction at the smallest velocity of the study. slow: friction at
+    the smallest velocity of the paper.  Each table has a line for each amplitude.
     """
     limit, march, slow = (table.set_index("amplitude") for table in (limit, march, slow))
     amplitude = limit.index.to_numpy(float)

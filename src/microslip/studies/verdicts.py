@@ -24,7 +24,7 @@ OPEN, HOLDS, FAILS = range(len(OUTCOMES))
 VERDICTS = ("not_decided", "holds", "holds_in_part", "does_not_hold")
 NOT_DECIDED, WHOLLY, PARTLY, NOT = range(len(VERDICTS))
 WORDS = tuple(name.replace("_", " ") for name in VERDICTS)
-"""Names of the verdicts in words."""
+"""Names of the verdicts, with spaces in place of underscores."""
 
 
 def outcomes(margin: ArrayLike, error: ArrayLike) -> np.ndarray:
@@ -77,8 +77,8 @@ def shown_by(checks: pd.DataFrame) -> str:
     """Return the name of the run that best shows the verdict on a part, or "" if all checks are
     open.
 
-    It is the run of the check that fails most clearly or, if no check fails, of the check that
-    holds most narrowly.
+    If checks fail, this is the run of the check that fails most clearly.  Otherwise, it is the run
+    of the check that holds most narrowly.
 
     checks: table with the columns outcome, margin and run.
     """

@@ -9,9 +9,9 @@ bound on the dissipation.  With the force F (|F| <= 1) and d = 1 - mu, it follow
   inequalities of Schwarz and Jensen <F_lateral cos t>^2 <= (1 - mu^2) / 2 = d (1 - d/2). Hence
   d <= 1 / ((v/y)^2 + 1/2).
 - bore (forward v phi t, angle phi sin t): the work of the torque takes the place of the work of the
-  lateral force. To the mean power of the torque, forward tractions contribute at most phi d, and
-  lateral tractions at most phi sqrt(d/5), where 1/5 is the second moment of Hertz pressure about a
-  diameter. Hence d <= 1 / (5 (v - 1)^2) for v > 1.
+  lateral force. Forward tractions contribute at most phi d to the mean power of the torque, and
+  lateral tractions contribute at most phi sqrt(d/5), where 1/5 is the second moment of Hertz
+  pressure about a diameter. Hence d <= 1 / (5 (v - 1)^2) for v > 1.
 - longitudinal (forward v t + x sin t): the sphere never moves backward if v >= x, so d = 0.
 
 For the transverse motion, the dissipated energy per radian is the work v mu + y <F_lateral cos t>.
@@ -20,14 +20,14 @@ dissipated energy per radian, divided by phi, is between v and v + 1 / (20 (v - 
 upper bound on d, both energies are at most v (1 + b / (4 - 2 b)). The same bound applies to
 longitudinal motions with v >= x.
 
-The bounds apply to any nu and any stiffness. The arguments of the functions are the dimensionless
-groups of the paper.
+The bounds apply to any nu and any stiffness. The functions take the dimensionless groups of the
+paper as arguments.
 
 Friction never decreases as the forward velocity increases, because Coulomb's law at a given
 pressure is monotone, and the half-space is elastic. Therefore (mu1 - mu2)(v1 - v2) >= 0 for
 periodic states of the same oscillation at the velocities v1 and v2. If the forward oscillation is
-reversed half a period later, under the same load, friction is an odd function of the velocity, and
-thus never negative for v > 0. Other motions can propel the contact (Motion.propels).
+reversed after half a period and the load is the same, friction is an odd function of the velocity.
+Hence friction is never negative for v > 0. Other motions can propel the contact (Motion.propels).
 
 For some motions under Hertz pressure, closed forms replace simulations. Stored results depend on
 this file and on the functions that it uses, but not on datasets/catalogue.py, which contains the
@@ -35,8 +35,8 @@ names of these and other formulas.
 
 As a function of velocity and amplitude, friction can have kinks, where it is continuous but its
 slope or curvature is not. One kink is at the amplitude above which no point sticks during slow
-sliding. Another kink is at the velocity above which no point ever sticks. Interpolations need a
-border between cells at a kink. The border need not be exact, because the samples of friction
+sliding. Another kink is at the velocity above which no point ever sticks. An interpolation needs a
+border between two cells at each kink. The border need not be exact, because the samples of friction
 resolve the remaining part of the kink.
 """
 
@@ -147,9 +147,9 @@ UNDER_ANY = {
     # From the amplitude 1 on, the whole contact slides sideways. Above the kink velocity, a part of
     # the contact no longer sticks at the turning points. The curve is fitted to the velocities of
     # jumps in the second differences of friction under Hertz pressure: 0.030, 0.113, 0.30, 0.56 and
-    # 0.69 at the amplitudes 0.2, 0.5, 1, 2 and 3. The curve is slightly above these velocities,
-    # because this choice deforms the neighbouring cells less. Under other pressures, it saves a
-    # tenth to a quarter of the points.
+    # 0.69 at the amplitudes 0.2, 0.5, 1, 2 and 3. The curve is slightly above these velocities, so
+    # that the neighbouring cells are deformed less. Under other pressures, the curve saves a tenth
+    # to a quarter of the points.
     "transverse": Kinks((1.0,), (0.004, 0.12, 1.69, 0.975, 0.965)),
     # There is full friction at velocities above A, because the contact never moves backward. Above
     # the amplitude 1, there are times at which the whole contact slides backward.
@@ -158,7 +158,7 @@ UNDER_ANY = {
     # 1 on.
     "normal:indentation=1": Kinks((1.0,), (0.0, 1.0, 1.0, 1.0, 0.0)),
 }
-"""Kinks under any pressure, by name of the motion, in the units of the pressure."""
+"""Kinks under any pressure, in the units of the pressure. The keys are the names of the motions."""
 
 
 def kinks_of(motion: str, pressure: str = "hertz") -> Kinks:
@@ -173,9 +173,9 @@ def _of_family(motion: str) -> Kinks:
     components.
 
     The kink velocity of a loop is the largest velocity of the forward oscillation. At larger
-    velocities, the contact never moves backward. Friction has no kink there, but it changes on this
-    scale of velocities at all amplitudes. Under an oscillating load, the scale is the amplitude,
-    and contact is lost above a certain amplitude.
+    velocities, the contact never moves backward. Friction has no kink at this velocity, but it
+    changes over velocities of this size at all amplitudes. Under an oscillating load, the kink
+    velocity is the amplitude, and contact is lost above a certain amplitude.
     """
     name, _, rest = motion.partition(":")
     if name not in (LOOP, LOAD):

@@ -32,9 +32,9 @@ TORQUE_FULL_SLIP = 3 * np.pi / 16
 
 @cache
 def unit_rule(count: int) -> tuple[np.ndarray, np.ndarray]:
-    """Return Gauss-Legendre nodes and weights on 0..1.
+    """Return Gauss-Legendre nodes and weights on [0, 1].
 
-    They are computed at the first use, because the computation takes as long as the import of a
+    A rule is computed at its first use, because the computation takes as long as the import of a
     module.
     """
     nodes, weights = np.polynomial.legendre.leggauss(count)
@@ -48,7 +48,7 @@ def checked(
     high: float = np.inf,
     low_open: bool = False,
 ) -> np.ndarray:
-    """Return `values` as a float array, after a check of the range.
+    """Check the range of `values`, and return them as a float array.
 
     Raises ValueError unless all values are finite with low <= value <= high (low < value if
     `low_open`).
@@ -100,8 +100,8 @@ def ring_bounds(edges: np.ndarray) -> np.ndarray:
 
 
 def D(c: Numbers) -> Numbers:
-    """Return the difference of elliptic integrals K(k) - E(k) at the modulus k = sqrt(1 - c^2) (Eqs
-    25, 26).
+    """Return the difference K(k) - E(k) of the elliptic integrals at the modulus k = sqrt(1 - c^2)
+    (Eqs 25, 26).
 
     Raises ValueError unless 0 < c <= 1; the argument can have any shape. The result is
     dimensionless. For small c, D is about ln(4/c) - 1, and thus tends to infinity; it decreases to
@@ -174,8 +174,8 @@ def bore_amplitude(angle: Numbers, poisson: float = 0.0) -> Numbers:
 
 
 def _twist_unit(poisson: Numbers) -> np.ndarray:
-    """Return the ratio of the angle to D: torsion depends on G, but u_lim depends on G* =
-    4G/(2-nu)."""
+    """Return the ratio of the torsion angle to D. It depends on Poisson's ratio, because torsion
+    depends on G, but u_lim depends on G* = 4G/(2-nu)."""
     return 4 / (np.pi * (2 - checked("poisson", poisson, high=0.5)))
 
 
@@ -233,7 +233,7 @@ def lubkin_share(r: Numbers, stick_radius: Numbers) -> Numbers:
     cos2, delta2 = (1 - rho) * (1 + rho), (1 - c * rho) * (1 + c * rho)
     first = rho * scipy.special.elliprf(cos2, delta2, 1.0)
     rest = rho**3 / 3 * scipy.special.elliprd(cos2, delta2, 1.0) + rho * np.sqrt(cos2 / delta2)
-    # c^2 K(k) tends to 0 with c. It is set to 0 before c^2 underflows.
+    # c^2 K(k) tends to 0 as c tends to 0. It is set to 0 before c^2 underflows.
     k_term = np.where(c > 1e-150, c * c * scipy.special.ellipkm1(np.maximum(c * c, 1e-300)), 0.0)
     share = 2 / np.pi * (scipy.special.ellipe((1 - c) * (1 + c)) * first - k_term * rest)
     return np.where(sticks, np.clip(share, 0.0, 1.0), 1.0)[()]

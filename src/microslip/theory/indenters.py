@@ -99,7 +99,7 @@ def torsion_stick_radius(pressure: IndenterPressure, angle: float, poisson: floa
         Stick radius divided by the contact radius. Values below SMALLEST_STICK_RADIUS are replaced
         by 0.
     """
-    from scipy.optimize import brentq  # imported here, as this is slow
+    from scipy.optimize import brentq  # imported here, because the import is slow
 
     if angle <= 0.0:
         return 1.0

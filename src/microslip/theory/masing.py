@@ -3,9 +3,9 @@
 If the sphere moves along a line, the tangential force depends only on the history of its
 displacement. During the first loading, the force is F(d), with d in u_lim and F in mu F_z. For a
 sphere, it is 1 - (1 - d)^(3/2) (Cattaneo and Mindlin). After each turning point, the force follows
-the same curve at twice the scale until the previous turning point is reached. Then it continues on
-the older branch. These rules are exact for Poisson's ratio 0. Quantities are dimensionless as in
-`paper`.
+the same curve at twice the scale until the previous turning point is reached. From there on, the
+force follows the older branch. These rules are exact for Poisson's ratio 0. Quantities are
+dimensionless as in `paper`.
 
 An Iwan model consists of parallel Jenkins elements, each of which is a spring in series with a
 slider. Let F(u) be the force of the first loading along one line at nu = 0. It is 1 minus the load
@@ -139,7 +139,7 @@ def loop_energy(amplitude: Numbers, curve: Callable = mindlin_force) -> Numbers:
     def rise(u: np.ndarray) -> np.ndarray:  # avoids cancellation in 8 W - 4 A F
         return curve(u) - u / np.where(partial > 0.0, partial, 1.0) * force
 
-    # beyond full sliding, both strokes add the sliding distance
+    # above the amplitude of full sliding, both strokes also slide the remaining distance
     loop = 8.0 * _integral(rise, np.zeros_like(partial), partial)
     return (loop + 4.0 * force * (amplitude - partial))[()]
 
@@ -172,8 +172,8 @@ def _mean(v: np.ndarray, x: np.ndarray, curve: Function) -> np.ndarray:
 
 
 def _turned(curve: Function, travel: np.ndarray) -> np.ndarray:
-    """Return the change of force since a turning point: the first loading curve at twice the
-    scale."""
+    """Return the change of force since a turning point, which follows the first loading curve at
+    twice the scale."""
     return 2.0 * curve(np.maximum(0.5 * travel, 0.0))
 
 
@@ -222,8 +222,8 @@ class Iwan:
     def error(self) -> float:
         """Error of the force on an initial loading and on loops between any two displacements.
 
-        It is never above `error_on_any_path`, which is the smaller estimate if there is a single
-        element.
+        The result is at most `error_on_any_path`, which is the smaller of the two estimates if
+        there is a single element.
         """
         on_loops = LOOP_ERRORS * float(self.force_error.max()) + self.poisson_error
         return min(on_loops, self.error_on_any_path)
@@ -245,7 +245,7 @@ class Iwan:
         Parameters
         ----------
         displacement : array_like, shape (rows,)
-            Displacement at each row; between rows, it changes linearly.
+            Displacement at each row. Between two rows, the displacement changes linearly.
 
         Returns
         -------

@@ -13,7 +13,7 @@ phi(t) = d(t) - v t, the stretch at any x is smaller than this limit by phi(t) -
 over the springs is an integral over T. The result is exact for Poisson's ratio 0. Quantities are
 dimensionless, in the working units of an indenter's pressure.Pressure.
 
-A contact of constant stiffness under a sinusoidal indentation, for example a flat end, acts as a
+Under a sinusoidal indentation, a contact of constant stiffness, for example a flat end, acts as a
 single spring. M. Popov (Front. Mech. Eng. 6:69, 2020) gives two empirical formulas for its
 friction, Eqs 37 and 38. Both depend on the ratio of velocity to amplitude. If this ratio is above
 1, the contact slides all the time.
@@ -180,7 +180,7 @@ def sum_of_powers(amplitude: ArrayLike, velocity: ArrayLike) -> np.ndarray:
     Parameters
     ----------
     amplitude : array_like
-        Amplitude of the indentation divided by its mean, from 0 to 1.
+        Amplitude of the indentation divided by the mean indentation, from 0 to 1.
     velocity : array_like
         Velocity divided by omega u_lim, where omega is the angular frequency.
     """

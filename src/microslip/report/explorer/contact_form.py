@@ -116,7 +116,7 @@ def table(dataset: xr.Dataset) -> dict:
 
 
 def _with_midpoints(values: np.ndarray, axis: int) -> np.ndarray:
-    """Insert the mean of each two neighbours along an axis."""
+    """Insert the mean of any two neighbouring values between them, along an axis."""
     rows = np.moveaxis(values, axis, 0)
     result = np.repeat(rows, 2, axis=0)[:-1]
     result[1::2] = (rows[1:] + rows[:-1]) / 2.0

@@ -29,7 +29,7 @@ kB."""
 
 
 def maps_of(configuration: Configuration, figure: Figure) -> list[str]:
-    """Return the names of the sweeps of a page with stored periods."""
+    """Return the names of the sweeps on a page for which periods are stored."""
     return [
         name
         for name in figure.sweep

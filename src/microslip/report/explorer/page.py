@@ -45,7 +45,7 @@ DECIMALS = 5
 """Number of decimals of the forces, phases, radii and bounds of periods."""
 PERIOD = ["phase", "radius", "bound", "tractions", "slips", "densities", "angles", "turned"]
 PERIOD += ["mu_macro", "converged", "reason"]
-"""Entries of a stored period, besides the forces. If no period was found, only the last two
+"""Entries of a stored period, besides the forces. If no period was found, only the last two entries
 exist."""
 
 
@@ -154,7 +154,7 @@ def _lines(dataset: xr.Dataset) -> dict:
 
 
 def _limits(dataset: xr.Dataset, part: str = "", *arguments: str) -> list[dict]:
-    """Pack the closed forms with the values at every point and the curves on fine axes.
+    """Pack the closed forms: their values at every point, and their curves on fine axes.
 
     part: "torque", or "" for friction. arguments: if given, only forms with these arguments are
     packed.

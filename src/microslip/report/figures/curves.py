@@ -1,8 +1,8 @@
 """Draw friction along one axis of sweeps: computed points with error estimates, and closed forms.
 
-The figure has a panel for each abscissa, and a line for each value of the other axes of a sweep. In
-a sweep over forces, the abscissa is the mean velocity that each force causes. Figures of maps
-contain similar panels for the edges of a map.
+The figure has a panel for each abscissa, and a line for each combination of values along the other
+axes of a sweep. In a sweep over forces, the abscissa is the mean velocity that each force causes.
+Figures of maps contain similar panels for the edges of a map.
 """
 
 from __future__ import annotations
@@ -183,7 +183,8 @@ def _with_limit_of(line: Line, lines: Sequence[Line]) -> list[Line]:
 
 
 def _references(axes: Axes, points: xr.Dataset, shown: Sequence[xr.Dataset]) -> None:
-    """Draw the friction of a sweep without a drive as a reference, at the velocity of the drive."""
+    """Draw a reference line: the friction of a sweep without a drive, at the velocity of the
+    drive."""
     if "drive" not in points.attrs or points.get("velocity", points["poisson"]).ndim:
         return
     for one in shown:

@@ -85,11 +85,10 @@ def draw(kind: str, datasets: Mapping[str, xr.Dataset]) -> Figure:
 
 
 def import_matplotlib() -> None:
-    """Import matplotlib, whatever the value of MPLBACKEND in the environment is.
+    """Import matplotlib, even if the environment variable MPLBACKEND has an unknown value.
 
-    matplotlib cannot be imported if this variable has an unknown value. Figures of this package
-    need no backend. Other figures in the process use the backend of the variable if matplotlib
-    knows this backend.
+    With such a value, a plain import would fail. Figures of this package need no backend. Other
+    figures in the process use the backend of the variable if matplotlib knows this backend.
     """
     if "matplotlib" in sys.modules:
         return

@@ -1,10 +1,10 @@
 """Draw maps over two axes: friction, its change with Poisson's ratio, error estimates, drift
 velocity.
 
-Every panel is drawn by `fill`: bands, contours where they are certain, the computed points if there
-are few, and hatched cells where there is no result.  Every finite value of a dataset is visible as
-a colour or a marker.  Whatever is omitted from a panel is given outside the panels, in the legend
-or in a heading.
+`fill` draws each panel: bands, contours where they are certain, the computed points if there are
+few, and hatched cells where there is no result.  Every finite value of a dataset is visible as a
+colour or a marker.  Information that is omitted from a panel is given outside the panels, in the
+legend or in a heading.
 """
 
 from __future__ import annotations
@@ -57,7 +57,7 @@ FINE = 193
 
 
 class Panel(NamedTuple):
-    """One map: the dataset at one Poisson's ratio, the drawn variable, and the heading.
+    """A map, with its dataset at one Poisson's ratio, the drawn variable, and the heading.
 
     points: velocities and amplitudes of the computed points of a certified map, or None for other
     maps.
@@ -173,8 +173,8 @@ def _fill(page: Any, drawn: list[Panel], across: int) -> None:
 
 
 def _label(axes: list[Axes], drawn: list[Panel], across: int, room: float) -> None:
-    """Label the axes, once for each column and row if all panels have the same label, otherwise on
-    each panel."""
+    """Label the axes. If all panels have the same label, write it once for each column or row,
+    otherwise on each panel."""
     for name, dims in (("x", [p.across for p in drawn]), ("y", len(drawn) * ["amplitude"])):
         quantities = map(look.quantity, (panel.dataset for panel in drawn), dims)
         # On a small panel, a label with a symbol would be longer than the axis.
@@ -287,7 +287,8 @@ def _rest(axes: Axes, shown: xr.Dataset, scale: Scale) -> None:
 BELOW = "Reds_r"
 """Colour map for friction from 0 to -1. At 0, it is as dark as `style.COLOURMAP`."""
 DARK = 0.5
-"""Luminance of a band below which lines on it are white. On lighter bands, lines are black."""
+"""Lines are white on a band whose luminance is below this value. On lighter bands, lines are
+black."""
 BEYOND = 0.01
 """Largest distance of friction from the range 0 to 1 that is attributed to the errors of the
 points."""

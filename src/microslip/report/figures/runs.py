@@ -15,7 +15,7 @@ from microslip.report.figures.curves import FORCE_AND_TORQUE
 from microslip.report.selection import columns
 
 MARGIN = 0.12
-"""Space above and below a force, divided by its range."""
+"""Space above and below the curve of a force, divided by the range of the force."""
 STARTS = {
     "stress-free": "full stick, no stress",
     "full-rotation": "full rotational slip",

@@ -34,7 +34,7 @@ from microslip.studies.static_limits import FORMULAS
 NAMES = {"auto": "chosen by tolerance", "paper": "paper's run"}
 """Labels of competitors whose names need an explanation."""
 LEAST_RANGE = 10.0
-"""Ratio to which the axis of a profile extends at least."""
+"""The axis of a profile extends at least to this cost ratio."""
 COSTS = {
     "seconds": "CPU time of a run  $t$ (s)",
     "effort": "effort: iterations $\\times$ unknowns\n(dimensionless)",
@@ -46,7 +46,7 @@ of a legend line, all in inches."""
 MOST = 1e6
 """Largest ratio of the upper to the lower end of the axis of errors."""
 EDGE = 0.06
-"""Distance at which a value outside the range is drawn from the range, divided by the range."""
+"""A value outside the range is drawn at this distance from the range, divided by the range."""
 FRONT: look.Ink = {"color": "#EBD9A0", "lw": 5.0, "solid_capstyle": "round", "zorder": 1}
 AUTO: look.Ink = {"color": look.BLACK, "marker": "D", "lw": 0.8, "ms": 4.2, "zorder": 7}
 PAPER: look.Ink = {"color": look.BLACK, "marker": "*", "ls": "none", "ms": 9.0, "zorder": 8}
@@ -107,8 +107,7 @@ def _versus(dataset: xr.Dataset, cost: str) -> Figure:
 
     Each model with the default method has its own colour and marker; runs of other methods are
     grey. Trials outside the axes are drawn at the edge, each with a circle around its marker.
-    These are errors far below the error of the reference, and trials without a result or without a
-    cost.
+    Such a trial has an error far below the error of the reference, or lacks a result or a cost.
     """
     names = {f"trial_{name}": name for name in ("point", "model", "method", "level")}
     names |= {cost: "cost", f"front_{cost}": "front"}
@@ -155,8 +154,8 @@ versus_work = partial(_versus, cost="effort")
 
 
 def _beyond(low: float, high: float, share: float) -> tuple[float, float]:
-    """Return two values below and above a logarithmic range, at a distance from the ends of `share`
-    times the range."""
+    """Return a value below and a value above a logarithmic range. Their distance from the range is
+    `share` times the range."""
     factor = (high / low) ** share
     return low / factor, high * factor
 

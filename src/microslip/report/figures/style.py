@@ -120,12 +120,13 @@ def style() -> AbstractContextManager[None]:
 
 
 def new_figure(width: float, height: float) -> Figure:
-    """Return an empty figure of a size in inches, with a layout in which panels do not overlap."""
+    """Return an empty figure, with a layout in which panels do not overlap. The size is in
+    inches."""
     return Figure(figsize=(width, height), layout="constrained")
 
 
 def quantity(dataset: xr.Dataset, dim: str) -> Quantity:
-    """Return the description of an axis of a dataset. Only the axes of the paper and drives have a
+    """Return the description of an axis of a dataset. Only drives and the axes of the paper have a
     symbol."""
     known = TABLE.get(dim, {}).get(dataset.attrs.get("motion", "")) or DRIVES.get(dim)
     name = "forward velocity" if dim == "velocity" else dim
