@@ -9,9 +9,10 @@
     print(prediction.mu_apparent, prediction.force_reduction, prediction.warnings)
 
 `inputs` contains the table of the inputs and their checks.  `output` contains the table of the
-outputs, and Prediction with its output formats.  `contact` computes the dimensionless groups.
-`solve` computes the dimensionless result, and searches for an amplitude, speed or load that is not
-given.  `predict` converts the result to SI units, `uncertain` propagates the uncertainty of the
-inputs, and `warnings` contains the limits of the theory.  `table` predicts many contacts.
-`response` and `strokes` read measured paths and motions.  `fit` and `fold` evaluate measurements.
+outputs, and the class `Prediction`, which writes them in several formats.  `contact` computes the
+dimensionless groups.  `solve` computes the dimensionless result, and finds the amplitude, speed or
+load for a requested reduction of friction.  `predict` converts the result to SI units.  `uncertain`
+propagates the uncertainty of the inputs.  `warnings` checks whether the theory applies.  `table`
+predicts many contacts.  `response` and `strokes` read measured paths and motions.  `fit` and `fold`
+evaluate measurements.
 """

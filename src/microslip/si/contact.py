@@ -22,8 +22,9 @@ from microslip.si.inputs import AT_REST, OSCILLATIONS, Inputs
 from microslip.theory import hertz
 
 LARGEST_RATIO = 0.5
-"""Largest accepted contact radius, divided by the bodies' smaller radius.  At this ratio, the
-surface is tilted by 30 degrees at the edge, and a sphere is 7 % deeper than Hertz's parabola."""
+"""Largest accepted ratio of the contact radius to the smaller radius of the two bodies.  At this
+ratio, the surface of a sphere is tilted by 30 degrees at the edge of the contact, and is 7 % deeper
+there than the parabola of Hertz's theory."""
 ROUND = 1e-6
 """Largest relative difference between two radii that count as equal."""
 OUT_OF_RANGE = "outside the range of floating-point numbers; allowed are sizes of real bodies"
@@ -41,32 +42,33 @@ class Contact:
     inputs : Inputs
         The inputs.
     mu, load : float or array
-        Coefficient of friction, and normal load without oscillation, N.
+        Coefficient of friction; normal load without oscillation, in N.
     E_star, G, G_star : float or array
-        Contact modulus E*, shear modulus G for torsion, and tangential contact modulus G*, Pa.
+        Contact modulus E*, shear modulus G for torsion, and tangential contact modulus G*, in Pa.
         With sums over both bodies, 1/E* = sum (1 - nu^2)/E, 1/G = sum 1/G_i, and
         1/G* = sum (2 - nu)/(4 G).
     poisson : float or array
         Poisson's ratio of the equivalent half-space, sum(nu/G) / sum(1/G).
     radii : tuple
-        Radii of the bodies, m; empty if the contact radius is an input.
+        Radii of the bodies, in m; empty if the contact radius is an input.
     radius : float or array
-        Radius of relative curvature, 1/R = 1/R1 + 1/R2, m.
+        Radius R of relative curvature, 1/R = 1/R1 + 1/R2, in m.
     mean_radius : float or array
-        Geometric mean of the two radii of relative curvature of a Hertz contact, m.
+        Geometric mean of the two radii of relative curvature of a Hertz contact, in m.
     ratio : float or array
         Ratio of the shorter axis to the longer axis of a Hertz contact; 1 for other contacts.
     contact_radius : float or array
-        Contact radius, or half the longer side of the contact, m.
+        Contact radius, or half the longer side of the contact, in m.
     u_lim : float or array
-        Displacement at which the whole contact slides, mu F_z G_s/(G* a) with G_s = 3/4 for a
-        sphere, m (see below Eq 2).
+        Displacement at which the whole contact slides, in m.  It is mu F_z G_s/(G* a), with
+        G_s = 3/4 for a sphere (see the text below Eq 2).
     indentation : float or array
-        Indentation u_lim G*/(mu E*) of an indenter, m; NaN for another pressure.
+        Indentation of an indenter, u_lim G*/(mu E*), in m; NaN for a pressure that is not that of
+        an indenter.
     largest_pressure : float or array
-        Largest pressure, Pa; infinite at the tip of a cone.
+        Largest pressure, in Pa; infinite for a cone.
     area : float or array
-        Area of the contact, m^2.
+        Area of the contact, in m^2.
     """
 
     def __init__(self, inputs: Inputs):
@@ -98,7 +100,7 @@ class Contact:
                 longer = np.maximum(self.radius, inputs.radius_across)
                 self.ratio = ratio_of_axes(np.minimum(self.radius, inputs.radius_across) / longer)
                 over, cube, stiffness = hertz_ellipse(self.ratio)
-            with np.errstate(invalid="ignore"):  # NaN for a hollow smaller than the sphere
+            with np.errstate(invalid="ignore"):  # NaN if the hollow is smaller than the sphere
                 a = np.power(sphere * longer * cube, 1.0 / 3.0)
             a = a if np.ndim(a) else float(a)
             largest, area = 1.5 / (math.pi * self.ratio), math.pi * self.ratio
@@ -111,7 +113,7 @@ class Contact:
 
     @property
     def pressure(self) -> str:
-        """Name of the pressure for microslip.solve."""
+        """Name of the pressure distribution, as an argument of microslip.solve."""
         if not self.radii:
             return pressure_named(self.inputs.pressure or "hertz").name
         if np.all(self.ratio == 1.0):
@@ -121,12 +123,12 @@ class Contact:
 
     @cached_property
     def shape(self) -> Pressure:
-        """The distribution of the pressure."""
+        """The pressure distribution."""
         return pressure_named(self.pressure)
 
     @property
     def smallest_radius(self) -> Any:
-        """The smaller radius of the two bodies by absolute value, m."""
+        """Smallest absolute value of the radii of the bodies, in m."""
         return min(map(abs, self.radii), default=self.radius)
 
     @property
@@ -144,14 +146,13 @@ class Contact:
 
     @property
     def omega(self) -> Any:
-        """Angular frequency of the oscillation, or angular speed of a steady spin, rad/s."""
+        """Angular frequency of the oscillation, or angular speed of a steady spin, in rad/s."""
         inputs = self.inputs
         return inputs.rotation if self.steady else 2.0 * math.pi * inputs.frequency
 
     @cached_property
     def amplitudes(self) -> dict[str, Any]:
-        """Dimensionless amplitudes, keyed by direction, in the units of microslip.solve (Eqs 2, 4,
-        27)."""
+        """Dimensionless amplitudes for microslip.solve, keyed by direction (Eqs 2, 4, 27)."""
         inputs = self.inputs
         if self.kind.stroke is not None:
             columns = self.kind.stroke.deviations(self)
@@ -165,14 +166,15 @@ class Contact:
 
     @cached_property
     def amplitude(self) -> Any:
-        """Amplitude for microslip.solve, the largest of `amplitudes`; None for a steady motion."""
+        """Amplitude for microslip.solve: the largest of `amplitudes`, or None for a steady
+        motion."""
         sizes = self.amplitudes.values()
         return reduce(np.maximum, sizes) if sizes else None
 
     @cached_property
     def motion(self) -> str | Motion:
-        """The motion for microslip.solve.  If it has several amplitudes, they are divided by the
-        largest one."""
+        """The motion for microslip.solve.  If the motion has several amplitudes, all of them are
+        divided by the largest one."""
         if not self.kind.several:
             return self.kind.name
         largest = float(self.amplitude)
@@ -193,7 +195,7 @@ class Contact:
 
     @property
     def velocity(self) -> float:
-        """Velocity for microslip.solve (Eqs 2, 4, 13, 28)."""
+        """Dimensionless velocity for microslip.solve (Eqs 2, 4, 13, 28)."""
         speed, unit = self.inputs.speed, self.speed_unit
         if speed == 0.0 or self.kind.unit == "rad" and unit == 0.0:
             return 0.0
@@ -205,15 +207,15 @@ class Contact:
 
     @cached_property
     def mean_load(self) -> float:
-        """Mean normal load divided by the load without oscillation.  It is above 1 if the bodies
-        separate in each period."""
+        """Mean normal load divided by the load without oscillation.  This ratio is above 1 if the
+        bodies separate in each period."""
         if self.kind.stroke is None and self.amplitudes.get("load", 0.0) <= 1.0:
             return 1.0
         return float(self._record.mean_load(float(self.amplitude), self.shape))
 
     @property
     def separated(self) -> float:
-        """Fraction of a period without contact, 0 to 1."""
+        """Fraction of a period during which the bodies are separated, between 0 and 1."""
         if self.kind.stroke is not None:
             return self._record.share_without_load(float(self.amplitude))  # type: ignore[attr-defined]
         swing = float(self.amplitudes.get("load", 0.0))
@@ -235,7 +237,7 @@ class Contact:
     @property
     def coordinates(self) -> dict[str, Any]:
         """Dimensionless groups on which the result of the solver depends, keyed by name.  The
-        static limit depends only on the groups before the velocity."""
+        static limit depends only on the groups that precede the velocity in this dictionary."""
         inputs, stroke = self.inputs, self.kind.stroke
         groups = {"poisson": self.poisson, "ratio": self.ratio, "phase": inputs.phase}
         if stroke is None:

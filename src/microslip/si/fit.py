@@ -1,21 +1,24 @@
-"""Fit mu, and u_lim or the shear modulus, to friction measured under vibration.
+"""Fit mu, and either u_lim or the shear modulus, to friction measured under vibration.
 
 The model is: measured value = mu * weight * mu_macro + error.  The weight is the load if friction
-forces were measured, and 1 if coefficients of friction were measured.  In each row, the ratio of
-velocity to amplitude does not depend on u_lim, so that mu_macro depends on ln u_lim only.  Since
-the model is linear in mu, the best mu for a given u_lim follows by linear least squares.
+forces were measured, and 1 if coefficients of friction were measured.  In each row of the table,
+the ratio of velocity to amplitude does not depend on u_lim.  The only unknown on which mu_macro
+depends is therefore ln u_lim.  Since the model is linear in mu, the best mu for a given u_lim
+follows by linear least squares.
 
 The confidence region contains the pairs (u_lim, mu) whose sum of squares is at most a threshold.
 The threshold is the smallest sum of squares plus a margin.  If the rows have standard errors, the
 margin is a quantile of the chi-square distribution.  Otherwise, it is a quantile of the F
 distribution times the mean square residual.  For each u_lim, the region is an interval of mu,
-because the sum is quadratic in mu.  The interval of a parameter is its range in the region, as in a
-profile likelihood.  It does not depend on the parametrisation, and may be infinite on one side.
+because the sum is quadratic in mu.  The interval of a parameter is the range of its values in the
+region, as in a profile likelihood.  This interval does not depend on the parametrisation, and may
+be infinite on one side.
 
-Without a map, the solver computes a coarse map first, which is used only for the change of friction
-between two guesses of u_lim.  Then, the solver computes the rows at the best guess, and the coarse
-map is corrected by the difference.  The last two steps are repeated.  At the end, the remaining
-error due to the coarse map is of second order.
+If no map is given, the solver first computes a coarse map.  The coarse map is used only to compute
+how friction changes between two guesses of u_lim.  Then the solver computes the friction of every
+row at the best guess of u_lim, and the coarse map is corrected to agree with these values.  Guess
+and correction are repeated.  At the end, the remaining error due to the coarse map is of second
+order.
 """
 
 from __future__ import annotations
@@ -107,11 +110,12 @@ ROW_UNITS = {"_Pa": "Pa", "_m_s": "m s-1", "_Hz": "Hz", "_N": "N", "_m": "m", "_
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Fit:
-    """Result of `fit`: the coefficient of friction and u_lim of a contact, from measured friction.
+    """Result of `fit`: the coefficient of friction and u_lim that were fitted to measured friction.
 
-    Each interval covers the scatter of the rows at the confidence level, and is widened by the
-    model's error estimate, which is not random.  Bounds that the rows do not determine are None.
-    The page docs/reference/fields.md explains all fields, and the names in `rows`.
+    Each interval covers the scatter of the rows at the confidence level.  The interval is then
+    widened by the error estimate of the model, because this error is not random.  Bounds that the
+    rows do not determine are None.  The page docs/reference/fields.md explains all fields, and the
+    names in `rows`.
 
     Attributes
     ----------
@@ -182,15 +186,16 @@ class Fit:
         return "\n".join(lines + [f"warning: {text}" for text in self.warnings])
 
     def to_dict(self) -> dict:
-        """Return the fields and the rows of the fit as a dict.  Arrays and tuples become lists."""
+        """Return the fields and the rows of the fit as a dict.  Arrays and tuples are converted to
+        lists."""
         values = {n: x for n, x in vars(self).items() if n not in ("rows", "curve")}
         values |= {"warnings": list(self.warnings), "left_out": list(self.left_out)}
         return values | {name: array.tolist() for name, array in self.rows.items()}
 
     def to_xarray(self) -> xr.Dataset:
-        """Return the fit as a dataset.  Data of the rows have the dimension `row`, data of the
-        curves the dimension `curve_point`, and single numbers no dimension.  Strings are
-        attributes."""
+        """Return the fit as a dataset.  Variables of the rows have the dimension `row`, variables
+        of the curves have the dimension `curve_point`, and single numbers have no dimension.
+        Strings are attributes."""
         import xarray as xr
 
         values = vars(self) | {"understood": (f"{n}: {x}" for n, x in self.understood.items())}
@@ -241,9 +246,9 @@ def fit(
 ) -> Fit:
     """Fit mu, and either u_lim or the shear modulus, to measured friction.
 
-    Without a radius, the unknowns are mu and u_lim, and Poisson's ratio is the only property of the
-    bodies.  With a radius, the unknowns are mu and the shear modulus.  In both cases, Hertz's
-    theory gives the dependence on the load.
+    If no radius is given, the unknowns are mu and u_lim, and the only property of the bodies that
+    is needed is Poisson's ratio.  If a radius is given, the unknowns are mu and the shear modulus.
+    In both cases, Hertz's theory gives the dependence on the load.
 
     Parameters
     ----------
@@ -264,7 +269,7 @@ def fit(
         Poisson's ratio of the equivalent half-space.  The default is the map's Poisson's ratio, or
         0 without a map.  With a radius, `nu` is Poisson's ratio of the bodies and is required.
     radius : quantity, optional
-        Radius of relative curvature, m.  For a sphere on a flat, this is the sphere's radius.
+        Radius of relative curvature.  For a sphere on a flat, this is the sphere's radius.
     counterbody : str, optional
         Only with a radius.  The counterbody is "rigid" (default), or "same" for the material of
         the first body.
@@ -313,8 +318,8 @@ def fit(
 
 
 def _read_rows(source: Any, shared: dict[str, Any], **form: str) -> dict[str, Any]:
-    """Read the rows of a file or of a mapping of columns.  Returns a dict with the rows and with
-    the fields quantity, labels, left_out and understood of the fit.  Raises InputError."""
+    """Read the rows of a file or of a mapping of columns.  Returns a dict with the rows, and with
+    the fields `quantity`, `labels`, `left_out` and `understood` of a `Fit`.  Raises InputError."""
     table = table_of("measured", source, UNITS, need_units=True, **form)
     columns, errors = table.columns, dict(table.errors)
     good: dict[int, list[float]] = {}
@@ -392,8 +397,8 @@ def _read_bodies(nu: Any, radius: Any, counterbody: Any) -> tuple[dict[str, Any]
 def _contact(
     bodies: dict[str, Any], mu: float, modulus: float, motion: str | None = None, **moving: float
 ) -> Contact:
-    """Return the contact of bodies with a given shear modulus, Pa.  If `motion` is None, the
-    contact is at rest."""
+    """Return the contact of two bodies with a given shear modulus (in Pa).  If `motion` is None,
+    the contact is at rest."""
     young = 2.0 * modulus * (1.0 + bodies["nu"])
     other = (young, bodies["nu"]) if bodies["counterbody"] == "same" else None
     own = bodies | {"young": young, "counterbody": other}
@@ -432,8 +437,9 @@ def _of_map(dataset: Any, motion: str, poisson: float | None) -> Friction:
 
 
 def _of_solver(rows: Rows, motion: str, poisson: float, tolerance: float) -> Friction:
-    """Return a function that computes friction with the solver.  For rough values, it interpolates
-    in a coarse map over ln amplitude and ln ratio."""
+    """Return a function that computes friction with the solver.  For rough values, the function
+    interpolates in a coarse map.  The axes of this map are the logarithms of the amplitude and of
+    the ratio of velocity to amplitude."""
     if len(rows["measured"]) > MOST_SOLVED:
         allowed = f"rows; allowed are at most {MOST_SOLVED}, or any number with a map"
         raise InputError("measured", len(rows["measured"]), allowed)
@@ -469,16 +475,16 @@ def _of_solver(rows: Rows, motion: str, poisson: float, tolerance: float) -> Fri
 
 
 def _lengths(rows: Rows, load: float | None = None) -> np.ndarray:
-    """Return the dimensionless velocity and amplitude of the rows, multiplied by u_lim at the mean
-    load, as an array of shape (2, n) in m."""
+    """Return the dimensionless velocities and amplitudes of the rows, multiplied by u_lim at the
+    mean load.  The result is an array of shape (2, n), in m."""
     speed, amplitude, loads, frequency = (rows[key] for key in KEYS)
     share = (loads / (load or loads.mean())) ** (2.0 / 3.0)
     return np.stack([speed / (2.0 * math.pi * frequency), amplitude]) / share
 
 
 def _curves(friction: Friction, lengths: np.ndarray, x: Any) -> np.ndarray:
-    """Return rough values of mu_macro of the rows at values x of ln u_lim.  The array x has the
-    shape (..., 1)."""
+    """Return rough values of mu_macro in all rows for several values x of ln u_lim.  The array x
+    has the shape (..., 1)."""
     still = lengths[1] == 0.0
     velocity, amplitude = np.where(still, 1.0, lengths)
     rough = friction(velocity / np.exp(x), amplitude / np.exp(x), rough=True)[0]
@@ -541,7 +547,8 @@ class Profile:
 
     def ends(self, allowed: float) -> tuple[float, float]:
         """Return the bounds of the interval around the best x in which the sum of squares is at
-        most `allowed`.  A bound is infinite if the interval extends to the edge of the table."""
+        most `allowed`.  A bound is infinite if the interval extends to the end of the tabulated
+        range of x."""
         near = self.best + (self.x[-1] - self.x[0]) * np.linspace(-1.0, 1.0, NODES) ** 7
         grid = np.unique(np.clip([self.x, near], self.x[0], self.x[-1]))
         curve = scipy.interpolate.CubicSpline(grid, self.squares(grid) - allowed)
@@ -550,8 +557,8 @@ class Profile:
         return max(low, default=-math.inf), min(high, default=math.inf)
 
     def second(self, allowed: float) -> float | None:
-        """Return x at a second minimum with a sum of squares of at most `allowed`, or None.  Its
-        u_lim differs from the best one by more than a factor of 2."""
+        """Return the value of x at a second minimum whose sum of squares is at most `allowed`, or
+        None.  At this minimum, u_lim differs from its best value by more than a factor of 2."""
         sums = np.pad(self.squares(self.x), 1, constant_values=np.inf)
         lowest = np.flatnonzero(sums[1:-1] <= np.minimum(np.minimum(sums[:-2], sums[2:]), allowed))
         far = [k for k in lowest if abs(self.x[k] - self.best) > math.log(2.0)]
@@ -647,11 +654,11 @@ def _warnings(motion: str, rows: Rows, bodies: dict[str, Any], mu: float, size: 
 
 
 def _curve(rows: Rows, profile: Profile, friction: Friction, mu: float) -> Rows:
-    """Compute the model's friction between rows that differ in one condition only.  Returns the
-    curves one after another.
+    """Compute the model's friction between rows that differ in one condition only.  The returned
+    arrays contain these curves one after another.
 
-    This condition is the one with the most distinct values.  The correction to the coarse map is
-    known at the rows, and interpolated between them.
+    The condition that differs is the one with the most distinct values.  The correction of the
+    coarse map is known in the rows, and is interpolated between them.
     """
     along = max(KEYS, key=lambda key: len(np.unique(rows[key])))
     which = np.unique([rows[k] for k in KEYS if k != along], axis=1, return_inverse=True)[1].ravel()

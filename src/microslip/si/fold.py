@@ -1,14 +1,15 @@
-"""Averaging of a long record of a motion, such as that of a laser vibrometer, to one period.
+"""Average a long record of a motion, such as one measured by a laser vibrometer, to one period.
 
 A record contains many periods, noise, and a slow drift.  The drift is the moving mean over one
-period.  For a periodic motion it is constant.  The difference from the drift is averaged over all
-whole periods.  The scatter between the periods gives the standard error of the average.
+period, which is constant for a periodic motion.  The difference between the record and the drift is
+averaged over all whole periods.  The scatter between the periods gives the standard error of the
+average.
 
 If the frequency drifts, the periods are averaged out of phase, and the average is too small.  The
-covariance of the phases of neighbouring periods is the variance of this slow phase drift, because
-the noise of neighbouring periods is uncorrelated.  The drift reduces the average of harmonic m by
-the factor exp(-x), where x is half of the variance of m times the phase.  This loss is included in
-the error.
+variance of this slow phase drift equals the covariance of the phases of neighbouring periods,
+because the noise of neighbouring periods is uncorrelated.  The phase drift multiplies the average
+of harmonic m by exp(-x), where x is half the variance of m times the phase.  The error includes
+this loss of amplitude.
 """
 
 from __future__ import annotations
@@ -38,18 +39,18 @@ PARTS, STEADY = FEWEST_PERIODS, 0.5
 """Number of parts into which a record is divided, and smallest amplitude of a part divided by the
 mean amplitude.  A part has about one period or more.  If its amplitude is below one half of the
 mean, it is nearer to 0 than to the mean, so that a state of rest describes the part better than the
-mean period."""
+mean period does."""
 FEWEST_LEVELS = 4
 """Smallest number of different values in a record with a value that marks missing samples.  Of n
 equally spaced values, the first is one step away from the second, and the values between both ends
-extend over n - 3 steps.  So with fewer than 4 equally spaced values, the ends would count as
-marks."""
+extend over n - 3 steps.  So with fewer than 4 equally spaced values, both ends would count as marks
+of missing samples."""
 MOST_DECIMALS = 12
 """Largest number of decimals of times that count as rounded.  Times with more decimals need no
 allowance for rounding."""
 LARGEST_LOSS = 0.01
-"""Largest relative loss of the strongest harmonic by a drift of the frequency.  The estimate of the
-loss is of first order, so it is correct for small losses only."""
+"""Largest accepted relative loss of the strongest harmonic due to a drift of the frequency.  The
+estimate of the loss is of first order, so it is correct for small losses only."""
 SIGNIFICANT = 5.0
 """Smallest ratio of the peak-to-peak value to its standard error.  White noise has a ratio of about
 3 at the frequency of its strongest component."""
@@ -76,7 +77,7 @@ class Fold:
     Attributes
     ----------
     frequency, frequency_error : float
-        Frequency and its standard error, Hz.
+        Frequency and its standard error, in Hz.
     periods : int
         Number of averaged periods.
     columns : dict of str to np.ndarray, shape (rows,)
@@ -97,15 +98,15 @@ class Fold:
 
     @property
     def time(self) -> np.ndarray:
-        """Times of the samples, s, as an array of shape (rows,)."""
+        """Times of the samples in s, as an array of shape (rows,)."""
         rows = len(next(iter(self.columns.values())))
         return np.arange(rows) / (rows * self.frequency)
 
     def peak_to_peak(self, name: str) -> tuple[float, float]:
-        """Return the peak-to-peak value of a column, interpolated between its samples, and its
-        standard error.
+        """Return the peak-to-peak value of a column and the standard error of this value.
 
-        The standard error is twice the largest standard error of a sample, which is an upper bound.
+        The column is interpolated between its samples.  The standard error is an upper bound: twice
+        the largest standard error of a sample.
         """
         return _peak_to_peak(self.columns[name]), 2.0 * float(np.max(self.errors[name]))
 
@@ -122,11 +123,11 @@ def fold(
     Parameters
     ----------
     time : array_like, shape (samples,)
-        Equally spaced times, s.  Each time may be rounded to its last digit.
+        Equally spaced times, in s.  Each time may be rounded to its last digit.
     columns : mapping of array_like, shape (samples,)
         Columns forward, lateral, angle, and load or indentation, in any units.
     frequency : float or None
-        Approximate frequency, Hz, which is then refined.  Its error must correspond to less than
+        Approximate frequency, in Hz, which is then refined.  Its error must correspond to less than
         half a period over the whole record.  The default is the frequency of the strongest
         component.
     rows : int
@@ -212,8 +213,8 @@ def fold(
 
 
 def _refuse(wrong: object, argument: str, value: Any, allowed: str, digits: int = 6) -> None:
-    """Raise InputError if `wrong` is true.  digits: number of significant digits to which a float
-    `value` is rounded."""
+    """Raise InputError if `wrong` is true.  A float `value` is rounded to `digits` significant
+    digits."""
     if wrong:
         value = float(f"{value:.{digits}g}") if isinstance(value, float) else value
         raise InputError(argument, value, allowed)
@@ -232,7 +233,8 @@ def _check_periods(frequency: float, longest: float, step: float, typed: bool) -
 
 
 def _check_repeats(frequency: float, parts: np.ndarray, order: int, column: int) -> None:
-    """Raise InputError if the frequency is a multiple or a fraction of that of the motion."""
+    """Raise InputError if the frequency is a multiple or a fraction of the frequency of the
+    motion."""
     beats = np.abs(np.fft.fft(parts[:, order, column]))
     problem = "the periods differ from each other more than they agree; allowed is the frequency "
     _refuse(beats[1:].max() > beats[0], "frequency", frequency, f"{problem}of the motion")
@@ -245,9 +247,9 @@ def _check_repeats(frequency: float, parts: np.ndarray, order: int, column: int)
 
 
 def _phases(parts: np.ndarray) -> tuple[float, float, float, int, int]:
-    """Return the relative correction of the frequency, its standard error, the variance of the slow
-    phase drift in periods squared, and the order and the column of the strongest harmonic.  The
-    first three follow from the phases of this harmonic."""
+    """Return the relative correction of the frequency, the standard error of this correction, the
+    variance of the slow phase drift (in periods squared), and the order and the column of the
+    strongest harmonic.  The first three values are computed from the phases of this harmonic."""
     power = np.mean(np.abs(parts) ** 2, axis=0)
     share = power / np.maximum(power.sum(axis=0), 1e-300)
     column = int(np.argmax(share[1:].max(axis=0)))
@@ -262,8 +264,8 @@ def _phases(parts: np.ndarray) -> tuple[float, float, float, int, int]:
 
 
 def _checked(time: Any, columns: Mapping[str, Any]) -> tuple[float, float, list[str], np.ndarray]:
-    """Return the time step, the rounding of the times, the names of the columns, and their values,
-    an array of shape (samples, columns)."""
+    """Check the arguments of `fold`.  Returns the time step, the standard error of the record's
+    length, the names of the columns, and an array of shape (samples, columns) with the values."""
     known, fewest = ", ".join(COLUMNS), FEWEST_PER_PERIOD * FEWEST_PERIODS
     _refuse(not hasattr(columns, "keys"), "columns", columns, f"allowed is a mapping with {known}")
     unknown = next((name for name in columns if name not in COLUMNS), None)
@@ -293,8 +295,8 @@ def _checked(time: Any, columns: Mapping[str, Any]) -> tuple[float, float, list[
 
 
 def _check_marks(name: str, values: np.ndarray) -> None:
-    """Raise InputError for an extreme value that is repeated exactly, and whose distance from all
-    other values exceeds the range of the latter."""
+    """Raise InputError for an extreme value that is repeated exactly, if the distance to the next
+    value exceeds the range of the values between both extremes."""
     levels, counts = np.unique(values, return_counts=True)
     for end, other in ((0, 1), (-1, -2)) if len(levels) >= FEWEST_LEVELS else ():
         far = abs(levels[end] - levels[other]) > levels[-2] - levels[1]
@@ -304,10 +306,11 @@ def _check_marks(name: str, values: np.ndarray) -> None:
 
 
 def _step(time: np.ndarray) -> tuple[float, float]:
-    """Return the time step, and the standard error of the record's length from the rounding of the
-    times.  The rounding errors of times that are rounded to the same number are not independent.
+    """Return the time step, and the standard error of the record's length that is due to the
+    rounding of the times.  The rounding errors of times that are rounded to the same number are not
+    independent.
 
-    Raises InputError if the steps differ by more than rounding.
+    Raises InputError if the steps differ by more than rounding can explain.
     """
     problem = f"the last time, and the first is {time[0]:.9g} s; allowed are increasing times"
     _refuse(not time[-1] > time[0], "time", time[-1], problem, 17)
@@ -332,7 +335,7 @@ def _step(time: np.ndarray) -> tuple[float, float]:
 
 
 def _strongest(values: np.ndarray) -> float:
-    """Return the number of periods of the strongest component in the record's spectrum."""
+    """Return how many periods of its strongest spectral component the record contains."""
     x = np.linspace(-1.0, 1.0, len(values))
     trend = np.polynomial.polynomial.polyvander(x, TREND)
     rest = values - trend @ np.linalg.lstsq(trend, values, rcond=None)[0]

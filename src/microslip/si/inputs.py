@@ -1,5 +1,6 @@
-"""The inputs of a prediction.  One table defines the Python arguments, the command-line options and
-the columns of CSV files, with their checks, help texts and reference page."""
+"""The inputs of a prediction.  One table defines every input as a Python argument, a command-line
+option and a column of CSV files, together with its checks, its help text and its line on the
+reference page."""
 
 from __future__ import annotations
 
@@ -155,7 +156,7 @@ class Kind:
 
     @property
     def defaults(self) -> dict[str, float]:
-        """Default inputs of a motion from a file: the frequency and the mean load of the file, and
+        """Default inputs of a motion from a file: the frequency and the mean load in the file, and
         a factor of 1 for the samples."""
         if self.stroke is None:
             return {}
@@ -163,16 +164,17 @@ class Kind:
         return {name: value for name, value in own.items() if value is not None}
 
     def input(self, name: str) -> Input:
-        """Return the entry of an input in INPUTS.  An amplitude gets the unit of this motion.  For
-        a contact at rest, all quantities are exact."""
+        """Return the entry of INPUTS for an input, adapted to this motion.  An amplitude has the
+        unit of the motion.  If the contact is at rest, all quantities must be exact."""
         one = INPUTS[name]
         unit = one.unit if name != "amplitude" or self.unit is None else self.unit
         return one._replace(unit=unit, exact=one.exact or self is AT_REST)
 
 
 def _kinds(text: str) -> dict[str, Kind]:
-    """Return the kinds, keyed by name.  text: lines with name, unit, required inputs, optional
-    inputs and description."""
+    """Parse a table of motions, and return a dictionary of `Kind` objects, keyed by name.  Each
+    line of `text` contains the name, the unit, the required inputs, the optional inputs and the
+    description of a motion."""
     rows = (map(str.strip, line.split("|")) for line in text.strip().splitlines())
     return {
         name: Kind(
@@ -201,9 +203,9 @@ AT_REST = Kind("", "rests", needed=())
 
 
 def kind_of(motion: Any) -> Kind:
-    """Return the Kind of a motion.  The motion is a name, a name with parameters, a user's motion,
-    or a file with one period in SI or other units.  Raises InputError if the unit of its amplitude
-    is not unique."""
+    """Return the `Kind` object that describes a motion.  The motion is a name, a name with
+    parameters, a user's motion, or a file with one period in SI or other units.  Raises InputError
+    if the unit of the amplitude is ambiguous."""
     if isinstance(motion, str) and motion in MOTIONS:
         return MOTIONS[motion]
     if isinstance(motion, str) and motion.startswith("file:"):
@@ -236,8 +238,8 @@ def kind_of(motion: Any) -> Kind:
 
 @dataclass(frozen=True, eq=False)
 class Inputs:
-    """Checked inputs.  Each input is also an attribute, which is None if the input is missing.  A
-    quantity is in its SI unit.
+    """Checked inputs.  Each input is also an attribute; if an input is missing, the attribute is
+    None.  Quantities are converted to SI units.
 
     Attributes
     ----------
@@ -275,7 +277,8 @@ class Inputs:
         return replace(self, quantities=quantities) if si else self
 
     def error(self, name: str, allowed: str) -> InputError:
-        """Return the InputError for an input, with its value as the user wrote it."""
+        """Create the InputError about an input, with the value of the input as the user wrote
+        it."""
         value = self.given.get(name)
         if value is None and name in self.quantities:
             value = f"{self.quantities[name].si:.6g} {self.unit(name)}"
@@ -296,8 +299,8 @@ class Inputs:
         return self._body(""), self._body("counter_")
 
     def _body(self, side: str) -> tuple[Material, str]:
-        """Return a body and its description.  side: "counter_" for the counterbody, otherwise
-        empty."""
+        """Return a body and its description.  `side` is "counter_" for the counterbody, and
+        otherwise empty."""
         name, known = "counterbody" if side else "material", self.quantities
         if side or name in self.given:
             body, text = read_body(name, self.given.get(name, "rigid"))
@@ -374,7 +377,7 @@ def is_range(name: str, value: object) -> bool:
 
 
 def read_input(name: str, value: Any) -> Quantity:
-    """Read one exact quantity of INPUTS and check its range.  Raises InputError."""
+    """Read the exact value of a quantity in INPUTS and check its range.  Raises InputError."""
     return read_quantity(name, value, AT_REST.input(name))
 
 
@@ -398,7 +401,7 @@ def read_quantity(name: str, value: Any, one: Input) -> Quantity:
 def _check(motion: Any, kind: Kind, given: Mapping[str, Any]) -> str | None:
     """Check that the inputs are complete and do not contradict each other.  Raises InputError.
 
-    Returns the name of the input that a reduction replaces, or None.
+    Returns the name of the input that a reduction replaces, or None if no reduction is requested.
     """
 
     def refuse(arguments: str, is_wrong: object, allowed: str) -> None:

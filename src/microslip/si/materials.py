@@ -18,9 +18,9 @@ ROCKWELL = {20: 238, 25: 266, 30: 302, 35: 345, 40: 392, 45: 446, 50: 513, 55: 5
 ROCKWELL |= {65: 832, 68: 940}
 """Vickers numbers of steels, keyed by Rockwell C numbers (ASTM E140, Table 1)."""
 VICKERS = 9.80665e6 / 0.9272
-"""Mean pressure for a Vickers number of 1, Pa.  The Vickers number is the force in kgf divided by
-the area of the indent's faces in mm^2.  The projected area of the indent is sin(68 degrees) times
-the area of the faces."""
+"""Mean pressure for a Vickers number of 1, in Pa.  The Vickers number is the force in kgf divided
+by the area of the indent's faces in mm^2.  The projected area of the indent is sin(68 degrees)
+times the area of the faces."""
 BRINELL = 0.95
 """Brinell number divided by Vickers number, for steels from 80 to 650 HV (ISO 18265, Table A.1)."""
 SCALES = re.compile(r"(.*?)\s*(HV|HRC|HBW?|HBS|HR[ABD-Z]|HK|HS|Shore.*|Mohs)", re.S)
@@ -38,11 +38,12 @@ class Material:
     Attributes
     ----------
     young : float
-        Young's modulus, Pa; infinite for a rigid body.
+        Young's modulus, in Pa; infinite for a rigid body.
     poisson : float
         Poisson's ratio, 0 to 0.5, dimensionless.
     density, hardness : float or None
-        Density, kg/m^3, and hardness as the mean pressure under the indenter, Pa; None if unknown.
+        Density, in kg/m^3, and hardness as the mean pressure under the indenter, in Pa; None if
+        unknown.
     source : str
         Source of the properties.
 
@@ -80,7 +81,7 @@ class Material:
 
     @property
     def shear_modulus(self) -> float:
-        """Shear modulus, Pa."""
+        """Shear modulus, in Pa."""
         return self.young / (2.0 * (1.0 + self.poisson))
 
     def __str__(self) -> str:
@@ -124,8 +125,8 @@ def read_body(argument: str, value: Any) -> tuple[Material, str]:
 
 
 def read_hardness(value: object) -> Quantity:
-    """Read a hardness as the mean pressure under the indenter, Pa.  The value is a pressure, or a
-    string such as "200 HV" or "60 HRC".  Raises ValueError."""
+    """Read a hardness, and return it as the mean pressure under the indenter, in Pa.  The value is
+    a pressure, or a string such as "200 HV" or "60 HRC".  Raises ValueError."""
     match = SCALES.fullmatch(value.strip()) if isinstance(value, str) else None
     if match is None:
         return read(value, "Pa")

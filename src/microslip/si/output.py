@@ -1,5 +1,5 @@
-"""The outputs of a prediction.  One table defines the printed text, JSON, CSV files, datasets and
-the reference page."""
+"""The outputs of a prediction.  One table defines how the outputs appear in the printed text, JSON,
+CSV files, datasets and the reference page."""
 
 from __future__ import annotations
 
@@ -147,7 +147,7 @@ class Value:
 
 @cache
 def column(name: str, unit: str, kind: str = "value") -> str:
-    """Return the name of a column in JSON, CSV files and datasets, such as
+    """Return the column name of an output in JSON, CSV files and datasets, such as
     friction_force_error_N."""
     words = re.findall(r"[a-zA-Z0-9]+", unit.replace("^", ""))
     return "_".join([name, *[kind] * (kind != "value"), *words])
@@ -160,7 +160,7 @@ def _attributes(name: str, unit: str, kind: str) -> dict[str, str]:
 
 
 def input_column(name: str, unit: str, kind: str = "value") -> str:
-    """Return the name of the column of an input, such as speed_m_s."""
+    """Return the column name of an input, such as speed_m_s."""
     factor = name == "amplitude" and not unit
     return column("amplitude_factor" if factor else name, unit, kind)
 
@@ -171,7 +171,7 @@ class Prediction:
 
     Every column of `to_dict` is also an attribute.  Each output has a value, such as `mu_macro` or
     `friction_force_N`, and an error estimate, such as `friction_force_error_N`.  If inputs are
-    uncertain, it also has a standard uncertainty (`..._spread...`) and a 95 % interval
+    uncertain, each output also has a standard uncertainty (`..._spread...`) and a 95 % interval
     (`..._low...`, `..._high...`).  A missing number is None.
 
     Attributes
@@ -225,8 +225,8 @@ class Prediction:
 
     def columns(self) -> tuple[dict[str, Any], dict[str, dict[str, str]]]:
         """Return all columns, keyed by name, and the attributes of the columns with numbers.  The
-        value and the error of every output are present; they are None for an output that does not
-        apply.  The columns spread, low and high are present if an input is uncertain."""
+        value and the error of every output are included, and are None if the output does not apply.
+        The columns spread, low and high are included only if an input is uncertain."""
         columns = {name: getattr(self, name) for name in (*TEXTS, *REASONS, "converged")}
         columns["inputs"], attributes = dict(self.inputs), {}
         columns |= {name: list(getattr(self, name)) for name in LISTS}
@@ -248,7 +248,7 @@ class Prediction:
         return self.columns()[0]
 
     def to_xarray(self) -> xr.Dataset:
-        """Return a dataset with the numbers as variables with units, and the strings as
+        """Return a dataset in which the numbers are variables with units, and the strings are
         attributes."""
         import xarray as xr
 
@@ -288,7 +288,7 @@ class Prediction:
 
     @property
     def problems(self) -> list[str]:
-        """Lines for quantities that did not converge, and for warnings."""
+        """Lines about quantities that did not converge, followed by the warnings."""
         lines = []
         if not self.converged and self.outcome != "runs away":
             name = "speed" if "force" in self.input_values else "mu_macro"
@@ -316,7 +316,7 @@ def line(title: str, text: str) -> str:
 
 
 def _scaled(size: float, unit: str) -> tuple[str, float]:
-    """Return a readable unit for numbers of a given size, and the value of this unit in the SI
+    """Return a readable unit for numbers of a given size, and the factor from this unit to the SI
     unit."""
     if unit == "s":
         return next((one for one in TIMES if size >= 2.0 * one[1]), ("s", 1.0))
@@ -324,8 +324,8 @@ def _scaled(size: float, unit: str) -> tuple[str, float]:
 
 
 def _lines(title: str, one: Value, sentence: str) -> list[str]:
-    """Format a Value: one line with its error, and a second line with its uncertainty if the inputs
-    are uncertain."""
+    """Format a `Value` as a line with its error.  If the inputs are uncertain, a second line
+    contains its uncertainty."""
     value, error = one.value, one.error
     size = max(abs(value), error if abs(value) <= error < math.inf else 0.0)
     name, scale = _scaled(size, one.unit)

@@ -88,7 +88,7 @@ def checked_contact(motion: Any, **given: Any) -> Contact:
 
 
 def predict_contact(contact: Contact) -> Prediction:
-    """Return the Prediction for a contact from `checked_contact`.  Raises InputError."""
+    """Predict the friction of a contact that `checked_contact` has returned.  Raises InputError."""
     inputs, search, about = contact.inputs, contact.inputs.search, _about(contact)
     given = about["input_values"]
     if search:
@@ -155,8 +155,8 @@ def outputs(contact: Contact, answer: Prediction) -> dict[str, Value]:
 
 
 def factors_of(contact: Contact, answer: Prediction) -> dict[str, Any]:
-    """Return the factors of the outputs in SI units, keyed by name, in addition to the attributes
-    of the contact.  All formulas accept arrays."""
+    """Return the factors whose products are the outputs, in SI units and keyed by name.  Attributes
+    of the contact, which can also be factors, are not included.  All formulas accept arrays."""
     inputs, known, mean_load = contact.inputs, answer.values, answer.values["mean_load"].value
     friction, velocity, unit = known["friction"], known["velocity"], contact.speed_unit
     still, period = contact.mu * contact.load * mean_load, 2.0 * math.pi / contact.omega

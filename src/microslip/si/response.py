@@ -38,8 +38,8 @@ class RealResponse(Answer):
     """Forces of a real contact along a path, in SI units.  Each row is a point of the path.
 
     The columns in COLUMNS are also attributes of the response, with the unit at the end of the
-    name, as in `force_forward_N`.  The items of `attributes` are
-    attributes of the response, too.
+    name, as in `force_forward_N`.  The items of the dictionary `attributes` are also attributes of
+    the response.
 
     Attributes
     ----------
@@ -58,7 +58,7 @@ class RealResponse(Answer):
     """
 
     def to_xarray(self) -> Any:
-        """Return the columns as an xarray.Dataset with the dimension `row` and with units."""
+        """Return the columns, with units, as an xarray.Dataset whose dimension is `row`."""
         return import_module("microslip.datasets.of_records").to_xarray(self)
 
     def __str__(self) -> str:
@@ -75,7 +75,7 @@ def predict_response(
     progress: Callable[[int, int], None] | None = None,
     **contact: object,
 ) -> RealResponse:
-    """Compute the forces in a contact of two bodies that follows a measured path, in SI units.
+    """Compute the forces, in SI units, in a contact of two bodies that follows a measured path.
 
     Parameters
     ----------
@@ -169,8 +169,8 @@ def read_path(path: Any, **form: str) -> dict[str, np.ndarray]:
 def predict_iwan(
     *, elements: int | None = None, tolerance: float | None = None, **contact: object
 ) -> Iwan:
-    """Compute an Iwan model (parallel springs with sliders) of a contact of two bodies, in SI
-    units.
+    """Compute an Iwan model of a contact of two bodies: springs with sliders, connected in
+    parallel, with stiffnesses and forces in SI units.
 
     Parameters
     ----------

@@ -1,5 +1,5 @@
-"""Dimensionless results for a contact, from the solver or from a map, and a search for the
-amplitude, speed or load that gives a requested reduction of friction."""
+"""Compute dimensionless results for a contact with the solver or from a map.  The module also finds
+the amplitude, speed or load that gives a requested reduction of friction."""
 
 from __future__ import annotations
 
@@ -53,8 +53,8 @@ SPEEDS = 1e-9, 1e6
 """Smallest and largest dimensionless velocity of the search.  For a translation with an amplitude
 above 1, the velocity is divided by the amplitude."""
 LOAD = 1e-12
-"""Load, N, at which the dimensionless groups are computed in a search for the load.  It is so small
-that Hertz's theory applies to all bodies."""
+"""Load, in N, at which the dimensionless groups are computed in a search for the load.  It is so
+small that Hertz's theory applies to all bodies."""
 STEP = 0.05
 """Step of the finite difference for the slope of friction, in the logarithm of the unknown."""
 
@@ -110,13 +110,13 @@ def answer_of(contact: Contact) -> Prediction:
 
 
 def solve_at(contact: Contact, velocity: float | None, tolerance: float, **changes: Any) -> Result:
-    """Return the Result of microslip.solve, or of a map, for a contact.
+    """Return the `Result` for a contact, computed by microslip.solve or interpolated in a map.
 
     velocity: dimensionless velocity; None under a prescribed force.  A velocity above the range of
     the solver is replaced by the largest allowed velocity, at which the vibration has no effect.
-    changes: dimensionless force, stiffness, mass and damping.
+    `changes` contains the dimensionless force, stiffness, mass and damping.
 
-    Raises InputError about the input of `predict`.
+    The argument in a raised InputError is the corresponding input of `predict`.
     """
     inputs, settings = contact.inputs, settings_of(contact)
     if velocity is not None:
@@ -173,9 +173,9 @@ def _threshold(contact: Contact, limit: Result | None) -> Estimate | None:
     """Return the smallest constant force that moves the contact, divided by mu times the mean load.
 
     The threshold equals the static limit if the oscillation exerts no forward force.  Otherwise, a
-    contact without mass follows the forward oscillation, and the threshold is the static limit of
-    the other components, or 1 if there are no other components.  This limit is computed only if a
-    force is prescribed. The threshold is None if it is unknown.
+    contact without mass follows the forward oscillation.  Its threshold is the static limit of the
+    other components of the motion, or 1 if there are no other components.  This static limit is
+    computed only if a force is prescribed.  The threshold is None if it is unknown.
     """
     if limit is None:
         return Estimate(0.0)  # under a steady spin any force moves the contact
@@ -196,8 +196,8 @@ def _friction(
     """Compute the friction at a prescribed speed, or the velocity under a prescribed force.
 
     If the force is below the threshold by more than the threshold's error, the contact comes to
-    rest, and no drift is computed.  If the force is within this error of the threshold, the result
-    is not converged, since computing the small speed would take minutes.
+    rest, and no drift is computed.  If the force differs from the threshold by less than this
+    error, the result is not converged, since computing the small speed would take minutes.
     """
     groups = contact.drive(contact.mean_load)
     drive: dict[str, Any] = within_range(groups)
@@ -233,8 +233,8 @@ def within_range(drive: dict[str, float]) -> dict[str, float]:
     """Return the dimensionless drive, reduced to the range of the solver.
 
     If the force exceeds this range, the contact runs away.  A body that is too heavy or too stiff
-    hardly moves.  Its mass, stiffness and damping are scaled by one factor, which preserves the
-    natural frequency.
+    hardly moves.  The mass, stiffness and damping of such a body are divided by one factor, which
+    preserves the natural frequency.
     """
     body = {name: value for name, value in drive.items() if name != "force"}
     scale = max(1.0, max(body.values(), default=0.0) / arguments.LARGEST_BODY)
@@ -261,7 +261,8 @@ def _rest(contact: Contact) -> tuple[dict[str, Value], str]:
     """Return the displacement and the number of cycles until the contact rests, or the reason why
     they are unknown.
 
-    Both are computed for round contacts only, because other contacts would take minutes.
+    The displacement and the number are computed for round contacts only, because other contacts
+    would take minutes.
     """
     drive = contact.drive(contact.mean_load)
     if set(drive) != {"force"}:
@@ -336,8 +337,8 @@ class FrictionMap:
     def at(
         self, velocity: Any, amplitude: Any, poisson: float | None
     ) -> tuple[np.ndarray, np.ndarray]:
-        """Return the friction and its error bound at points.  Raises InputError for an invalid
-        `nu`, and ValueError for points outside the map."""
+        """Return the friction and its error bound at the given points.  Raises InputError for an
+        invalid `nu`, and ValueError for points outside the map."""
         try:
             answer = self.dataset.microslip.at(velocity, amplitude, poisson=poisson)
         except InputError as error:
@@ -366,8 +367,8 @@ class FrictionMap:
 
 
 def find_reduction(inputs: Inputs) -> tuple[Contact, Value]:
-    """Find the smallest amplitude, the largest speed or the largest load that gives the reduction.
-    Returns the contact and this quantity in its SI unit.
+    """Find the smallest amplitude, the largest speed or the largest load that gives the requested
+    reduction.  Returns the contact, and the value of this quantity in its SI unit.
 
     If the solver fails at a contact, this contact is returned, and the error of the quantity is
     NaN.  Raises NoSolutionError if the reduction is outside the range of the search, and InputError

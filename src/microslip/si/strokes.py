@@ -1,4 +1,4 @@
-"""Reading of motions with units: files with one period, such as "file:stroke.csv", and records.
+"""Read motions with units from files: one period, as in "file:stroke.csv", or a long record.
 
 time [ms],lateral [um],load [N]
 0,0,10
@@ -42,12 +42,12 @@ class Stroke:
     columns : dict of str to np.ndarray, shape (rows,)
         Columns with names from UNITS.  Displacements are relative to their mean over the period.
     frequency, mean_load : float or None
-        Frequency from the column `time`, Hz, and mean of the column `load`, N; None if the column
-        is missing.
+        Frequency from the column `time`, in Hz, and mean of the column `load`, in N; None if the
+        column is missing.
     reach, pace : tuple of float
-        `reach` contains the largest tangential displacement from the mean, m, and the largest
-        rotation, rad.  `pace` contains the largest speeds of displacement and rotation, divided by
-        the angular frequency.
+        `reach` contains the largest tangential displacement from the mean, in m, and the largest
+        rotation, in rad.  `pace` contains the largest speeds of displacement and rotation, divided
+        by the angular frequency.
     hint : str
         Hint for a period with many rows; empty for other periods.
     """
@@ -61,8 +61,8 @@ class Stroke:
     hint: str
 
     def deviations(self, contact: Any) -> dict[str, np.ndarray]:
-        """Return the columns in the units of `microslip.Sampled`.  From a load or indentation, its
-        mean of 1 is subtracted."""
+        """Return the columns in the units of `microslip.Sampled`.  A load or an indentation is
+        returned as the deviation from its mean, which is 1."""
         units = scales(contact, self.columns)
         return {name: one / units[name] - (name in NORMAL) for name, one in self.columns.items()}
 
@@ -73,8 +73,8 @@ class Stroke:
 
 
 def scales(contact: Any, columns: dict[str, np.ndarray]) -> dict[str, float]:
-    """Return the unit of each column in `microslip.response` and `microslip.Sampled`, in SI
-    units."""
+    """For each column, return the SI value of the unit that `microslip.response` and
+    `microslip.Sampled` use."""
     if "indentation" in columns and not math.isfinite(contact.indentation):
         allowed = "allowed is a load: the indentation under this pressure is not known"
         raise InputError("indentation", None, allowed)
@@ -88,7 +88,7 @@ def scales(contact: Any, columns: dict[str, np.ndarray]) -> dict[str, float]:
 
 
 def factors(units: Mapping[str, str | None]) -> dict[str, float]:
-    """Return the factor from the unit of each column to the SI unit; 1 for a column without a unit.
+    """Return the factor that converts each column to its SI unit, or 1 if the column has no unit.
     Raises ValueError for a wrong unit."""
     result = {}
     for name, unit in units.items():
@@ -122,7 +122,7 @@ def _of_content(file: NamedFile, content: bytes) -> Stroke:
 
 
 def read_stroke(name: str) -> Stroke:
-    """Return the Stroke of a name such as "file:stroke.csv"."""
+    """Read the `Stroke` from the file in a name such as "file:stroke.csv"."""
     file = parse(name, "motion")
     assert file is not None
     return read_object(file, "motion", _of_content)
@@ -132,9 +132,9 @@ def read_record(path: str, **form: str) -> tuple[np.ndarray, dict[str, np.ndarra
     """Read a record for `microslip.fold`.  Returns the times in s, the columns, and the units of
     all columns.
 
-    The columns are in the units of the file.  form: decimal mark and encoding of the file.
-    `microslip.fold` checks the times.  Raises InputError if the file cannot be read, or has no
-    time.
+    The columns are in the units of the file.  `form` contains the decimal mark and the encoding of
+    the file.  `microslip.fold` checks the times.  Raises InputError if the file cannot be read or
+    has no column `time`.
     """
     table = table_of("record", path, FORM, need_units=True, **form)
     try:

@@ -1,4 +1,4 @@
-"""Predictions for many contacts, as a table, a curve or a grid, in a dataset or as text."""
+"""Predictions for many contacts that form a table, a curve or a grid, as a dataset or as text."""
 
 from __future__ import annotations
 
@@ -96,7 +96,7 @@ def predict_table(
     encoding: str = "utf-8",
     **shared: object,
 ) -> xr.Dataset:
-    """Predict the friction of a table of contacts.
+    """Predict the friction of each contact in a table.
 
     Parameters
     ----------
@@ -130,7 +130,9 @@ def predict_table(
 
 
 def predict_grid(motion: str, **given: Any) -> xr.Dataset:
-    """Predict friction over ranges of quantities, as a curve, a map, or a grid of more dimensions.
+    """Predict friction over ranges of one or more quantities.
+
+    One range gives a curve, two ranges give a map, and more ranges give a grid.
 
     Parameters
     ----------
@@ -186,7 +188,8 @@ def read_cases(
 
 
 def values_of(name: str, text: str) -> list[str]:
-    """Return the values of a range as strings with the unit of the range.  Raises InputError."""
+    """Return the values in a range as strings, each with the unit of the range.  Raises
+    InputError."""
     match = RANGE.fullmatch(text.strip())
     counts = [] if match is None else [int(one) for one in (match[4], match[6]) if one]
     if match is None or len(counts) > 1:
@@ -199,8 +202,8 @@ def values_of(name: str, text: str) -> list[str]:
 
 
 def grid_of(motion: str, given: Mapping[str, Any]) -> Cases:
-    """Return all combinations of the values of ranges and sequences.  The values of the last axis
-    change fastest.
+    """Return the contacts for all combinations of the values in ranges and sequences.  The values
+    of the last axis change fastest.
 
     Raises InputError if a range is invalid, if there is no range, or if there are too many
     combinations.
@@ -314,7 +317,7 @@ def _cell(value: Any, is_number: bool) -> Any:
 
 
 def table_text(cases: Cases, answers: Answers) -> str:
-    """Return the printed table, with a row for each contact and remarks below."""
+    """Return the table to print: one row for each contact, and remarks below the rows."""
     predicted = [one for one in answers if isinstance(one, Prediction)]
     rows = [one.input_values | one.values for one in predicted]  # speed: input or output
     columns = {title: [row.get(name) for row in rows] for name, title in PRINTED.items()}
@@ -363,8 +366,8 @@ def _digits(one: Value | None) -> tuple[str, str, str]:
 
 
 def interpolation_errors(values: xr.DataArray) -> dict[str, float | None]:
-    """Return the largest difference between a value and the linear interpolation of its neighbours,
-    for each axis.
+    """For each axis, return the largest difference between a value and the linear interpolation of
+    its two neighbours.
 
     The difference is None for an axis with fewer than three values.  If the values are smooth, the
     error of linear interpolation between them is a quarter of the sum of these differences over the

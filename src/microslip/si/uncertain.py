@@ -1,14 +1,14 @@
-"""Propagation of uncertain inputs: draws of all outputs, and the probability of each outcome under
-a prescribed force.
+"""Propagate the uncertainty of the inputs to the outputs by quasi-random draws, and compute the
+probability of each outcome under a prescribed force.
 
 The uncertain inputs are independent and normally distributed.  The draws form a low-discrepancy
 sequence, so that the same inputs always have the same draws.  A draw outside the range of its input
-is replaced by the closest value of the range.  All closed forms are evaluated for each draw.  The
-result of the solver depends on the draw through a few dimensionless groups.  If the groups of all
-draws lie on a line, the solver computes the result at a few points of this line, and results are
-interpolated between these points.  In general, the changes along several lines are added.  The
-lines are the principal axes of the groups, or the axes of the inputs if the inputs are not more
-numerous than the principal axes.
+is replaced by the closest value of the range.  Outputs in closed form are evaluated for each draw.
+The result of the solver depends on the draw through a few dimensionless groups.  If the groups of
+all draws lie on a line, the solver computes the result at a few points of this line, and results
+are interpolated between these points.  In general, there are several lines, and the changes of the
+result along them are added.  The lines are the principal axes of the groups.  If there are at most
+as many inputs as principal axes, the lines are the axes of the inputs instead.
 """
 
 from __future__ import annotations
@@ -47,8 +47,8 @@ points with a static limit close to the force."""
 VANISHING = 1e-3
 """Largest static limit that counts as 0 in the bisection."""
 CLOSEST = 64
-"""One draw in CLOSEST counts as close to the force: the draws whose static limits are closest to
-it."""
+"""A fraction 1 / CLOSEST of the draws counts as close to the force: the draws whose static limits
+are closest to the force."""
 NEGLIGIBLE = 1e-3
 """Largest standard deviation of the groups along an axis that is ignored, divided by the standard
 deviation along the first axis.  Also the fraction of draws without a finite value above which a
@@ -79,8 +79,8 @@ class _Line(NamedTuple):
     nodes: list[tuple[float, float, dict[str, float]]]
 
     def add(self, solve: Callable[[Inputs], dict[str, float]], *levels: float) -> None:
-        """Add nodes at the given levels.  If a level has no values, a level nearer to the centre is
-        used."""
+        """Add nodes at the given levels.  If no values can be computed at a level, a level nearer
+        to the centre is used."""
         for level in levels:
             for one in (factor * level for factor in NEARER):
                 try:
@@ -91,8 +91,8 @@ class _Line(NamedTuple):
                     continue
 
     def values(self, name: str) -> np.ndarray:
-        """Return the values of all draws.  They are interpolated between the nodes, constant beyond
-        the outermost nodes, and NaN where the nearest node has no value."""
+        """Return the values of all draws.  The values are interpolated between the nodes, constant
+        beyond the outermost nodes, and NaN where the nearest node has no value."""
         from scipy.interpolate import PchipInterpolator
 
         pairs = {place: values.get(name, math.nan) for _, place, values in self.nodes}
@@ -153,8 +153,8 @@ class Draws:
         self.answer = replace(answer, values=values)
 
     def _drawn(self, normal: np.ndarray) -> dict[str, Any]:
-        """Return values of the uncertain inputs within their ranges.  normal: standard normal
-        numbers, an array of shape (..., inputs)."""
+        """Return draws of the uncertain inputs, limited to the allowed ranges.  `normal` is an
+        array of shape (..., inputs) with standard normal numbers."""
         drawn = {}
         for k, (name, one) in enumerate(self._inputs.uncertain.items()):
             low, high = INPUTS[name].low, INPUTS[name].high
@@ -165,8 +165,8 @@ class Draws:
         return drawn
 
     def _static(self, central: float) -> np.ndarray:
-        """Compute the static limit for all draws.  Nodes are added where it vanishes and where it
-        is close to the force."""
+        """Compute the static limit for all draws.  Nodes are added where the static limit vanishes,
+        and where it is close to the force."""
         lines = self._lines({"static": central}, static=True)
         force = self.contact.drive().get("force") if len(lines) == 1 else None
 
@@ -204,9 +204,9 @@ class Draws:
         return np.nan_to_num(np.stack(np.broadcast_arrays(*columns), axis=-1))
 
     def _lines(self, central: dict[str, float], static: bool = False) -> list[_Line]:
-        """Return the lines along which the result, or the static limit, varies.  These are the
-        principal axes of the groups, or the axes of the inputs if the inputs are not more numerous.
-        The first node of each line is at the centre."""
+        """Return the lines along which the result, or the static limit, varies.  These lines are
+        the principal axes of the groups, or the axes of the inputs if there are at most as many
+        inputs as principal axes.  The first node of each line is at the centre."""
         normal, count = self._normal, len(self._inputs.uncertain)
         groups = self._groups(self.contact, static)
         if len(groups) == 1:
@@ -239,7 +239,7 @@ class Draws:
 
 
 def _total(central: dict[str, float], lines: list[_Line]) -> dict[str, np.ndarray]:
-    """Return the sum of the central values and their changes along all lines."""
+    """Return the central values plus the sum of their changes along all lines."""
     return {
         name: np.full(DRAWS, value) + sum(line.values(name) - value for line in lines)
         for name, value in central.items()
@@ -247,13 +247,14 @@ def _total(central: dict[str, float], lines: list[_Line]) -> dict[str, np.ndarra
 
 
 def _numbers(contact: Contact, answer: Prediction, search: str | None) -> dict[str, float]:
-    """Return the values of a prediction.  With a search, "root" is the logarithm of its result."""
+    """Return the values of a prediction.  If there was a search, the value "root" is the logarithm
+    of the quantity that it found."""
     values = {name: one.value for name, one in answer.values.items()}
     return values | ({"root": math.log(getattr(contact.inputs, search))} if search else {})
 
 
 def _solution(inputs: Inputs) -> dict[str, float]:
-    """Solve a contact, and return the values; empty if a search has no solution.  Raises
+    """Solve a contact and return its values, or an empty dict if a search has no solution.  Raises
     InputError."""
     try:
         contact = find_reduction(inputs)[0] if inputs.search else contact_of(inputs)
@@ -280,8 +281,8 @@ def normal_numbers(count: int) -> np.ndarray:
 
 
 def with_interval(one: Value, draws: Any) -> Value:
-    """Return a Value with the standard uncertainty and the 95 % interval of its draws.  A draw
-    without a value counts as infinite."""
+    """Return a copy of a `Value`, with the standard uncertainty and the 95 % interval of its draws
+    added.  A draw without a value counts as infinite."""
     drawn = np.broadcast_to(np.asarray(draws, dtype=float), (DRAWS,))
     drawn = np.where(np.isnan(drawn), math.inf, drawn)
     low, high = np.quantile(drawn, INTERVAL, method="nearest")
@@ -298,9 +299,9 @@ def probabilities(contact: Contact, answer: Prediction) -> dict[str, Value]:
     """Return the probability of each outcome under a prescribed force, with its error estimate.
     Without a force, the result is empty.
 
-    The error estimate follows from the error of the threshold, or from the difference between the
-    even and the odd draws. It is at least log(DRAWS) / DRAWS, the order of the sequence's
-    discrepancy.
+    The error estimate is the largest of three values: the change of the probability due to the
+    error of the threshold, the difference between the even and the odd draws, and
+    log(DRAWS) / DRAWS, which is the order of the sequence's discrepancy.
 
     contact, answer: the attributes of Draws.
     """

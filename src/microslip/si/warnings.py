@@ -1,7 +1,8 @@
 """Warnings about contacts that violate an assumption of the theory.
 
-A measure is a named number that describes a contact.  A rule has limits for measures, and a warning
-for contacts beyond these limits.  The explorer's web page evaluates the same rules.
+A measure is a named number that describes a contact.  A rule consists of limits for measures, and
+of a warning for contacts that violate these limits.  The explorer's web page evaluates the same
+rules.
 """
 
 from __future__ import annotations
@@ -28,10 +29,10 @@ RUBBERY = 0.45
 """Smallest Poisson's ratio of a rubber.  Rubber does not yield.  It has internal losses, and its
 modulus increases with the frequency (K. A. Grosch, Proc. R. Soc. A 274, 1963)."""
 ADHESION = 0.05
-"""Typical work of adhesion between clean smooth surfaces due to van der Waals forces, N/m (J. N.
+"""Typical work of adhesion between clean smooth surfaces due to van der Waals forces, in N/m (J. N.
 Israelachvili, Intermolecular and Surface Forces)."""
 RANGE = 0.2e-9
-"""Range of van der Waals forces, m.  It is of the order of the distance between atoms."""
+"""Range of van der Waals forces, in m.  It is of the order of the distance between atoms."""
 SHORT, LONG = 5.0, 0.1
 """Smallest Tabor number for the JKR theory, and largest Tabor number for the DMT theory (K. L.
 Johnson and J. A. Greenwood, J. Colloid Interface Sci. 192, 1997)."""
@@ -162,13 +163,13 @@ DISAGREES = (
 
 
 def warnings_of(contact: Contact, speed: float) -> list[str]:
-    """Return the warnings for a contact that moves at a speed, m/s."""
+    """Return the warnings for a contact that moves at a given speed (in m/s)."""
     return [*_contradictions(contact), *broken_rules(measures(contact, speed))]
 
 
 def broken_rules(values: Mapping[str, float | None]) -> list[str]:
-    """Return the warnings for the given measures, keyed by name.  Rules about other measures do not
-    apply."""
+    """Return the warnings for the given measures, keyed by name.  Rules about measures that are not
+    given do not apply."""
 
     def value(side: float | str) -> float | None:
         return values.get(side) if isinstance(side, str) else side
@@ -247,7 +248,7 @@ def measures(contact: Contact, speed: float) -> dict[str, float | None]:
 
 
 def _pull_off(contact: Contact) -> tuple[float | None, float | None]:
-    """Return Tabor's number of a paraboloid, and the pull-off force, N.  Unknown values are None.
+    """Return Tabor's number of a paraboloid, and the pull-off force in N.  Unknown values are None.
 
     A paraboloid pulls off at the same force as a sphere whose radius is the geometric mean of its
     two radii of relative curvature.  This is exact in the DMT theory (B. V. Derjaguin, Kolloid-Z.
@@ -270,10 +271,11 @@ def _pull_off(contact: Contact) -> tuple[float | None, float | None]:
 
 
 def _contradictions(contact: Contact) -> list[str]:
-    """Return messages about a size or a load that differs from the value in a pressure file with
+    """Return a message for each size or load that differs from its value in a pressure file with
     units.
 
-    Differences within the file's reading error are accepted; see AGREES.
+    A value is accepted if it lies in the range of all possible readings of the file, widened by the
+    relative difference AGREES.
     """
     texts, readings = [], (contact.shape, *contact.shape.readings) if not contact.radii else ()
     size, load = ("size_m", "m"), ("load_N", "N")
