@@ -4,9 +4,9 @@
 #                                                            data/NAME.HASH.nc, .png in results
 #
 # The name of a file contains a hash of everything that it is made from, so an existing file is up
-# to date.  Rules therefore run only for missing files, whatever the dates of files and the contents
-# of .snakemake are.  Plain names, such as results/bore.nc, are links.  CONTRIBUTING.md follows one
-# point through this workflow.
+# to date.  Rules therefore run only for missing files.  The dates of files and the contents of
+# .snakemake do not matter.  Plain names, such as results/bore.nc, are links.  CONTRIBUTING.md
+# follows one point through this workflow.
 
 from snakemake.utils import min_version
 

@@ -1,4 +1,4 @@
-# Set up what all rules share: the package, the configuration, the plan, and the missing results.
+# Set up the objects that all rules share: package, configuration, plan, and missing results.
 
 import os
 import re
@@ -112,7 +112,8 @@ def look(place):
 
 
 def any_of(names):
-    """Return a regular expression that matches any of these names, or nothing if there are none."""
+    """Return a regular expression that matches any of these names, or nothing if there are no
+    names."""
     return "|".join(map(re.escape, names)) or "(?!)"
 
 
@@ -156,8 +157,8 @@ def inputs_of_link(plain):
 
 
 def make_ready():
-    """Check that results can be written, and remove the files of killed runs, before the first
-    job."""
+    """Before the first job, check that results can be written, and remove the files of killed
+    runs."""
     with refused_in_one_line():
         files.refuse_unwritable(STATE.folder)
     for path in files.clear_abandoned(STATE.folder):

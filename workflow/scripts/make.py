@@ -1,8 +1,8 @@
 """Make datasets with HTML pages, figures, and explorer pages.
 
-The output for a dataset is a netCDF-4 file with CF conventions and an HTML page; for a figure, a
-PNG and a PDF file; and for the explorer, one HTML file that needs no network.  All quantities are
-dimensionless, except the seconds and bytes of studies.
+A dataset is written as a netCDF-4 file with CF conventions and as an HTML page.  A figure is
+written as a PNG and a PDF file.  The explorer is one HTML file that needs no network.  All
+quantities are dimensionless, except the seconds and bytes of studies.
 """
 
 import logging

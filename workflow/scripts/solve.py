@@ -1,5 +1,4 @@
-"""Compute a batch of points of a sweep, of single runs, of a part of a study, or of a certified
-map.
+"""Compute a batch: points of a sweep, single runs, a part of a study, or a certified map.
 
 The output contains the records of the batch as JSON lines, in the order of the requests.  All
 numbers are dimensionless, except times (s) and memory (byte) of trials and scaling.

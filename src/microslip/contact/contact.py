@@ -179,11 +179,11 @@ class Contact(Protocol):
     grading: float | None = None
     edges: np.ndarray | None = None
     bounds: Any = None
-    """Function bounds(depths) that returns the friction bounds at an array of depths, with one row
-    for each depth."""
+    """bounds(depths) returns the friction bounds at an array of depths, with one row for each
+    depth."""
     bounds_along: Any = None
-    """Function bounds_along(path) that returns the friction bounds at the start and at every stage
-    of a path, with one row for each of these times."""
+    """bounds_along(path) returns the friction bounds at the start and at every stage of a path,
+    with one row for each of these times."""
 
     def displacement(self, state: np.ndarray) -> np.ndarray:
         """Return the elastic displacement A q of each point under tractions q.

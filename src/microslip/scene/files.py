@@ -16,8 +16,9 @@ mean over the cell around its point, like the reading of a sensor of finite size
 ",grid=samples" after the path, the values apply at the points and are interpolated bilinearly.
 
 With ",pitch=0.5 mm" after the path, the file is a matrix of pressures, as exported by programs for
-pressure sensors and pressure films: forward increases from line to line, lateral from cell to cell.
-",decimal=comma" and ",encoding=cp1252" describe the format of a CSV file.
+pressure sensors and pressure films: the forward coordinate increases from line to line, and the
+lateral coordinate from cell to cell.  ",decimal=comma" and ",encoding=cp1252" describe the format
+of a CSV file.
 """
 
 from __future__ import annotations
@@ -115,8 +116,8 @@ NUMBER = re.compile(r"[+-]?(\d+[.,]?\d*|[.,]\d+)([eE][+-]?\d+)?|nan|inf|B", re.I
 END = "@@"
 """Last line of Tekscan files."""
 LEAST_COORDINATES = 4
-"""Smallest number of evenly spaced values that are taken for coordinates.  Three pressures can be
-evenly spaced by chance."""
+"""Smallest number of evenly spaced values that are interpreted as coordinates.  Three pressures can
+be evenly spaced by chance."""
 EVEN = 0.05
 """Largest difference between the steps of evenly spaced coordinates, divided by the first step.
 This value allows for coordinates rounded to 1/40 of the step."""
@@ -127,8 +128,8 @@ NETCDF = (".nc", ".nc4", ".cdf")
 BEGINNINGS = (b"\x89HDF", b"CDF\x01", b"CDF\x02", b"CDF\x05")
 """Possible first bytes of a netCDF file."""
 LARGEST_CHUNK = 100_000_000
-"""Largest chunk in bytes.  HDF5 reads whole chunks; the default chunks of netCDF have up to 16
-MB."""
+"""Largest allowed chunk of a netCDF file, in bytes.  HDF5 reads whole chunks; the default chunks of
+netCDF have up to 16 MB."""
 VARIABLES = "allowed: a variable pressure with the dimensions and coordinates forward and lateral"
 
 Values = tuple[Sequence[np.ndarray], Mapping[str, str | None]]
@@ -154,7 +155,7 @@ def create_pressure(file: NamedFile, content: bytes) -> Measured:
 
 
 def _factors(units: Mapping[str, str | None]) -> tuple[float, Units]:
-    """Return the ratio of the lateral to the forward unit of length, and the Units."""
+    """Return the ratio of the lateral to the forward unit of length, and the units as `Units`."""
     factors: dict[str, float | None] = {}
     for name, si in SI.items():
         unit = units[name] or ""
@@ -203,8 +204,8 @@ def _points(file: NamedFile, content: bytes) -> Values:
 
 
 def _distinct(column: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Return the distinct coordinates in increasing order, shape (n,), and for each point the index
-    of its coordinate."""
+    """Return the distinct coordinates in increasing order, as an array of shape (n,), and for each
+    point the index of its coordinate."""
     values, which = np.unique(column, return_inverse=True)
     group = np.concatenate([[0], np.cumsum(np.diff(values) > SAME * np.ptp(values))])
     return values[np.unique(group, return_index=True)[1]], group[which.reshape(-1)]

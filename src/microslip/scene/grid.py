@@ -1,7 +1,7 @@
 """Loads on the cells of a regular grid.
 
-The pressure is a function of the radius, or is given by values on another grid, such as those of a
-sensor or another program.
+The pressure is a function of the radius, or is given by values on another grid, such as the
+readings of a sensor or the results of another program.
 """
 
 from __future__ import annotations

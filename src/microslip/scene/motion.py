@@ -7,9 +7,9 @@ following term to the displacement along its direction:
 
     A share sin(cycles phase + lead).
 
-A wave in angle has the unit phi_lk(a/2), the largest angle of a bore with the amplitude 1.  For the
-normal load and the indentation depth, the quantity divided by its reference value (the value
-without oscillation) is 1 plus the wave.  There is no contact while this sum is below 0.
+A wave in angle has the unit phi_lk(a/2), the largest angle of a bore with the amplitude 1.  The
+normal load or the indentation depth, divided by its reference value (the value without
+oscillation), is 1 plus the wave.  There is no contact while this sum is below 0.
 """
 
 from __future__ import annotations
@@ -28,8 +28,8 @@ from microslip.scene.pressure import Pressure
 from microslip.theory import hertz, masing, oscillating_load, paper
 
 FOCUS_RANGE = (0.05, 0.9995)
-"""Range of radii towards which rings are graded.  A stick zone below this range carries almost no
-load."""
+"""Range of radii towards which rings are graded.  A stick zone whose radius is below this range
+carries almost no load."""
 
 LOOP = np.linspace(0.0, 2.0 * np.pi, 721)
 """Phases at which the extremes of an oscillation over one period are evaluated."""
@@ -42,8 +42,9 @@ NORMAL = ("load", "indentation")
 
 
 ROUNDING = 1e-9
-"""Largest rounding error of a value that counts as equal, divided by the largest value.  It applies
-to the symmetries of samples, and to wave forms and displacements of users."""
+"""Two values count as equal if their difference, divided by the largest value, is at most this
+rounding error.  The limit applies to the symmetries of samples, and to waveforms and displacements
+that users define."""
 
 
 class Wave(NamedTuple):
@@ -99,8 +100,8 @@ class Motion(spec.Named):
     periodic : bool
         Whether the motion has an amplitude and the period 2 pi; otherwise it is steady.
     edge_velocity : bool
-        Whether the dimensionless velocity is the velocity divided by the largest speed of the
-        contact edge in rotation, instead of omega u_lim.
+        Whether velocities are divided by the largest speed of the contact edge in rotation, instead
+        of omega u_lim, to make them dimensionless.
     readings : tuple of Motion
         Alternative motions through the same samples.  The differences in friction between these
         motions serve as an error estimate.
@@ -166,7 +167,7 @@ class Motion(spec.Named):
     def components(self) -> dict[str, Wave]:
         """Waves with a share above 0.
 
-        If there is a single wave, its phase lead is set to 0, because it has no effect.
+        If there is a single wave, its phase lead has no effect and is set to 0.
         """
         waves = {name: wave for name, wave in self.waves.items() if wave.share}
         if len(waves) == 1:
@@ -217,18 +218,18 @@ class Motion(spec.Named):
         """Whether the oscillation alone can propel the contact, so that the mean friction can be
         negative.
 
-        It cannot if the oscillation at some later phase equals the original oscillation with the
-        forward component reversed.  Let d be the greatest common divisor of the numbers of cycles
-        of all components.  After a fraction 1/(2 d) of the period, every component has the same
-        value as before, or minus this value if its number of cycles is an odd multiple of d.  If
-        then the forward component has changed its sign, and the load has not, the oscillation
-        cannot propel the contact.  The signs of the lateral component and of the angle do not
-        matter, because under a symmetric pressure two images of a solution are solutions as well.
-        The mirror image reverses the forward component and the angle.  The point reflection
-        q(-forward, -lateral) reverses the angle; it is a solution because the influence of one
-        point on another is an even function of the vector between them.  Together with -q, which
-        reverses all components, these images give every combination of signs.  In all images, the
-        forward force has the sign of the forward motion.
+        Propulsion is impossible if the oscillation at some later phase equals the original
+        oscillation with the forward component reversed.  Let d be the greatest common divisor of
+        the numbers of cycles of all components.  After a fraction 1/(2 d) of the period, every
+        component has the same value as before, or minus this value if its number of cycles is an
+        odd multiple of d.  If the forward component has then changed its sign and the load has not,
+        the oscillation cannot propel the contact.  The signs of the lateral component and of the
+        angle do not matter, because under a symmetric pressure two images of a solution are
+        solutions as well.  The mirror image reverses the forward component and the angle.  The
+        point reflection q(-forward, -lateral) reverses the angle; it is a solution because the
+        influence of one point on another is an even function of the vector between them.  Together
+        with -q, which reverses all components, these images give every combination of signs.  In
+        all images, the forward force has the sign of the forward motion.
         """
         if "forward" not in self.components:
             return False
@@ -303,9 +304,9 @@ class Motion(spec.Named):
         a kink.
 
         If the load oscillates, the result is the smallest contact radius divided by the largest.
-        For a translation, it is the stick radius of a straight oscillation with the same reach (Eq
-        8).  For a rotation, it is Lubkin's stick radius (Eq 30).  This radius is derived for Hertz
-        pressure, but as a grading it does no harm under other pressures.
+        For a translation, the result is the stick radius of a straight oscillation with the same
+        reach (Eq 8).  For a rotation, it is Lubkin's stick radius (Eq 30).  Lubkin's radius is
+        derived for Hertz pressure, but a mesh graded towards it does no harm under other pressures.
         """
         if self._normal.share:
             smallest = pressure.radius(self._extreme(-1.0, amplitude, pressure))
@@ -318,8 +319,7 @@ class Motion(spec.Named):
         return within_rings(float(paper.bore_stick_radius(turn)))
 
     def turns(self, velocity: float, amplitude: float) -> tuple[float, ...]:
-        """Return the phases of the turning points in the time integration, with its start and its
-        end.
+        """Return the phases at which the time integration starts, turns and ends.
 
         The time integration covers half a period or a whole period.  If the load oscillates, it
         begins at the smallest load.  A longitudinal motion v t + A sin t turns where its velocity
@@ -408,7 +408,8 @@ def within_rings(radius: float) -> float:
 
 
 def stick_focus(reach: float, pressure: Pressure) -> float | None:
-    """Return the stick radius of an oscillation along a line.  `reach` is its amplitude, in u_lim.
+    """Return the stick radius of an oscillation along a line.  `reach` is the amplitude of the
+    oscillation, in u_lim.
 
     For a sphere, the stick radius is given by Eq 8.  The result is None at full slip, or if the
     stick zone is not a circle.

@@ -9,10 +9,10 @@ computed with the compliance averaged over directions,
     u_lim = max of 1/(pi G*) Integral mu p(z') / |z - z'| dA'.
 
 For an axisymmetric indenter at the depth d, u_lim is mu d E*/G*, which is 3 mu F_z/(4 G* a) for a
-sphere.  A contact that moves in one direction from rest slides everywhere once the displacement
-exceeds u_lim, if it is round or if nu = 0.  For other contacts at nu > 0, full slip begins at a
-displacement that differs from u_lim by a few percent, depending on the direction.  In working
-units, the reduced shear modulus is the number G*, which is 3/4 for a sphere.
+sphere.  A round contact that moves in one direction from rest slides everywhere once the
+displacement exceeds u_lim.  At nu = 0, the same applies to contacts of any shape.  For other
+contacts at nu > 0, full slip begins at a displacement that differs from u_lim by a few percent,
+depending on the direction.  The reduced shear modulus in working units, G*, is 3/4 for a sphere.
 """
 
 from __future__ import annotations
@@ -89,32 +89,34 @@ class Pressure(spec.Named):
     """Half the forward width and half the lateral width of the rectangle around the contact,
     divided by a."""
     cell_loads: ClassVar[Any] = None
-    """cell_loads(n): loads of the n x n cells of the rectangle around the contact, an array with
-    the axes (forward, lateral).  The sum of the loads is 1."""
+    """cell_loads(n) returns the loads on n x n cells of the rectangle around the contact, as an
+    array with the axes (forward, lateral).  The sum of the loads is 1."""
 
     # Attributes of pressures that depend on the radius alone
     ring_means: ClassVar[Any] = None
-    """ring_means(psi) -> (bound, lever): mean friction bound of the rings with the edges r =
-    sin(psi), and mean lever arm of a traction proportional to the bound.  psi is an array of shape
-    (n + 1,); each result has the shape (n,)."""
+    """ring_means(psi) returns the mean friction bound of the rings with the edges r = sin(psi), and
+    the mean lever arm of a traction proportional to the bound.  psi is an array of shape (n + 1,);
+    each result has the shape (n,)."""
     bound: ClassVar[Any] = None
-    """bound(r): friction bound mu p at an array of radii r of any shape.  For an indenter, bound(r,
-    c) gives the bound at the contact radius c."""
+    """bound(r) returns the friction bound mu p at an array of radii r of any shape.  For an
+    indenter, bound(r, c) returns the bound at the contact radius c."""
 
     # Attributes of axisymmetric indenters, whose contact is a full circle that grows with the load
     depth: ClassVar[Any] = None
-    """depth(c): indentation depth for the contact radius c; depth(1) = 1."""
+    """depth(c) returns the indentation depth for the contact radius c; depth(1) is 1."""
     radius: ClassVar[Any] = None
-    """radius(depth): inverse of `depth`; 0 if there is no contact."""
+    """radius(depth) returns the contact radius at a depth (the inverse of `depth`), or 0 if there
+    is no contact."""
     of_load: ClassVar[Any] = None
-    """of_load(share): depth at which the load is `share` times the mean load."""
+    """of_load(share) returns the depth at which the load is `share` times the mean load."""
     load: ClassVar[Any] = None
-    """load(r, c): load within the radius r if the contact radius is c; arrays broadcast."""
+    """load(r, c) returns the load within the radius r if the contact radius is c; arrays
+    broadcast."""
 
     loading: ClassVar[Any] = None
-    """loading(u): tangential force divided by mu F_z, after a displacement u >= 0 (in u_lim) in one
-    direction from rest, at nu = 0.  This loading curve is defined for axisymmetric indenters and
-    elliptic Hertz contacts."""
+    """loading(u) returns the tangential force divided by mu F_z, after a displacement u >= 0 (in
+    u_lim) in one direction from rest, at nu = 0.  This loading curve is defined for axisymmetric
+    indenters and elliptic Hertz contacts."""
 
     def __post_init__(self) -> None:
         spec.refuse_strange(self, "pressure")
@@ -205,7 +207,7 @@ class RoundPressure(Pressure):
 
     A subclass defines `ring_loads`, the integral of the friction bound over each ring, and
     `ring_moments`, the integral of the bound times the radius.  The rings have the edges r =
-    sin(psi), where psi is an array of shape (n + 1,).  The result is an array of shape (n,).
+    sin(psi), where psi is an array of shape (n + 1,).  Both return an array of shape (n,).
     """
 
     def ring_loads(self, psi: np.ndarray) -> np.ndarray:

@@ -136,7 +136,7 @@ class Problem:
     ------
     InputError
         If an argument has the wrong type, if a number is not finite, if the amplitude is missing,
-        or if a steady motion is given an amplitude.
+        or if an amplitude is given for a steady motion.
     """
 
     motion: Motion
@@ -203,7 +203,7 @@ class Problem:
 
     @cached_property
     def size(self) -> float:
-        """The amplitude; 0 for a steady motion."""
+        """Amplitude of the motion, or 0 for a steady motion."""
         return 0.0 if self.amplitude is None else self.amplitude
 
     @cached_property
@@ -262,7 +262,7 @@ class Problem:
 
     @cached_property
     def mean_speed(self) -> float:
-        """Mean speed of the oscillation: path length per radian of phase, in u_lim."""
+        """Mean speed of the oscillation, which is the path length per radian of phase, in u_lim."""
         moves = np.diff(np.stack(self.oscillation(LOOP)), axis=1)
         return float(np.sqrt(np.sum(moves**2, axis=0)).sum()) / (2.0 * np.pi)
 

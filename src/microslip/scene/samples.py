@@ -87,7 +87,7 @@ class SampledPath(_Samples):
     name = "path"
 
     def at(self, phase: np.ndarray, values: np.ndarray) -> np.ndarray:
-        """Interpolate values, which are given at the rows, linearly at a phase."""
+        """Interpolate values linearly at a phase; the values are given at the rows."""
         return np.interp(phase, np.arange(len(values)), values)
 
     def displacement(
@@ -121,7 +121,7 @@ class Sampled(spec.NamedByText, _Samples):
     """One period of a motion of any shape, given by equally spaced samples.
 
     With the amplitude A, the indenter moves by A times the interpolated displacements.  If h is the
-    interpolated load or indentation, the actual one is 1 + A (h - 1).
+    interpolated load or indentation for A = 1, it is 1 + A (h - 1) for any A.
 
     Attributes
     ----------
@@ -209,7 +209,7 @@ class Sampled(spec.NamedByText, _Samples):
 
     @cached_property
     def cycles(self) -> int:
-        """Root mean square of the number of cycles in a period, in the column with the largest
+        """Root mean square of the cycle counts per period, taken in the column with the largest
         value."""
         power = np.abs(np.fft.rfft(self.rows - self.rows.mean(axis=0), axis=0)) ** 2
         if self.height is not None:
@@ -230,7 +230,7 @@ class Sampled(spec.NamedByText, _Samples):
     def focus(self, velocity: float, amplitude: float, pressure: Pressure) -> float | None:
         """Return the radius towards which rings are graded.
 
-        If the load oscillates, it is the smallest contact radius divided by the largest.
+        If the load oscillates, the result is the smallest contact radius divided by the largest.
         Otherwise, it is the stick radius of a straight oscillation that has the same largest
         distance from the centre.
         """
@@ -296,7 +296,7 @@ def uneven_row(time: np.ndarray, most: float) -> int | None:
 def _spline(values: np.ndarray) -> CubicSpline:
     """Return the periodic cubic spline through one period of samples (along the first axis), as a
     function of the phase."""
-    from scipy.interpolate import CubicSpline  # imported here, as loading takes a while
+    from scipy.interpolate import CubicSpline  # imported here, because loading takes a while
 
     phase = np.linspace(0.0, 2.0 * np.pi, len(values) + 1)
     return CubicSpline(phase, np.concatenate([values, values[:1]]), bc_type="periodic")
@@ -304,7 +304,7 @@ def _spline(values: np.ndarray) -> CubicSpline:
 
 def _rows_of(columns: Mapping[str, Any], fewest: int) -> tuple[np.ndarray, np.ndarray | None, bool]:
     """Convert columns to three values: the displacements as an array of shape (rows, 3), the load
-    or indentation as an array of shape (rows,) or None, and whether it is a load."""
+    or indentation as an array of shape (rows,) or None, and whether the latter is a load."""
     for name in columns:
         if name not in (*PLANE, *NORMAL):
             raise InputError("columns", name, f"unknown; allowed are {', '.join(PLANE + NORMAL)}")

@@ -179,8 +179,8 @@ function inDegrees(phase) {
   return (phase * 180) / Math.PI;
 }
 
-// Draws the forward force against time, with the mean force from the dataset, and against the other
-// component of the force. A dot marks the frame.
+// Draws two charts of the forward force: one against time, with the mean force from the dataset,
+// and one against the other component of the force. A dot marks the frame.
 function drawForces(history, loop, period, mu, error, frame) {
   const degrees = period.phase.map(inDegrees);
   const [first, last] = [degrees[0], degrees[0] + 360];

@@ -1,4 +1,4 @@
-// Converts the texts of the form for a real contact to a point on the map and to friction in SI
+// Converts the entries of the form for a real contact to a point on the map and to friction in SI
 // units.
 //
 // `SI` has the fields, units, materials, rules and texts that contact_form.py packs.
@@ -16,7 +16,7 @@ function sum(values) {
   return values.reduce((all, one) => all + one, 0);
 }
 
-// Returns the number of a field in the SI unit.
+// Returns the value of a field in its SI unit.
 function siValue(id, texts) {
   const field = SI.fields[id], text = texts[id].trim(), unit = texts[`${id}_unit`];
   const value = /^[+-]?(\d+\.?\d*|\.\d+)(e[+-]?\d+)?$/i.test(text) ? Number(text) * SI.units[unit] : NaN;
@@ -58,7 +58,7 @@ function contactOf(texts) {
   }
   const unlike = sum(bodies.map((body, k) => ((k ? -1 : 1) * (1 - 2 * body.poisson)) / shear[k]));
   const twist = ((4 / Math.PI) * SI.half_stuck) / (2 - poisson);
-  const reach = turns ? swing * a : swing; // of the edge of the contact
+  const reach = turns ? swing * a : swing; // amplitude at the edge of the contact
   return {
     motion, bodies, shear, poisson, stiffness, radius, load, mu, speed, omega, swing, a, indentation, u_lim, reach,
     velocity: speed === 0 ? 0 : speed / (omega * (turns ? reach : u_lim)),
@@ -68,7 +68,8 @@ function contactOf(texts) {
   };
 }
 
-// Returns the quantities of the rules by name (see si/warnings.py). Unknown quantities are omitted.
+// Returns the quantities that the rules use, by name (see si/warnings.py). Unknown quantities are
+// omitted.
 function measuresOf(contact) {
   const { motion, bodies, shear, a, pressure, radius, load, mu, u_lim, stiffness, speed, omega, swing, reach } = contact;
   const { adhesion, range, short, rubbery } = SI.adhesion;
@@ -89,8 +90,8 @@ function measuresOf(contact) {
   return { ...values, crossing: (omega * a) / wave, slip_speed: (speed + omega * reach) / wave };
 }
 
-// Returns the warnings, of which there is at most one for each group of rules (the first that
-// applies), and the checks that are not possible.
+// Returns the warnings and the checks that are not possible. In each group of rules, only the first
+// rule that applies gives a warning.
 function warningsOf(contact) {
   const measures = measuresOf(contact), value = (side) => (typeof side === "string" ? measures[side] : side);
   const applies = (rule) => rule.where.every(([left, factor, right]) => value(left) > factor * value(right));
@@ -128,7 +129,8 @@ function lookUp(table, velocity, amplitude, poisson) {
   return error === 65535 ? null : { value: value / 65535, error: error * table.error_step };
 }
 
-// Returns the command that computes a contact. It also works outside the range of the maps.
+// Returns the command that computes a contact. The command also works outside the range of the
+// maps.
 function commandOf(texts) {
   const quoted = (id) => {
     const text = `${texts[id].trim()} ${texts[`${id}_unit`]}`.trim();

@@ -9,8 +9,8 @@ function bytesOf(text) {
 
 // Returns the stored period of a point: forces divided by mu F_z and phases in rad at every frame,
 // radii divided by a and bounds divided by mu F_z/a^2 for each ring, and the density of the
-// dissipated energy in arbitrary units for each cell. If there is no period, returns null, and
-// `whyNone` is the reason.
+// dissipated energy in arbitrary units for each cell. If there is no period, returns null;
+// `whyNone` returns the reason.
 function periodAt(map, row, column) {
   const stored = map.periods?.[row][column];
   if (!stored?.tractions) return null;
@@ -41,7 +41,8 @@ function sectorAngles({ angles, turned }) {
   return kept.concat(kept.map((angle) => (turned ? angle + Math.PI : -angle)));
 }
 
-// Returns tractions divided by the bound, and slip, for the cells of a frame, by sector and ring.
+// Returns the tractions divided by the bound, and the slip, of all cells in a frame, by sector and
+// ring.
 function cellsOf(period, frame) {
   const { frames, angles, cells, turned, tractions, slips } = period;
   const half = frames / 2;

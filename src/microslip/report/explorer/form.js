@@ -13,15 +13,15 @@ function fillField(id, text) {
   else control.value = before;
 }
 
-// Returns the position [velocity, amplitude] of the form's contact on a map, or null for another
-// motion.
+// Returns the position [velocity, amplitude] of the form's contact on a map, or null if the map is
+// of another motion.
 function contactOn(map) {
   const { contact } = STATE;
   const same = contact && contact.motion === map.motion && map.pressure === "hertz";
   return same && contact.velocity > 0 ? [contact.velocity, contact.amplitude] : null;
 }
 
-// Formats the significant digits of a value, and the error.
+// Formats the significant digits of a value, followed by the error.
 function withError(value, error) {
   const places = Math.min(Math.max(1 - Math.floor(Math.log10(error)), 0), 8);
   return error < 1e-8 ? digits(value, 6) : `${value.toFixed(places)} ± ${error.toPrecision(2)}`;

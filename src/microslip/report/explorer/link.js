@@ -36,7 +36,7 @@ function indexNamed(values, text, selected) {
   return index < 0 ? selected : index;
 }
 
-// Restores the state of an address. Missing and wrong entries are ignored.
+// Restores the state that an address contains. Missing and wrong entries are ignored.
 function readLink(address) {
   const said = new URLSearchParams(address.replace(/^#/, ""));
   const entries = SWEEPS.find((one) => one.name === said.get("sweep"))?.entries;

@@ -31,7 +31,7 @@ function plainText(label) {
   return label.replace(/<[^>]*>/g, "");
 }
 
-// Shows a point of the lines: all values with errors, and the limits.
+// Shows all values at a point of a line, with errors, and the limits.
 function selectOnLine(at) {
   const { shown } = STATE, { x, y, series, limits, beside } = shown;
   STATE.at = at;
