@@ -134,9 +134,9 @@ def tractions_at_phases(
 ) -> tuple[np.ndarray, np.ndarray]:
     """Return the tractions of a march and the friction bounds at phases of its path.
 
-    The shapes are (phases, 2, ...) and (phases, ...).  `rows` contains the indices of the phases,
-    by default of all phases.  If the last stage of a step lies before the end of the step, all
-    phases are needed.
+    The two arrays have the shapes (phases, 2, ...) and (phases, ...).  `rows` contains the indices
+    of the phases; by default, all phases are used.  If the last stage of a step lies before the end
+    of the step, all phases are needed.
     """
     assert march.fields is not None  # true for contacts whose points can stick
     bounds = bounds_at_phases(contact, path)
@@ -161,7 +161,7 @@ def bounds_at_phases(contact: Contact, path: Path) -> np.ndarray:
 
 
 def mean_forces(contact: Contact, problem: Problem, path: Path, forces: np.ndarray) -> np.ndarray:
-    """Compute the mean forces over a march, an array of shape (3,).
+    """Compute the mean forces over a march, as an array of shape (3,).
 
     `forces` are the forces at the phases of the path.
     """

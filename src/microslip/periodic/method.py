@@ -64,8 +64,9 @@ OWN = {
     SHIPPED: Method("what microslip.solve does unless told otherwise"),
     # robust and first order; tractions never exceed the friction bound
     "euler": Method("backward Euler, first order", integrator=EULER),
-    # Coulomb's law is satisfied in the middle of a step.  The tractions at its end are extrapolated
-    # and can exceed the friction bound.  An error recurs in the next step with the opposite sign.
+    # Coulomb's law is satisfied in the middle of a step.  The tractions at the end of the step are
+    # extrapolated and can exceed the friction bound.  An error recurs in the next step with the
+    # opposite sign.
     "midpoint": Method("implicit midpoint rule, undamped", integrator=theta_method(0.5)),
 }
 """Methods that replace at most the integrator, keyed by the names in methods.OWN."""

@@ -1,4 +1,4 @@
-"""Run of a contact under a force below the static limit until it comes to rest.
+"""Run a contact under a force below the static limit until it comes to rest.
 
 First, the force alone displaces the contact by partial slip.  Then the oscillation begins at its
 mean position, and each period displaces the contact by less than the period before.  The remaining
@@ -35,7 +35,7 @@ SLOWEST_RATIO = 0.9
 The remaining displacement is extrapolated only if r is at most this value."""
 LONG, DRIFTING = 200, 1.8
 """After LONG (half) periods, a ratio r above DRIFTING means that the contact keeps drifting; a
-steady drift has r = 2.  On a coarse mesh, the force can exceed the threshold."""
+steady drift has r = 2.  On a coarse mesh, the threshold of drift can be below the force."""
 MOST_SHARE = 0.9
 """`most_after` is the number of periods after which the oscillation has caused this fraction of the
 displacement."""

@@ -99,8 +99,8 @@ class Budget:
     def take(self, effort: Effort, next_work: int = 0) -> None:
         """Count the effort of marches.
 
-        Raises Spent if a limit is exceeded, or if the work of the next march would exceed its
-        limit.  The next march is checked in advance because a fine mesh takes long to build.
+        Raises Spent if a limit is exceeded, or if the next march would exceed the limit on the
+        work.  The next march is checked in advance because a fine mesh takes long to build.
         """
         self.taken += effort
         if self.taken.work + next_work > self.most_work:
@@ -169,8 +169,8 @@ class Settings:
     focus : rings.Focus or None
         Grading of the rings.  By default, they are graded towards the radius at which slip starts.
     slope : float
-        Under a prescribed force: rise of the friction with the velocity.  It converts an unbalanced
-        force, divided by mu times the mean normal load, to an error of the velocity.
+        Rise of the friction with the velocity, for contacts under a prescribed force.  It converts
+        an unbalanced force, divided by mu times the mean normal load, to an error of the velocity.
     """
 
     method: Method = OWN[SHIPPED]
@@ -246,7 +246,7 @@ class Run:
 
     @property
     def mu(self) -> float:
-        """The value `friction`."""
+        """The entry `friction` of `values`."""
         return self.values["friction"]
 
 
@@ -267,7 +267,7 @@ def unsolved(steps: Any, tolerance: float) -> str:
 
 
 def failed_run(reason: str) -> Run:
-    """Build the Run for a failed march.  Its values are NaN, and its errors are infinite."""
+    """Create the `Run` of a failed march.  Its values are NaN, and its errors are infinite."""
     return Run(dict.fromkeys(NAMES, np.nan), np.inf, np.inf, reason=reason)
 
 

@@ -12,8 +12,8 @@ The state of a driven body includes two more numbers, its position x and rate x'
 contact/march.py).  In one period, unbalanced forces hardly change the state of a heavy body or of a
 body on a soft spring.  So the map scales up the changes of x and x', as if the spring were stiffer
 and the body lighter, to match the stiffness of the contact.  The fixed point of the map stays the
-same.  A contact in full slip is much more compliant than a sticking contact.  For it, the stiffness
-is the rise of the mean force with the displacement.
+same.  A contact in full slip is much more compliant than a sticking contact.  For a contact in full
+slip, the stiffness is the rise of the mean force with the displacement.
 """
 
 from __future__ import annotations
@@ -227,7 +227,8 @@ class PeriodMap:
         if self.body.remembers:
             moved = self.factors * (march.body[-1] - march.body[0])
         elif self.factors[0] > 1.0:
-            # from the motion of the body, more accurate than from the forces of the steps
+            # computed from the motion of the body, which is more accurate than the forces of the
+            # steps
             advance = self.factors[0] * (march.body[-1, 0] - march.body[0, 0])
             force = march.forces[0, 0] - self.body.stiffness * advance
             tractions = tractions.copy()

@@ -283,7 +283,7 @@ class _Search:
         )
 
     def map(self, start: Start) -> PeriodMap:
-        """Build the map for a search from a start."""
+        """Build the period map for a search that begins at `start`."""
         full, drift_rate, slope = self.problem.mean_load, None, np.inf
         if self.force is None:  # the velocity is known
             gain = self.rate * self.interval

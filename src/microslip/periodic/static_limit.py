@@ -11,9 +11,9 @@ the bound allows:
 
 This is the counterpart of Melan's shakedown theorem for ratcheting.  At points that slip in every
 period of the oscillation alone, s is 0, because q reaches the bound in several directions, so that
-no constant traction can be added.  The mean of q at these points is not 0 for a loop without
-half-period symmetry, which drags the contact along.  At points that never slip, q contains an
-arbitrary constant, which does not change the sum of the two terms above.
+no constant traction can be added.  For a loop without half-period symmetry, the mean of q at these
+points is not 0, because the oscillation drags the contact along.  At points that never slip, q
+contains an arbitrary constant, which does not change the sum of the two terms above.
 
 For a motion on a line under a constant load, q(t) moves along the segment between the tractions at
 the two turning points, which are +-q after their mean is subtracted.  So only these two instants

@@ -4,9 +4,8 @@ The step solver is a function
 
     solve(points: Points, b, q, tolerance, settings) -> (q, slip, iterations, residual)
 
-for the imposed displacement b and a guess q of the tractions, arrays of shape (2, K).  `settings`
-is the return value of `prepare(points, **parameters)`.  contact.coulomb_residual defines the
-residual.
+for the imposed displacement b and a guess q of the tractions, both of shape (2, K).  `settings` is
+the return value of `prepare(points, **parameters)`.  contact.coulomb_residual defines the residual.
 """
 
 from __future__ import annotations

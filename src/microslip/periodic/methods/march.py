@@ -9,7 +9,8 @@ from microslip.periodic.method import Method
 from microslip.periodic.search import AT_REST, Goal, PeriodicState, PeriodMap
 
 SLOWEST = 1.0 - 1e-6
-"""Largest ratio of two successive changes used in an extrapolation.  Rounding can make it 1."""
+"""Largest ratio of two successive changes used in an extrapolation.  Rounding errors can make the
+ratio 1."""
 
 
 def plain_march(
