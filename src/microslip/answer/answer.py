@@ -51,7 +51,7 @@ FIELDS = (
     *("converged", "periodic", "reason", "cells", "angles", "steps_per_period"),
     *("observed_order", "periods", "exhausted", "solve_time_s"),
 )
-"""Names of the values without an error estimate in JSON and datasets, in their order."""
+"""Names of the values without an error estimate, in the order of JSON and datasets."""
 
 RATIO = (
     "a ratio: mean forward force divided by mu F_z; the coefficient of friction is mu times "

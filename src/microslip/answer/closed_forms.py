@@ -30,7 +30,8 @@ dissipation."""
 
 
 def no_vibration(problem: Problem) -> Exact | None:
-    """Return the closed form for amplitude 0, valid for any model, or None at other amplitudes."""
+    """Return the closed form for amplitude 0, which applies to any model; None at other
+    amplitudes."""
     if not problem.motion.periodic or problem.amplitude != 0.0:
         return None
     work = _work(problem)

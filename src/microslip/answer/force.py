@@ -72,7 +72,7 @@ AT_REST, UNBOUNDED = Estimate(0.0, {"model": 0.0}), Estimate(math.nan, {"model":
 
 
 def under_force(request: Request) -> Result:
-    """Compute the Result of a contact under a prescribed force."""
+    """Compute the `Result` for a contact under a prescribed force."""
     problem, periodic = request.problem, request.problem.motion.periodic
     force = problem.force
     assert force is not None
@@ -129,7 +129,7 @@ def _without_runs(
     reason: str = "",
     **values: Any,
 ) -> Result:
-    """Build a Result without a run, from a velocity and a dissipated energy."""
+    """Create a `Result` from a velocity and a dissipated energy, without a run."""
     own: dict = {"mean_velocity": velocity, "friction": Estimate(request.problem.force or 0.0)}
     if energy is not None and request.problem.motion.periodic:
         own["dissipation"] = energy
@@ -137,7 +137,7 @@ def _without_runs(
 
 
 def _unknown(request: Request, reason: str) -> Result:
-    """Build the Result of a point that failed because of `reason`, without estimates."""
+    """Create the `Result`, without estimates, for a point that failed because of `reason`."""
     effort = {"model": request.model, "effort": request.budget.taken}
     return _without_runs(request, UNBOUNDED, UNKNOWN, reason, **effort)
 
@@ -186,7 +186,7 @@ def _static(request: Request, force: float) -> Result:
 
 
 def _moving(request: Request, moving_force: float) -> Result:
-    """Compute the Result of a moving contact.
+    """Compute the `Result` for a moving contact.
 
     The runs use `moving_force`, under which the contact certainly moves.  If this force is larger
     than the requested force, the velocity lies between 0 and the velocity in the runs.
@@ -266,7 +266,8 @@ REST_SHARE = 0.2
 residuals accumulate over all periods.  Near the static limit, a run takes several hundred periods
 (tests/answer/test_shakedown.py)."""
 PLANNED_VELOCITY = 0.1
-"""Velocity for which the time steps are chosen; for velocity 0, the ladder has no time steps."""
+"""Velocity for which the time steps are chosen.  It is above 0, because the ladder for velocity 0
+has no time steps."""
 SHARED = ("model", "tolerance", "cells", "angles", "steps_per_period", "periods", "solve_time_s")
 """Names of the values that a Shakedown has in common with a Result."""
 
@@ -285,7 +286,7 @@ class Shakedown(Answer):
         or a larger force, the contact does not come to rest.
     displacement, displacement_error : float
         Forward displacement from the position without a force to the position at rest, in u_lim,
-        and its estimated error.  Infinite if the contact does not come to rest.
+        and its estimated error.  Both are infinite if the contact does not come to rest.
     pushed : float
         Part of the displacement caused by the force before the oscillation starts.
     most_after : float

@@ -86,7 +86,7 @@ class Ladder:
         )
 
     def levels(self, tolerance: float) -> tuple[int, ...]:
-        """Return the levels to try at a tolerance, in this order, each as the finest level.
+        """Return the finest levels to try at a tolerance, in the order in which they are tried.
 
         The last of these levels is one level above the first level for SMALLEST_TOLERANCE.
         """
@@ -116,7 +116,7 @@ class Ladder:
 class Kind(NamedTuple):
     """First level and number of time steps for a kind of problem.
 
-    Calibrated by `benchmarks/error_estimates.py --seed 3 --start FACTOR`.
+    The values are calibrated by `benchmarks/error_estimates.py --seed 3 --start FACTOR`.
 
     Attributes
     ----------
@@ -150,7 +150,7 @@ STATIC = Kind(start=32, steps=0)
 ANGLES_OF_ROTATION, ANGLES_OF_TRANSLATION = 0.5, 0.125
 """Number of angles on half the disc, divided by the level.  A rotation needs more angles, because
 the centre of rotation is in the contact.  In a translation, the tractions depend on the angle only
-weakly, and only at nu > 0.  Calibrated by `benchmarks/angles.py`."""
+weakly, and only at nu > 0.  Both values are calibrated by `benchmarks/angles.py`."""
 
 
 def ladder_for(
@@ -160,7 +160,7 @@ def ladder_for(
     cells: int | None = None,
     steps: int | None = None,
 ) -> Ladder:
-    """Choose the Ladder of a problem.
+    """Choose the `Ladder` for a problem.
 
     Parameters
     ----------
@@ -188,7 +188,7 @@ def ladder_for(
 
 
 def _kind(problem: Problem, model: str) -> Kind:
-    """Determine the Kind of a problem."""
+    """Return the `Kind` object that describes a problem."""
     motion = problem.motion
     on_a_line = at_turning_points(problem)
     if motion.periodic and problem.velocity == 0.0 and on_a_line:

@@ -285,7 +285,8 @@ def choose_model(problem: Problem, model: str = "auto") -> str:
 
 
 def method_refusal(problem: Problem, model: str, method: str) -> str:
-    """Return why a method does not apply to a model and a motion, or "" if it applies."""
+    """Return the reason why a method does not apply to a model and a motion, or "" if it
+    applies."""
     motion = problem.motion
     if method == SHIPPED:
         return ""

@@ -45,10 +45,10 @@ def solve(
         "transverse", "bore", "continuous-bore" or another motion, with its parameters, such as
         "elliptic:forward=0.5".  A Problem replaces all arguments up to `poisson`.
     velocity : float or None
-        The paper's dimensionless velocity, in units of u_lim of the pressure.  0 means the static
-        limit.  None under a prescribed force, which determines the velocity.  Negative velocities
-        are allowed for self-propelled motions; for other motions, the friction at -v is minus the
-        friction at v.
+        The paper's dimensionless velocity, in units of u_lim of the pressure.  Use 0 for the static
+        limit, and None under a prescribed force, which determines the velocity.  Negative
+        velocities are allowed for self-propelled motions; for other motions, the friction at -v is
+        minus the friction at v.
     amplitude : float or None
         The paper's dimensionless amplitude; None for steady motions.
     force : float or None
@@ -137,7 +137,7 @@ def warm_up() -> None:
 
 
 def applies(motion: str, poisson: float, model: str, method: str, pressure: str = "hertz") -> str:
-    """Return why a model or a method does not apply to a motion, or "" if both apply."""
+    """Return the reason why a model or a method does not apply to a motion, or "" if both apply."""
     kind = motion_named(motion)
     amplitude = 1.0 if kind.periodic else None
     problem = Problem(kind, 1.0, amplitude, poisson, pressure_named(pressure))

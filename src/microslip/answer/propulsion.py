@@ -126,7 +126,7 @@ def propulsion(
 
 
 def _at_rest(ahead: Result, back: Result) -> Propulsion:
-    """Build the Propulsion of a body that friction holds at rest in both directions."""
+    """Create the `Propulsion` result for a body that friction holds at rest in both directions."""
     low = number_text(-back.mu_macro, back.mu_macro_error)
     high = number_text(ahead.mu_macro, ahead.mu_macro_error)
     holds = f"propels nothing: friction holds a body at rest against forces from {low} to {high}"

@@ -12,8 +12,8 @@ The error estimate has four sources:
   The finest run is repeated for each interpolation; refinement does not reduce the differences.
 
 The methods are of second order, f(n) = f + C / n^2 + ..., and the difference D of the last two
-levels gives the correction D / 3.  If the differences decrease with another order p, those beyond
-the last level add up to D / (2^p - 1), and the extrapolated value is wrong by
+levels gives the correction D / 3.  If the differences decrease with another order p, the
+differences beyond the last level add up to D / (2^p - 1), and the extrapolated value is wrong by
 D (1 / (2^p - 1) - 1 / 3).  The error estimate is this error for the observed order, times a safety
 factor.  It is at least the correction and at most D, each times the safety factor.
 
@@ -24,8 +24,9 @@ taken to agree by chance: the differences change sign, or the observed order is 
 the last level need not be better than the one before, and D is the difference of the first two
 levels.
 
-If the differences increase, n/4 is too coarse for the leading term to dominate, and so, probably,
-is a slightly finer level.  The next n is then one whose coarser levels have already been computed.
+If the differences increase, n/4 is too coarse for the leading term to dominate, and a slightly
+finer level is probably too coarse as well.  The next n is then a level whose coarser levels have
+already been computed.
 """
 
 from __future__ import annotations
@@ -43,7 +44,7 @@ from microslip.periodic.run import NAMES, Effort, Run, Spent
 from microslip.scene.problem import Problem
 
 SAFETY = 1.5
-"""Safety factor on the correction.  Calibrated by
+"""Safety factor on the correction.  The value is calibrated by
 `benchmarks/error_estimates.py --seed 3 --safety FACTOR`."""
 CHANCE_ORDER = 2 * ORDER
 """Observed order above which the last two levels count as agreeing by chance.  Above this order, D
@@ -56,9 +57,9 @@ READING_SAFETY = 2.5
 No interpolation resolves a peak or an edge between the points."""
 SMALLEST_SHARE = 0.8
 """Smallest error estimate for the resolution, divided by the tolerance (at an imposed resolution,
-by Ladder.accuracy).  It is above 0 because three levels can agree by chance.  Calibrated by
-benchmarks/error_estimates.py at 0.7, and increased because benchmarks/attacks.py found errors of up
-to 0.75 times the tolerance where the levels agree."""
+by Ladder.accuracy).  It is above 0 because three levels can agree by chance.  The calibration by
+benchmarks/error_estimates.py gave 0.7; the value was increased because benchmarks/attacks.py found
+errors of up to 0.75 times the tolerance where the levels agree."""
 LARGEST_REST = 0.5
 """Finer runs are started only if the errors from sources other than the resolution sum to at most
 this fraction of the tolerance."""

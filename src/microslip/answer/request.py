@@ -94,7 +94,8 @@ class Request:
         return replace(self, problem=replace(self.problem, **changes))
 
     def result(self, estimates: dict[str, Estimate], reason: str = "", **values: Any) -> Result:
-        """Build the Result.  Values that are not given are those of a result that needs no run."""
+        """Create the `Result`.  Values that are not given are those of a result that needs no
+        run."""
         own: dict[str, Any] = {
             "model": CLOSED_FORM if self.chosen else self.model,
             "tolerance": self.tolerance,
@@ -112,7 +113,7 @@ def request_of(
     time_limit: float | None = None,
     **settings: Any,
 ) -> Request:
-    """Build the Request for a problem.  The result's `solve_time_s` counts from this call.
+    """Create the `Request` for a problem.  The result's `solve_time_s` counts from this call.
 
     Parameters
     ----------
@@ -209,12 +210,13 @@ def runs(
     share : float
         Tolerance of a single run divided by `tolerance`.
     slope : float
-        Under a force: rise of the friction with the velocity, see run.Settings.
+        Rise of the friction with the velocity, for contacts under a force; see run.Settings.
 
     Returns
     -------
     Answer
-        The Answer of refine.refine.  It has not converged if the budget of the request is exceeded.
+        The `Answer` that refine.refine returns.  It has not converged if the budget of the request
+        is exceeded.
     """
     # imported here because they load compiled code
     from microslip.answer.ladder import with_mass
@@ -308,7 +310,7 @@ def result_of_runs(
     name: str = "friction",
     **more: Estimate,
 ) -> Result:
-    """Build the Result of a refinement.
+    """Create the `Result` of a refinement.
 
     Parameters
     ----------

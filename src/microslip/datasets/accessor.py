@@ -104,8 +104,8 @@ class Map:
 
 
 def _coordinate(name: str, value: Any) -> xr.DataArray:
-    """Convert an argument to a DataArray of finite numbers.  A sequence gets the dimension `name`.
-    Values in dask chunks are checked only when they are computed."""
+    """Convert an argument to a DataArray of finite numbers.  A sequence is converted to an array
+    with the dimension `name`.  Values in dask chunks are checked only when they are computed."""
     if isinstance(value, xr.DataArray) and value.chunks is not None:
         return value
     if hasattr(value, "units") and not isinstance(value, xr.DataArray):
@@ -135,7 +135,8 @@ def _block(
     ranges: dict[str, tuple[float, float]],
     *parts: np.ndarray,
 ) -> tuple[np.ndarray, ...]:
-    """Check the ranges of the coordinates, broadcast them, and evaluate an interpolation there."""
+    """Check the ranges of the coordinates, broadcast them, and evaluate an interpolation at these
+    points."""
     arrays = np.broadcast_arrays(*parts)
     points = {}
     for (name, (low, high)), array in zip(ranges.items(), arrays, strict=True):

@@ -4,8 +4,8 @@
 
 A cell is a box in the scaled coordinates of sweeps.map_coordinates.  Friction in a cell is
 interpolated by the polynomial through its points: 5 along the velocity, 5 along the amplitude and,
-if Poisson's ratio is a direction of the map, 3 along Poisson's ratio.  cell_error is the error
-bound of the cell.  Identical records give byte-identical files.
+if the map has an axis for Poisson's ratio, 3 along that axis.  cell_error is the error bound of the
+cell.  Identical records give byte-identical files.
 """
 
 from __future__ import annotations
@@ -60,7 +60,7 @@ def build(
     nodes = [map_refinement.nodes_of(cell, degrees) for cell in cells.cells]
     variables["cell_error"] = cells.errors
     variables["cell_node"] = [[index[node] for node in own] for own in nodes]
-    # Poisson's ratio and velocity are scalars, unless they are directions of the map.
+    # If Poisson's ratio or the velocity is constant in the map, it is a scalar coordinate.
     axes: dict = {"velocity": ((), 0.0), "poisson": ((), sweep.poisson[0])}
     for direction, axis in zip(coordinates.directions, zip(*places, strict=True), strict=True):
         axes[direction] = "point", np.array(axis)

@@ -3,8 +3,8 @@
 On a regular grid, values are interpolated along each axis by the cubic through the four nearest
 nodes.  To estimate the error, the value at each node is also predicted from the neighbouring nodes,
 by a cubic with twice the spacing.  The error bound of a cell is the largest difference between
-prediction and value at the nodes of its cubic.  Compared with this bound, the true error is sixteen
-times smaller for a smooth function, and about equal at a kink.
+prediction and value at the nodes of its cubic.  For a smooth function, the true error is a
+sixteenth of this bound.  At a kink, the two are about equal.
 
 In a certified map, each cell has its own polynomial and its own error bound.
 """
@@ -156,7 +156,8 @@ def lagrange(nodes: np.ndarray, points: np.ndarray) -> np.ndarray:
 def polynomial(nodes: np.ndarray, weights: Iterable[np.ndarray]) -> np.ndarray:
     """Return the weighted sum of the values at nodes, with weights along each axis.
 
-    Terms are added one by one, so that the rounding error at a point does not depend on the others.
+    Terms are added one by one, so that the rounding error at a point does not depend on other
+    points.
 
     nodes: values, as an array of shape (k, l, ..., n).  weights: arrays of shapes (n, k), (n, l),
     ...  The result has the shape (n,).

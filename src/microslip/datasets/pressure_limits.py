@@ -53,7 +53,7 @@ def formulas_under(motion: str, name: str) -> dict[str, ClosedForm]:
         if pressure.is_indenter:
             functions = _of_indenter(motion, pressure)
         elif pressure.hertzian and motion != "bore":
-            # An elliptic stick zone carries the same fraction of the load.
+            # An elliptic stick zone carries the same fraction of the load as a circular one.
             functions = ZONE.function, of_sphere[STATIC].function
         for form, function in zip(exact, functions, strict=False):
             forms[form.name] = replace(form, function=_each(function))

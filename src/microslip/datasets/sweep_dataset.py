@@ -114,7 +114,7 @@ GROUPS = {
 }
 """Titles of the groups in the file of a sweep.  For each motion, only some of the groups exist."""
 ENTRIES = {"history": "periods", "transients": "travel"}
-"""Entry of a request by which the requests of a group of single runs are recognised."""
+"""For each group of single runs, the entry by which the requests of the group are recognised."""
 LONGEST_TEXT = 256
 """Maximum number of characters in a string.  A longer string is truncated and ends with dots."""
 
