@@ -105,8 +105,8 @@ def csv_text(columns: Mapping[str, Any], comments: Sequence[str] = (), digits: i
 
 
 def output_file(*endings: str) -> Callable[[str, str], str]:
-    """Return the reader of an option for the name of a new file.  endings: allowed file
-    extensions."""
+    """Return a function that reads the name of a new file from an option.  `endings` contains the
+    allowed file extensions."""
 
     def read(argument: str, text: str) -> str:
         file, problem = Path(text), ""
@@ -124,7 +124,7 @@ def output_file(*endings: str) -> Callable[[str, str], str]:
 
 
 def opened_map(argument: str, text: str) -> Any:
-    """Read the option --map, a .nc file or the name of a sweep, and return the dataset."""
+    """Return the dataset for the option --map, which is a .nc file or the name of a sweep."""
     from microslip.datasets.open_map import open_map
 
     try:

@@ -1,6 +1,7 @@
 """Functions that compute the answers of the commands; see the table in commands.py.
 
-Each function imports what it needs when it is called, so that help and refusals are fast.
+Each function imports other modules only when it is called, so that help texts and error messages
+appear fast.
 """
 
 from __future__ import annotations
@@ -31,14 +32,14 @@ FRICTION = ["mu_apparent", "mu_apparent_error", "friction_force_N", "friction_fo
 
 
 def point(motion: str, **arguments: Any) -> Answer:
-    """Compute macroscopic friction at one (velocity, amplitude), in dimensionless quantities.
+    """Compute macroscopic friction for one velocity and amplitude, in dimensionless quantities.
 
     The result is mu_macro, the mean forward friction force divided by mu F_z, with an error
     estimate.  This ratio is 1 if the vibration has no effect, and 0 if no friction remains.  The
     apparent coefficient of friction is mu_apparent = mu mu_macro.  F_z is the load without
-    oscillation (the reference load), u_lim the tangential displacement at which the whole contact
-    slides, a the contact radius, and phi_lk(a/2) the angle at which the stick radius is a/2.  Bore
-    means spin: rotation about the contact normal.
+    oscillation (the reference load), and u_lim is the tangential displacement at which the whole
+    contact slides.  The contact radius is a, and phi_lk(a/2) is the angle at which the stick radius
+    is a/2.  Bore means spin: rotation about the contact normal.
     """
     import microslip
 
@@ -71,17 +72,17 @@ def point_motions() -> dict[str, str]:
 def predict(motion: str, table: str | None = None, **arguments: Any) -> Answer:
     """Predict the friction of a real contact in SI units.
 
-    The contacts can also be the rows of a table, or an input can be a range.
+    The command can also predict many contacts: the rows of a table, or the values of a range.
 
     The result has error estimates, and warnings if the theory does not apply.  Every quantity has a
-    unit.  mu_macro is the friction with vibration divided by the friction without.  mu_apparent is
-    the coefficient of friction with vibration.  For a quantity with a standard uncertainty, such as
-    '0.15 +- 0.05' or '10 N +- 5 %', the result has intervals, and under a force the probability of
-    each outcome. A quantity can be a range: '0..2 um' gives 11 equally spaced values, '0..2 um, 21'
-    gives 21, and '0.1..10 mm/s, 21, log' gives 21 logarithmically spaced values.  The result is
-    then a table.  For an oscillating normal load, there are two reference loads.  Stiffness, mass
-    and damping are made dimensionless by mu times the load without oscillation, force and mu_macro
-    by mu times the mean load.
+    unit.  mu_macro is the friction with vibration divided by the friction without vibration.
+    mu_apparent is the coefficient of friction with vibration.  If a quantity has a standard
+    uncertainty, such as '0.15 +- 0.05' or '10 N +- 5 %', the result contains intervals and, under a
+    force, the probability of each outcome. A quantity can be a range: '0..2 um' gives 11 equally
+    spaced values, '0..2 um, 21' gives 21, and '0.1..10 mm/s, 21, log' gives 21 logarithmically
+    spaced values.  The result for a range is a table.  If the normal load oscillates, there are two
+    reference loads.  Dimensionless stiffness, mass and damping refer to mu times the load without
+    oscillation; dimensionless force and mu_macro refer to mu times the mean load.
     """
     from microslip.si.inputs import is_range, read_inputs
 
@@ -187,7 +188,8 @@ def _solved(cases: Cases, **options: Any) -> list[Any]:
 
 
 def _problem(error: InputError | str, cases: Cases, columns: Collection[str] = ()) -> str:
-    """Return the error message of a contact, with columns and options in place of Python arguments.
+    """Return the error message about a contact, with columns and options in place of Python
+    arguments.
 
     For an empty cell or a missing column, the message contains no value.
     """
@@ -206,13 +208,13 @@ def fit(
 ) -> Answer:
     """Fit the coefficient of friction and u_lim to measured friction.
 
-    The result contains the coefficient of friction without vibration, and the displacement u_lim at
-    which the whole contact slides, or the shear modulus.  Each row of the CSV file is a measurement
-    of friction under vibration.  The heading names the columns and their units: friction [N] or mu;
-    some of speed [mm/s], amplitude [um], frequency [kHz], load [N]; and optionally friction_error
-    [N] or mu_error.  An option in place of a column applies to all rows.  Exit codes: 0 both
-    parameters determined; 1 only mu determined, or unreadable lines left out; 2 bad input, or
-    neither parameter determined.
+    The result contains the coefficient of friction without vibration, and either the displacement
+    u_lim at which the whole contact slides or the shear modulus.  Each row of the CSV file is a
+    measurement of friction under vibration.  The heading names the columns and their units:
+    friction [N] or mu; some of speed [mm/s], amplitude [um], frequency [kHz], load [N]; and
+    optionally friction_error [N] or mu_error.  An option in place of a column applies to all rows.
+    Exit codes: 0 both parameters determined; 1 only mu determined, or unreadable lines left out; 2
+    bad input, or neither parameter determined.
     """
     import microslip
 
@@ -247,7 +249,7 @@ def response(path: str, output: str | None = None, **arguments: Any) -> Answer:
 
 
 def fold(record: str, output: str = "", rows: int = 32, **arguments: str) -> Answer:
-    """Average a long record of a motion, such as that of a vibrometer, to one period.
+    """Average a long record of a motion, such as one measured by a vibrometer, to one period.
 
     The slow drift is removed, and the periods are averaged.  The standard error covers the scatter
     between the periods and a slow drift of the frequency.  The columns of the record are time and
@@ -297,10 +299,11 @@ def fold(record: str, output: str = "", rows: int = 32, **arguments: str) -> Ans
 def iwan(output: str | None = None, **arguments: Any) -> Answer:
     """Export an Iwan model of a contact: parallel springs with sliders.
 
-    The model consists of parallel Jenkins elements, each a spring in series with a slider, for a
-    contact that moves along a line.  The table contains the stiffness and the limit force of each
-    element.  At nu = 0 the model with many elements is exact for every load path.  At nu > 0, the
-    model is compared with the full contact, and the difference is part of the error.
+    The model describes a contact that moves along a line.  It consists of parallel Jenkins
+    elements, each of which is a spring in series with a slider.  The table contains the stiffness
+    and the limit force of each element.  If nu = 0, the model with many elements is exact for every
+    load path.  If nu > 0, the model is compared with the full contact, and the difference is part
+    of the error.
     """
     import microslip
 

@@ -1,8 +1,8 @@
-"""How far friction falls when a frictional contact is vibrated.
+"""Compute how far friction falls when a frictional contact is vibrated.
 
 An elastic sphere on a flat (Hertz contact, Coulomb friction at every point) slides forward while it
-also oscillates or rotates.  point and sweep take dimensionless quantities, predict takes units.
-Bore means spin: rotation about the contact normal.
+also oscillates or rotates.  The commands point and sweep take dimensionless quantities; predict
+takes quantities with units.  Bore means spin: rotation about the contact normal.
 
 Exit codes: 0 done, 1 not converged, 2 bad input, 74 the output cannot be written, 130 interrupted,
 141 broken pipe.  sweep returns Snakemake's code.
@@ -35,8 +35,8 @@ def main(words: list[str]) -> int:
     Returns
     -------
     int
-        Exit code: 0 if the answer is complete, 1 if not, 2 for bad input.  `sweep` returns the exit
-        code of Snakemake.
+        Exit code: 0 if the answer is complete, 1 if it is incomplete, 2 for bad input.  `sweep`
+        returns the exit code of Snakemake.
     """
     if words[:1] == ["sweep"]:
         from microslip.app import sweep  # late, as it imports what other commands do not need
@@ -53,7 +53,7 @@ def main(words: list[str]) -> int:
 
 
 def _without_command(words: list[str]) -> int:
-    """Print the list of commands, or refuse the words."""
+    """Print the list of commands, or an error message about the words."""
     from microslip.app import sweep
 
     functions = {name: one.answer for name, one in COMMANDS.items()} | {"sweep": sweep.main}
@@ -86,7 +86,7 @@ def parser_of(name: str) -> Parser:
 def _respond(name: str, options: argparse.Namespace, readers: Mapping[str, Option]) -> int:
     """Print the answer to a parsed command line, or an error message.
 
-    Returns the exit code: 0 if the answer is complete, 1 if not, 2 for bad input.
+    Returns the exit code: 0 if the answer is complete, 1 if it is incomplete, 2 for bad input.
     """
     spellings = options.spellings
     try:

@@ -23,7 +23,8 @@ class Command(NamedTuple):
     options : dict of Option
         Positional arguments and options, keyed by Python argument.
     inputs : str
-        Groups and names of INPUTS that are further options.  A name after a minus is excluded.
+        Groups and names of INPUTS that are additional options.  A name after a minus sign is
+        excluded.
     motions : callable
         motions() returns the description of each motion, for the help text.
     """

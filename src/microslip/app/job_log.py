@@ -13,11 +13,11 @@ from microslip.foundation.files import advice
 
 @contextmanager
 def job_log(path: str | Path, shown: int = logging.WARNING) -> Iterator[logging.Logger]:
-    """Context manager for a job.  It yields a logger that writes to the file `path`.
+    """Context manager that yields a logger for a job.  The logger writes to the file `path`.
 
     Messages of at least the level `shown` also go to standard error.  An error ends the process
-    with exit code 1.  The log then contains the traceback.  For a CacheError, a SolverError, a
-    full disk or an interrupt, it contains only one line.
+    with exit code 1.  The log then contains the traceback.  For a CacheError, a SolverError, a full
+    disk or an interrupt, the log contains only one line.
     """
     try:
         file = logging.FileHandler(path, "w", "utf-8")

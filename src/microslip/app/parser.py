@@ -88,8 +88,8 @@ class Parser(argparse.ArgumentParser):
         return options
 
     def refuse(self, problem: str, word: str, allowed: Collection[str]) -> NoReturn:
-        """End the process with an error message about a word.  The message suggests the most
-        similar allowed word."""
+        """End the process with an error message about a word of the command line.  The message
+        suggests the most similar allowed word."""
         synonym = SYNONYMS.get(word, "")
         hint = f"did you mean {synonym}? " if synonym in allowed else near_miss(word, allowed)
         self.error(f"{problem}; {hint}allowed: {', '.join(allowed)}")

@@ -1,13 +1,13 @@
-"""Plan of a configuration: its products, the batches of requests for them, and the files that a
-folder of results lacks.
+"""Plan of a configuration: its products, the batches of requests that they need, and the files that
+are missing in the folder of results.
 
 A product is a dataset with its page, a figure, or a page of the explorer.  Its files are named by
 content, such as data/bore.0123456789abcdef.nc: the name contains a hash of everything that the
 product is made from, so that an existing file is always up to date.  Plain names, such as bore.nc,
 are links.
 
-The module does not import Snakemake.  It must be fast to import, since every Snakemake process
-parses the workflow.
+This module does not import Snakemake.  The import of this module must be fast, since every
+Snakemake process parses the workflow.
 """
 
 from __future__ import annotations
@@ -84,7 +84,8 @@ class Plan:
         self.batches = cache(self._batches)  # not @cache, since it would keep every plan
 
     def _product(self, name: str) -> Product:
-        """Return a product.  Its name contains a hash of everything that it is made from."""
+        """Return a product.  The name of its files contains a hash of everything that they are made
+        from."""
         configuration = self.configuration
         sweep, figure = configuration.sweeps.get(name), configuration.figures.get(name)
         kind, rule = name, "dataset"
@@ -116,8 +117,8 @@ class Plan:
         """Return the batches of a product, keyed by their path without extension, in the order of
         the requests.
 
-        A certified map has one batch with all points.  Its value is None, because its requests
-        depend on the results.
+        A certified map has one batch with all points.  The value of this batch is None, because its
+        requests depend on the results.
         """
         configuration, blocks = self.configuration, []
         if (sweep := configuration.sweeps.get(name)) is not None:
@@ -153,7 +154,7 @@ class Results:
     """
 
     def __init__(self, plan: Plan, folder: str | Path, here: bool = True, whole: bool = False):
-        """Find the complete files of all products, and the missing inputs of the others.
+        """Find the complete files of all products, and the missing inputs of incomplete products.
 
         here: False for a folder in remote storage, which counts as empty.  whole: if True, list the
         inputs of all products."""
@@ -172,11 +173,11 @@ class Results:
                 self.missing[name] = datasets + self.batch_files(name)
 
     def files(self, name: str) -> list[str]:
-        """Paths of the files of a product."""
+        """Return the paths of the files of a product."""
         return [f"data/{self.stems[name]}{end}" for end in self.plan.products[name].links.values()]
 
     def batch_files(self, name: str) -> list[str]:
-        """Paths of the batch files of a product."""
+        """Return the paths of the batch files of a product."""
         paths = []
         for path in self.plan.batches(name):
             folder, _, stem = f"batches/{path}".rpartition("/")
@@ -186,8 +187,8 @@ class Results:
     def link(self) -> None:
         """Link the plain names of products to their files, if the files exist.
 
-        The dates of other links are set far back, since Snakemake replaces a link only if an input
-        is newer.
+        If the file does not exist, the date of the link is set far back, since Snakemake replaces a
+        link only if an input is newer.
         """
         for plain, (_, path) in self.plain().items():
             link = self.folder / plain
@@ -203,9 +204,9 @@ class Results:
         return [self.stems[n] for n in self.missing if self.plan.products[n].rule == rule]
 
     def batches(self, certified: bool) -> list[str]:
-        """Return the names, without extension, of the batch files that the folder lacks for all
-        missing products.  certified: True for the batches of certified maps, False for all other
-        batches."""
+        """Return the names, without extension, of the batch files that are needed for missing
+        products and do not exist.  If `certified` is true, return the batches of certified maps,
+        otherwise all other batches."""
         names = {}
         for name in self.missing:
             batches = self.plan.batches(name).values()
@@ -215,7 +216,8 @@ class Results:
         return list(names)
 
     def order_of_batch(self, folder: str, name: str) -> str:
-        """Return the JSON text of a batch for its job; for a certified map, that of its name."""
+        """Return the JSON text of a batch for its job.  For a certified map, return the JSON text
+        of the name of the map."""
         path = f"{folder}/{name.partition('-')[0]}"
         for product in self.missing:
             if path in (batches := self.plan.batches(product)):
@@ -224,12 +226,13 @@ class Results:
         raise SourcesEdited("the solver")
 
     def orders(self, *names: str) -> str:
-        """Return the JSON text of the products that a job makes; see products.make_products."""
+        """Return the JSON text that lists the products made by a job; see
+        products.make_products."""
         return canonical_json([[name, self.stems[name], self.missing[name]] for name in names])
 
     def plain(self) -> dict[str, tuple[str, str]]:
-        """Return the name of the product and the path of each file, keyed by the plain name of the
-        file."""
+        """Return a dict from the plain name of each file to the name of its product and its
+        path."""
         return {
             plain: (name, f"data/{self.stems[name]}{ending}")
             for name, product in self.plan.products.items()
@@ -237,7 +240,8 @@ class Results:
         }
 
     def _chosen(self, folder: str, stem: str, endings: tuple[str, ...]) -> tuple[str, bool]:
-        """Return the name of complete files and True, or an unused name and False."""
+        """Return the name of complete files and True.  If there are none, return an unused name and
+        False."""
         number = self._listed(folder).get(stem, {})
         for variant in sorted(number):
             if content.GAPS not in number[variant] and number[variant].issuperset(endings):

@@ -20,10 +20,10 @@ log = logging.getLogger("microslip")
 def make_products(job: Any) -> None:
     """Make the products of a job, one after the other.
 
-    job: the variable `snakemake` of a script.  Its parameter `products` is a JSON list of
-    [name, stem of the files, inputs].  Paths are relative to the folder of results.
+    job: the variable `snakemake` of a script.  The parameter `products` of the job is a JSON list
+    of [name, stem of the files, inputs].  Paths are relative to the folder of results.
 
-    An error in one product does not prevent the others.  The first error is raised at the end.
+    If one product fails, the other products are still made.  The first error is raised at the end.
     """
     plan = Plan(load.from_mapping(job.config))
     folder = Path(job.output[0].rpartition("/data/")[0])

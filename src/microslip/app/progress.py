@@ -16,8 +16,8 @@ earlier."""
 def progress(title: str, total: int | None = None) -> Iterator[Callable[[str], None]]:
     """Context manager that shows a title, the number of finished steps and the elapsed time.
 
-    It yields a function that counts a step and shows a string about this step.  Nothing is shown if
-    standard error is not a terminal.
+    The context manager yields a function that counts a step and shows a string about this step.
+    Nothing is shown if standard error is not a terminal.
     """
     if not sys.stderr.isatty():
         yield lambda text: None

@@ -1,8 +1,8 @@
 """The command `microslip sweep`: run this package's workflow with Snakemake in the current folder.
 
 For bad input, Snakemake prints a list of all its options or a traceback, and returns exit code 1.
-Therefore, this module checks the arguments and the configuration first.  It reports bad input in
-one line and returns exit code 2.
+Therefore, this module checks the arguments and the configuration first.  Bad input is reported in
+one line, with exit code 2.
 """
 
 from __future__ import annotations
@@ -43,16 +43,16 @@ OPTIONS = {
 
 
 def main(arguments: list[str]) -> int:
-    """Run the workflow with Snakemake, which makes maps, datasets and figures.
+    """Run the Snakemake workflow that makes maps, datasets and figures.
 
-    It runs in the current folder and writes datasets to results/, and figures to results/figures/.
-    Existing results are not computed again.  A CONFIGURATION is a name in the folder config, here
-    or in the package; the default is config/config.yaml.  A TARGET is a dataset or a figure of the
-    configuration, such as bore, or a file, such as results/bore.nc; without a TARGET, all datasets
-    and figures are made.  All other options are passed to Snakemake (see snakemake --help); default
-    options are in profiles/default.  The exit code is 2 for bad input, and otherwise the exit code
-    of Snakemake. Examples: microslip sweep --cores 2; microslip sweep extended --dry-run; microslip
-    sweep --configfile mine.yaml --config points_per_job=10.
+    The workflow runs in the current folder and writes datasets to results/, and figures to
+    results/figures/.  Existing results are not computed again.  A CONFIGURATION is the name of a
+    file in the folder config, here or in the package; the default is config/config.yaml.  A TARGET
+    is a dataset or a figure of the configuration, such as bore, or a file, such as results/bore.nc;
+    without a TARGET, all datasets and figures are made.  All other options are passed to Snakemake
+    (see snakemake --help); default options are in profiles/default.  The exit code is 2 for bad
+    input, and otherwise the exit code of Snakemake. Examples: microslip sweep --cores 2; microslip
+    sweep extended --dry-run; microslip sweep --configfile mine.yaml --config points_per_job=10.
     """
     if {"-h", "--help"} & set(arguments):
         usage = "microslip sweep [CONFIGURATION | TARGET ...] [--dry-run] [options of Snakemake]"
@@ -117,8 +117,8 @@ def configurations() -> dict[str, Path]:
 def _spare_cache() -> None:
     """Use a temporary folder for Snakemake's internal files if the home folder is not writable.
 
-    At each start Snakemake creates a folder in the home folder.  If this fails, Snakemake ends with
-    a traceback.
+    At each start, Snakemake creates a folder in the home folder.  If this fails, Snakemake ends
+    with a traceback.
     """
     home = os.environ.get("XDG_CACHE_HOME") or os.path.expanduser("~/.cache")
     with suppress(OSError):
@@ -160,7 +160,8 @@ def _check(arguments: list[str]) -> None:
 
 
 def _configuration(options: argparse.Namespace) -> Configuration:
-    """Return the configuration.  Raises ConfigError if the Snakefile would refuse it."""
+    """Return the configuration.  Raises ConfigError if the Snakefile would refuse this
+    configuration."""
     from snakemake.cli import parse_config
     from snakemake.utils import update_config
 

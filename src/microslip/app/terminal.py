@@ -1,6 +1,6 @@
-"""Handling of Ctrl-C, closed pipes, full devices and closed streams when a command ends.
+"""Handle Ctrl-C, closed pipes, full devices and closed streams when a command ends.
 
-The module imports nothing slow, so that Ctrl-C works from the start.
+This module imports only fast modules, so that Ctrl-C works from the start.
 """
 
 from __future__ import annotations
@@ -82,9 +82,9 @@ def _code_of(command: Callable[[], int]) -> int:
 def _open_closed_streams() -> None:
     """Open the standard streams that are closed, and buffer standard output until the end.
 
-    Otherwise a file that is opened later would get the number of a closed stream and receive its
-    output.  With the buffer, the output is complete or missing, and only `_written` has to handle a
-    full device.
+    Otherwise, a file that is opened later would get the number of a closed stream, and the output
+    of this stream would be written to the file.  With the buffer, standard output is either
+    complete or missing, and only `_written` has to handle a full device.
     """
     missing = sys.stdout is None
     while (number := os.open(os.devnull, os.O_RDWR)) < 3:
@@ -125,8 +125,9 @@ def _written(code: int) -> int:
 def _code_in_thread(command: Callable[[], int]) -> int:
     """Run a command in another thread.
 
-    Python handles signals in the main thread, between two bytecode instructions.  A compiled kernel
-    is one instruction, which may take a minute, but does not block other threads.
+    Python handles signals in the main thread, between two bytecode instructions.  The call of a
+    compiled kernel is a single instruction, which may take a minute but does not block other
+    threads.
     """
     threading.stack_size(STACK)
     codes: list[int] = []
