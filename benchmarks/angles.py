@@ -66,8 +66,8 @@ def main() -> None:
         rows.append({"motion": motion})
         rows[-1] |= {str(n): f"{one:.0e}" for n, one in zip(ANGLES, worst, strict=True)}
         print(rows[-1], flush=True)
-    heading = "Largest friction difference between each number of angles and"
-    text = f"{heading} {MANY} angles, over {options.points} random points of each motion.\n\n"
+    heading = "Largest difference between the friction with the given number of angles and with"
+    text = f"{heading} {MANY} angles, among {options.points} random points of each motion.\n\n"
     tables.publish(text + tables.markdown(rows), options)
 
 

@@ -42,13 +42,14 @@ UNIFORM = (25, 97, 193)
 """Numbers of nodes along each axis of the uniform grids."""
 
 JUDGEMENTS = """\
-Certified maps at random points, which are uniform in the logarithm of the velocity and in the
-amplitude. The points were used neither to make a map nor to choose a constant. A point is covered
-if the error of the map is at most its estimate plus the error estimate of the reference. The
-last column is the smallest fraction of the surplus that would still cover all points."""
+The first table tests certified maps at random points, uniformly distributed in the logarithm of the
+velocity and in the amplitude. The points were used neither to make a map nor to choose a constant.
+A point is covered if the error of the map is at most its estimate plus the error estimate of the
+reference. The last column is the smallest fraction of the surplus that would still be enough to
+cover all points."""
 GRIDS = """\
-Cost of the maps, and of uniform grids whose nodes are as accurate as the points of the map. Between
-the nodes, the error estimate is that of `microslip.at`."""
+The second table compares the maps with uniform grids whose nodes are as accurate as the points of
+the map. Between the nodes, the error estimate is that of `microslip.at`."""
 
 
 def random_points(dataset, number, seed):

@@ -301,22 +301,23 @@ def _verdict(lines):
     twice = [line for line in lines if len(line.get(ALL_REFERENCES, ())) > 1]
     plain = [off(line) / max(line["error"], 1e-12) for line in converged] or [0.0]
     text = (
-        f"{len(lines)} points, {n} of them converged and with a reference. Errors above the"
-        f" estimate by more than the uncertainty of the reference: {x} ({CONFIDENCE:.0%} limit:"
-        f" {1e3 * limit:.2f} in 1,000). Largest error: {largest:.2f} times the estimate, and"
-        f" {farthest:.2f} times the tolerance. Error divided by its estimate: median"
-        f" {np.median(plain):.2f}, 99 % of the points below {np.quantile(plain, 0.99):.2f}."
+        f"Of {len(lines)} points, {n} converged and have a reference. At {x} of these, the error"
+        " exceeds its estimate by more than the uncertainty of the reference"
+        f" ({CONFIDENCE:.0%} limit: {1e3 * limit:.2f} in 1,000). The largest ratio of"
+        f" error to tolerance is {farthest:.2f}. The largest ratio of error to estimate is"
+        f" {largest:.2f}, the median is {np.median(plain):.2f}, and 99 % of these ratios are below"
+        f" {np.quantile(plain, 0.99):.2f}."
     )
     with_energy = [energy_ratio(line) for line in lines if has_energy(line)]
     if with_energy:
         text += (
-            f" Points with a reference for the energy: {len(with_energy)}; estimates too small:"
-            f" {sum(one > 1.0 for one in with_energy)}, largest error: {max(with_energy):.2f}"
-            " times the estimate."
+            f" {len(with_energy)} points have a reference for the energy:"
+            f" {sum(one > 1.0 for one in with_energy)} estimates of the energy are too small, and"
+            f" the largest ratio of error to estimate is {max(with_energy):.2f}."
         )
     if twice:
-        text += f" Points with two references or more: {len(twice)};"
-        text += f" with references that contradict each other: {sum(map(contradict, twice))}."
+        text += f" Points with two or more references: {len(twice)}."
+        text += f" Points whose references contradict each other: {sum(map(contradict, twice))}."
     return text
 
 
@@ -342,28 +343,29 @@ def _exceptions(lines):
     text = []
     for line in sorted(filter(failed, lines), key=ratio, reverse=True):
         text.append(
-            f"\nFails by {ratio(line):.2f}: {_named(line)}: error {off(line):.1e} (+-"
-            f" {line['uncertainty']:.0e}, {line['by']}), estimate {line['error']:.1e}."
+            f"\nPoint {_named(line)} fails by a factor of {ratio(line):.2f}: the error is"
+            f" {off(line):.1e} +- {line['uncertainty']:.0e} (from a {line['by']} run), but the"
+            f" estimate is {line['error']:.1e}."
         )
     for line in filter(energy_failed, lines):
         text.append(
-            f"\nEnergy fails by {energy_ratio(line):.2f}: {_named(line)}: {line['energy']:.5g} +-"
-            f" {line['energy_error']:.1e}, reference {line[ENERGY]:.5g} +-"
-            f" {line['energy_uncertainty']:.0e}."
+            f"\nThe energy of point {_named(line)} fails by a factor of {energy_ratio(line):.2f}:"
+            f" it is {line['energy']:.5g} +- {line['energy_error']:.1e}, but the reference is"
+            f" {line[ENERGY]:.5g} +- {line['energy_uncertainty']:.0e}."
         )
     for line in lines:
         if not line["converged"]:
-            text.append(f"\nNot converged: point {line['k']}: {line['reason']}.")
+            text.append(f"\nPoint {line['k']} did not converge: {line['reason']}.")
     without = sum(not line["by"] for line in lines)
     if without:
-        text.append(f"\nWithout a reference: {without} points.")
+        text.append(f"\n{without} points have no reference.")
     for line in lines:
         if contradict(line):
             every = ", ".join(
                 f"{one['reference']:.6g} +- {one['uncertainty']:.0e} ({one['by']})"
                 for one in line[ALL_REFERENCES]
             )
-            text.append(f"\nReferences contradict each other: {_named(line)}: {every}.")
+            text.append(f"\nThe references of point {_named(line)} contradict each other: {every}.")
     return text
 
 

@@ -62,8 +62,8 @@ def main():
         ("cores", f"{os.cpu_count()}"),
         ("CPU time of the page's thread (s): median", f"{statistics.median(cpu):.2f}"),
     ]
-    by = "in Chromium by `benchmarks/explorer_opening.py`"
-    head = f"The explorer, opened {options.times} times {by}."
+    by = "`benchmarks/explorer_opening.py`"
+    head = f"{by} opened the explorer {options.times} times in Chromium."
     tables.publish(f"{head}\n\n{tables.measured(rows)}", options)
 
 

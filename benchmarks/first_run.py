@@ -41,8 +41,8 @@ def main():
     options = parser.parse_args()
     with tempfile.TemporaryDirectory() as place:
         rows = [row(step, Path(place), options.cores) for step in STEPS]
-    load = f"mean load {os.getloadavg()[2]:.1f} of {os.cpu_count()} cores"
-    note = f"{options.cores} jobs at a time on {machine.cpu_model()}, {load}."
+    load = f"a mean load of {os.getloadavg()[2]:.1f} on {os.cpu_count()} cores"
+    note = f"Two runs with {options.cores} jobs at a time on {machine.cpu_model()}, at {load}."
     tables.publish(f"{tables.markdown(rows)}\n\n{note}\n", options)
 
 

@@ -99,7 +99,7 @@ def main():
     parser.add_argument("--per-job", type=int, default=500)
     options = parser.parse_args()
     rows = measure(options.points, options.per_job)
-    head = "# A sweep of many points\n\nMade by `benchmarks/growth.py`.\n\n"
+    head = "# A sweep of many points\n\n`benchmarks/growth.py` made this table.\n\n"
     tables.publish(head + tables.measured(rows), options)
 
 

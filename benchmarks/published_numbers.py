@@ -80,7 +80,7 @@ LAST_DIGITS = {"stiffness_forward": 3, "stiffness_lateral": 3}
 """Number of printed digits of these quantities. All others are printed with four digits."""
 
 CONTACT_CASES = """\
-CONTACT: the published value and the value of `microslip`, for these cases. Values in bold disagree.
+CONTACT: each cell contains the published value and that of `microslip`. Values in bold disagree.
 Force and work divided by the friction force are computed on a refined mesh and may differ by
 0.002. A stiffness may differ by 1.5 %. All other values agree if they are equal to the last printed
 digit."""

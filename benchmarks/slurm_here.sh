@@ -181,7 +181,7 @@ report() {
 print(version(sys.argv[1]))" "$package") |"
     done
     echo
-    echo "One node, $cpus CPUs. Jobs of Slurm:"
+    echo "Slurm ran these jobs on one node with $cpus CPUs:"
     echo
     echo "| rule | jobs | completed | CPUs each | memory request | time limit | longest, s |"
     echo "| --- | --- | --- | --- | --- | --- | --- |"
@@ -212,7 +212,7 @@ print(version(sys.argv[1]))" "$package") |"
     echo "The run with Slurm was first. The load average at the start was $load."
     echo
     if [ -z "$different" ]; then
-        echo "Equal, byte for byte: $(count '\.nc$') datasets, $(count /batches/) batches."
+        echo "$(count '\.nc$') datasets and $(count /batches/) batches are equal, byte for byte."
     else
         echo "Not equal:" $different
     fi
