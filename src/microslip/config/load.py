@@ -62,7 +62,7 @@ class Loader(yaml.SafeLoader):
         return spec.read("value", re.sub(r"\.(inf|nan)$", r"\1", node.value.lower()))
 
     def construct_object(self, node: yaml.Node, deep: bool = False) -> object:
-        """Construct a value.  The line number is added to errors."""
+        """Construct a value.  The line number is added to the message of an error."""
         try:
             return super().construct_object(node, deep)
         except (ValueError, TypeError, KeyError) as error:
@@ -130,7 +130,8 @@ def read_yaml(path: str | os.PathLike) -> dict:
 
 
 def reread(config: dict, paths: Iterable[str | os.PathLike]) -> dict:
-    """Return a copy of a configuration with the values of files as `read_yaml` reads them.
+    """Return a copy of a configuration in which the values from files are as `read_yaml` reads
+    them.
 
     Snakemake reads files as YAML 1.1, in which 1e-3 is a string and 010 is 8.
 
@@ -148,8 +149,8 @@ def reread(config: dict, paths: Iterable[str | os.PathLike]) -> dict:
 
 
 def _replaced(value: Any, old: Any, new: Any) -> Any:
-    """Return `new` if `value` equals `old`, else `value`, and do the same inside mappings.  An
-    ellipsis stands for a missing value."""
+    """Return `new` if `value` equals `old`, and otherwise `value`.  Values inside mappings are
+    replaced in the same way.  An ellipsis stands for a missing value."""
     if value == old and new is not ...:
         return new
     if not all(isinstance(one, dict) for one in (value, old, new)):
@@ -161,7 +162,8 @@ def _replaced(value: Any, old: Any, new: Any) -> Any:
 
 
 def load(path: str | os.PathLike) -> Configuration:
-    """Read a YAML file and return the checked Configuration.  Raises ConfigError if it is invalid.
+    """Read a YAML file and return the checked Configuration.  Raises ConfigError if the
+    configuration is invalid.
 
     Motion and pressure files are searched for in the folder of the YAML file, then in the working
     directory.
@@ -188,8 +190,8 @@ def from_mapping(
     Returns
     -------
     Configuration
-        In it, files of motions and pressures are named by their content.  To check that the solver
-        accepts the points, call `refuse_unsolvable`.
+        The checked configuration, in which files of motions and pressures are named by their
+        content.  To check that the solver accepts the points, call `refuse_unsolvable`.
 
     Raises
     ------
@@ -251,8 +253,8 @@ def _refuse_corners(sweep: Sweep) -> None:
 
 
 def _file_in(name: Any, role: str, folders: Iterable) -> named_files.NamedFile | None:
-    """Return the file that the name of a motion or pressure refers to, with its path and digest, or
-    None if it refers to none.
+    """Return the file that the name of a motion or pressure refers to, with its path and digest.
+    Return None if the name does not refer to a file.
 
     Raises InputError if the file is missing.
     """
@@ -264,8 +266,8 @@ def _file_in(name: Any, role: str, folders: Iterable) -> named_files.NamedFile |
 
 
 def _called(function: Callable[[Sweep], T], sweeps: dict[str, Sweep], source: str) -> dict[str, T]:
-    """Return the result of a function for each sweep.  An InputError is replaced by a ConfigError
-    for the key, which has the same name as the argument of the solver."""
+    """Return the result of a function for each sweep.  An InputError about an argument is replaced
+    by a ConfigError about the key with the same name."""
     results = {}
     for name, sweep in sweeps.items():
         try:

@@ -185,8 +185,8 @@ def _list(kind: Allowed, text: str, alone: bool = False) -> Allowed:
 def _axis(
     low: float = 0.0, high: float = LARGEST["velocity"], step: int = 0, above: bool = False
 ) -> Allowed:
-    """Return the type of an axis: a number, or a list of numbers and ranges. It is converted to an
-    ascending tuple."""
+    """Return the type of an axis: a number, or a list of numbers and ranges. The value is converted
+    to an ascending tuple."""
     one = _number(low, high, step, above)
     item = Allowed(one.text, lambda item: _spaced(item) if isinstance(item, dict) else [one(item)])
 
@@ -282,7 +282,8 @@ class Settings(BaseModel):
 
 
 def _tolerance(given: dict[str, Any]) -> float:
-    """Return the default tolerance of the points. For a certified map, it depends on the error."""
+    """Return the default tolerance of the points. For a certified map, the default depends on the
+    error of the map."""
     error = given.get("error")
     return 1e-3 if error is None else min(float(number(SHARE_OF_POINTS * error)), LOOSEST_POINTS)
 
@@ -348,7 +349,7 @@ class Sweep(Settings):
 
     @property
     def drives(self) -> dict[str, tuple[float, ...]]:
-        """Values of the given parameters of the drive, keyed by name."""
+        """Values of the drive parameters that are given, keyed by name."""
         return {name: values for name, values in self.axes.items() if name in DRIVES}
 
     @property
@@ -388,7 +389,7 @@ class Sweep(Settings):
 
 
 class Figure(Settings):
-    """A figure.  The key `kind` determines its contents."""
+    """A figure.  The key `kind` determines what the figure shows."""
 
     kind: Annotated[str, _one_of(*KINDS)]
     """Kind of figure. map shows friction over two axes, and curves shows it along one axis, with a
@@ -513,8 +514,8 @@ class Accuracy(Settings):
 
 
 class Block(Settings):
-    """Cases in which all methods are run. They differ in one quantity of a point: exactly one key
-    must have a list of several numbers as its value."""
+    """Cases in which all methods are run. The cases differ in one quantity: exactly one key must
+    have a list of several numbers as its value."""
 
     motion: Annotated[str, _one_of(*_OSCILLATIONS)]
     """Name of the motion."""

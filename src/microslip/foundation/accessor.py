@@ -1,8 +1,8 @@
 """The accessor `microslip` of xarray datasets.
 
-`import microslip` registers it, so that maps opened by `xarray.open_dataset(...)` have it.
-Importing xarray takes a third of a second.  To save this time in processes without datasets, the
-accessor is registered only when xarray is imported.
+`import microslip` registers the accessor, so that it is available for maps that are opened by
+`xarray.open_dataset(...)`.  Importing xarray takes a third of a second.  To save this time in
+processes without datasets, the accessor is registered only when xarray is imported.
 """
 
 import sys

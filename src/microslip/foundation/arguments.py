@@ -1,4 +1,4 @@
-"""Checks of the types and ranges of numbers that Python callers pass."""
+"""Check the types and ranges of numbers that Python callers pass."""
 
 from __future__ import annotations
 
@@ -22,8 +22,8 @@ u_lim, with a rounding error of 1e-7 u_lim.  It is equivalent to a constant forc
 
 
 def without_array(value: Any) -> Any:
-    """Return the number in a NumPy array without dimensions or in a dimensionless DataArray of one
-    value.  Return every other value unchanged.
+    """Return the number in a NumPy array without dimensions, or in a DataArray with one value and
+    without a unit.  Return every other value unchanged.
 
     Arrays of other libraries, masked arrays and arrays with a unit are unchanged.
     """

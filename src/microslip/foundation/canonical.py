@@ -13,8 +13,8 @@ from typing import Any
 def number(value: float) -> str:
     """Return the canonical decimal string of a finite number, such as 1 (for 1.0), 0.001 or 1e-8.
 
-    The number is rounded to 12 significant digits, so that 0.1 + 0.2 and 0.3 are the same
-    coordinate. Raises ValueError unless the value is a finite number.
+    The number is rounded to 12 significant digits, so that the coordinates 0.1 + 0.2 and 0.3 have
+    the same string. Raises ValueError unless the value is a finite number.
     """
     if isinstance(value, bool | str) or not math.isfinite(value):
         raise ValueError(f"{value!r} is not a finite number")
@@ -29,7 +29,8 @@ def number(value: float) -> str:
 
 
 def plain(value: object) -> Any:
-    """Convert NumPy values, also in dicts and lists, to values for JSON; NaN becomes None."""
+    """Convert NumPy values, also in dicts and lists, to values for JSON.  NaN is converted to
+    None."""
     if isinstance(value, dict):
         return {str(name): plain(item) for name, item in value.items()}
     if isinstance(value, list | tuple):

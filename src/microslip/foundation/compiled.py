@@ -4,14 +4,18 @@
 by Numba's settings and by a listener to Numba's events:
 
 - Numba notices an edit of the file of a function, but not an edit of another file that the function
-  uses.  So the name of the folder contains a digest of all kernels and of what they import.
-- Numba raises an error for a folder that is read-only or full.  So the folder is checked once.  If
-  it is not usable, another folder is used, or compiled code is not stored.  If code cannot be
-  stored later, for example on a disk that has filled up, the function is used without storing it.
-- Numba raises an error for a damaged file.  So the folder contains a list of checksums, which is
-  written after each compilation.  At the start of a process, other files are removed.
+  uses.  Therefore, the name of the folder of compiled code contains a digest of all kernels and of
+  all files that they import.
+- Numba raises an error for a folder that is read-only or full.  Therefore, the folder is checked
+  once.  If this folder is not usable, another folder is used, or compiled code is not stored.  If
+  code cannot be stored later, for example on a disk that has filled up, the function is used
+  without storing it.
+- Numba raises an error for a damaged file.  Therefore, the folder contains a list of checksums,
+  which is written after each compilation.  At the start of a process, files that do not match this
+  list are removed.
 - Two processes that compile one function at the same time can mix up the codes of its signatures.
-  So one process compiles at a time, and the others wait and then use its code.
+  Therefore, only one process compiles at a time.  The other processes wait, and then use the code
+  that it has stored.
 """
 
 from __future__ import annotations
@@ -87,7 +91,8 @@ def _usable_folder() -> Path | None:
 
 
 def _report(problem: str, remedy: str = "each process compiles it again") -> None:
-    """Print which folders cannot be used, once for this process and its jobs."""
+    """Print a message about folders that cannot be used, but only once for this process and its
+    jobs."""
     if not os.environ.get(REPORTED):
         os.environ[REPORTED] = "1"
         line = f"compiled code cannot be stored in {problem}; {remedy}"
@@ -95,8 +100,9 @@ def _report(problem: str, remedy: str = "each process compiles it again") -> Non
 
 
 class Locator(getattr(caching, "UserProvidedCacheLocator", object)):  # type: ignore[misc]
-    """Numba's locator for a given folder of compiled code.  It ignores the path of the package, so
-    that copies of the package share the compiled code.  Old versions of Numba do not use it."""
+    """Numba's locator for a given folder of compiled code.  This locator ignores the path of the
+    package, so that copies of the package share the compiled code.  Old versions of Numba do not
+    use it."""
 
     @classmethod
     def get_suitable_cache_subpath(cls, py_file: str) -> str:
@@ -105,8 +111,8 @@ class Locator(getattr(caching, "UserProvidedCacheLocator", object)):  # type: ig
 
 
 class _Listener(event.Listener):
-    """Listener to Numba's compiler lock, which encloses loading, compiling and storing, and to the
-    compilations inside it."""
+    """Listener to the events of Numba's compiler lock, and to compilations.  Numba holds the lock
+    while it loads, compiles and stores code."""
 
     depth, is_compiling, ended, seconds, started = 0, False, -SPELL, 0.0, 0.0
     lock: IO | None = None
@@ -179,8 +185,8 @@ event.register("numba:compile", _LISTENER)
 
 
 def compile_seconds() -> float:
-    """Return the seconds that this process has spent on compiling kernels and on loading compiled
-    code."""
+    """Return the time, in seconds, that this process has spent on compiling kernels and on loading
+    compiled code."""
     return _LISTENER.seconds
 
 

@@ -5,12 +5,13 @@ load [N],speed [mm/s],counterbody
 20,1,"70 GPa, 0.22"
 
 Commas, semicolons or tabs separate the columns.  A heading is a name, with or without a unit in
-brackets.  Empty lines, lines that begin with #, a first line such as sep=; and empty columns at the
-end are ignored.  A comment directly above the first line can be the heading.
+brackets.  Empty lines, lines that begin with #, a first line such as "sep=;" and empty columns at
+the end are ignored.  A comment directly above the first line can be the heading.
 
-`pandas.read_csv` accepts too much.  Under the heading "load [N],mu" it reads the line "1" as a load
-with an empty mu, and the line "1,5,0.3" as a load of 5.  It rejects the whole file for an unclosed
-quote and renames duplicate columns.  Its messages do not contain the line number of a cell.
+`pandas.read_csv` accepts too much.  Under the heading "load [N],mu", pandas reads the line "1" as a
+load with an empty mu, and the line "1,5,0.3" as a load of 5.  For an unclosed quote, pandas rejects
+the whole file.  Duplicate columns are renamed, and error messages do not contain the line number of
+a cell.
 """
 
 from __future__ import annotations
@@ -274,8 +275,8 @@ def lines_of(content: bytes, encoding: str) -> list[str]:
 
 
 def _heading(lines: list[str], index: int, decimal: str) -> tuple[str, Heads, Rows]:
-    """Return the separator, the heading that begins in a line, and the rows below it.  The heading
-    is empty if the line is not a heading."""
+    """Return the separator, the heading that begins in a line, and the rows below the heading.  The
+    heading is empty if the line is not a heading."""
     for separator in sorted(SEPARATORS, key=decimal.__eq__):  # the comma last if it is decimal
         rows = _rows(lines, index, separator)
         titles = next(rows, (0, []))[1]
@@ -289,8 +290,8 @@ def _heading(lines: list[str], index: int, decimal: str) -> tuple[str, Heads, Ro
 
 def _rows(lines: list[str], index: int, separator: str) -> Rows:
     """Yield the line number and the cells of each row, beginning with a given line.  A quoted cell
-    can have several lines, which are joined by spaces.  It ends in the next line with an odd number
-    of quotes."""
+    can have several lines, which are joined by spaces.  Such a cell ends in the next line with an
+    odd number of quotes."""
     while index < len(lines):
         where, text, cells = index + 1, lines[index], _cells(lines[index], separator)
         if not cells and text.count('"') % 2:
@@ -305,7 +306,8 @@ def _rows(lines: list[str], index: int, separator: str) -> Rows:
 
 
 def _cells(text: str, separator: str) -> list[str]:
-    """Return the cells of a row; none if the quotes are not in pairs around whole cells."""
+    """Return the cells of a row, or an empty list if the quotes are not in pairs around whole
+    cells."""
     rows = csv.reader([text], delimiter=separator, strict=True, skipinitialspace=True)
     try:
         return [cell.strip() for cell in next(rows, [])]
@@ -316,7 +318,8 @@ def _cells(text: str, separator: str) -> list[str]:
 def _heading_problem(
     line: str, heads: Heads, names: Mapping[str, str | None], need_units: bool, complete: str
 ) -> str:
-    """Return a message about an invalid heading of a table; empty if the heading is valid."""
+    """Return a message about an invalid heading of a table, or an empty string if the heading is
+    valid."""
     columns = [name for name, _ in heads]
     how = "each with its unit" if need_units else "with a unit or without"
     shown = next((f", as in {one}" for one in EXAMPLES if one.split()[0] in names), "")
@@ -337,8 +340,9 @@ def _heading_problem(
 
 
 def _name_and_unit(title: str) -> tuple[str, str | None] | None:
-    """Return the name in lower case and the unit in a heading.  The unit is "" for a pure number,
-    and None without brackets.  If the string is not a heading, the result is None."""
+    """Return the name (in lower case) and the unit from a heading.  The unit is "" for a pure
+    number, and None if the heading has no brackets.  If the string is not a heading, the result is
+    None."""
     match = HEADING.fullmatch(title)
     if match is None:
         return None
@@ -347,8 +351,8 @@ def _name_and_unit(title: str) -> tuple[str, str | None] | None:
 
 
 def _count_problem(where: int, count: int, columns: int, separator: str) -> str:
-    """Return a message about a row with a wrong number of cells.  count: number of cells; 0 for
-    open quotes."""
+    """Return a message about a row with a wrong number of cells.  `count` is the number of cells,
+    or 0 if a quote is not closed."""
     what = f"{count} cells" if count else "a double quote is open or inside a cell"
     hint = "; for decimal commas in quotes give decimal = ','" if count > columns else ""
     allowed = (
@@ -391,8 +395,8 @@ def _number(
 def _refuse_thousands(name: str, words: Mapping[int, str | None]) -> None:
     """Raise ValueError for a column in which points may be thousands separators.
 
-    Programs with decimal commas may write 900 and 1.100 for 900 and 1100.  If commas separate the
-    cells or are decimal, numbers have no such points.
+    Programs with decimal commas may write 900 and 1.100 for 900 and 1100.  This check is not needed
+    if commas separate the cells or are the declared decimal marks.
     """
     cells = [(k, word) for k, word in words.items() if word and word.lstrip("+-") != "0"]
     points = [(k, word) for k, word in cells if "." in word]

@@ -1,4 +1,4 @@
-"""Errors that callers handle: invalid input, a failure of the solver, an unusable results
+"""Errors that callers can handle: invalid input, a failure of the solver, or an unusable results
 folder."""
 
 from __future__ import annotations
@@ -38,7 +38,7 @@ class InputError(ValueError):
         return " ".join(f"{self.argument} = {shown(self.value)}: {self.allowed}".split())
 
     def renamed(self, argument: str, value: object = None) -> InputError:
-        """Return a copy with another argument, and with another value unless `value` is None."""
+        """Return a copy for another argument, and with another value unless `value` is None."""
         return InputError(argument, self.value if value is None else value, self.allowed)
 
 
@@ -56,7 +56,8 @@ class CacheError(RuntimeError):
 
 
 def shown(value: object) -> str:
-    """Return the string of a value for messages: the shortened repr, or the type if repr fails."""
+    """Return a string that represents a value in messages: the shortened repr, or the type if repr
+    fails."""
     try:
         text = repr(value)
     except Exception as error:  # an integer of thousands of digits, or a user's class

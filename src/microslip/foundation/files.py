@@ -1,5 +1,5 @@
-"""Reading and atomic writing of files.  A file is written under a temporary name, flushed to disk
-and renamed."""
+"""Read files, and write files atomically.  A file is written under a temporary name, flushed to
+disk and renamed."""
 
 import os
 import time
@@ -44,7 +44,8 @@ def refuse_no_folder(folder: object) -> None:
 def refuse_unusable(folders: Iterable[str | Path], files: Iterable[str | Path]) -> None:
     """Raise CacheError if the path of a folder is a file, or the path of a file is a folder.
 
-    folders, files: paths that a run will make.  Their parent folders are checked as well.
+    folders, files: paths that a run will make.  The parent folders of these paths are checked as
+    well.
     """
     for folder in map(Path, folders):
         with _advice("use", folder):

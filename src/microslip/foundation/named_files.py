@@ -7,10 +7,10 @@
 A result depends on the content of a file and not on its folder.  So the name of a motion or a
 pressure from a file contains a digest: "soft_square.py:sha256=0123456789abcdef,share=0.5" or
 "file:sha256=0123456789abcdef,grid=samples".  The digest of a Python file covers the files that it
-imports from its folder.  A process stores the path for each digest.  `remember` stores paths from
-another process.
+imports from its folder.  Each process stores the path that belongs to a digest.  `remember` stores
+paths that another process has passed on.
 
-The module imports nothing slow, because each start of the workflow imports the module.
+This module imports only fast modules, because each start of the workflow imports this module.
 """
 
 from __future__ import annotations
@@ -94,8 +94,8 @@ class NamedFile:
 
     @property
     def name(self) -> str:
-        """The name of the file in results.  It does not contain the folder, so that files with
-        equal content have equal names."""
+        """The name of the file in results.  This name does not contain the folder, so that files
+        with equal content have equal names."""
         return self._text(os.path.basename(self.path) if self.is_code else "")
 
     @property
@@ -114,8 +114,8 @@ class NamedFile:
 def parse(name: object, argument: str = "file") -> NamedFile | None:
     """Parse the name of a data file or of a Python file.
 
-    Returns None if the name is of neither kind.  Raises InputError about the argument if options
-    are invalid.
+    Returns None if the name does not refer to a data file or a Python file.  Raises InputError
+    about the argument if options are invalid.
     """
     if not isinstance(name, str):
         return None
@@ -143,7 +143,8 @@ def parse(name: object, argument: str = "file") -> NamedFile | None:
 def read(
     file: NamedFile, argument: str, folders: Iterable[str | os.PathLike] = ()
 ) -> tuple[NamedFile, bytes]:
-    """Read a file.  Returns the NamedFile, with the absolute path and the digest, and the content.
+    """Read a file.  Returns a copy of `file` with the absolute path and the digest, and the content
+    of the file.
 
     Parameters
     ----------
@@ -201,7 +202,8 @@ def remember(names: Iterable[str]) -> None:
 
 
 def base_name(name: str) -> str:
-    """Return the base name of a file, for messages; "" if this process has not stored the path."""
+    """Return the base name of a file for messages, or "" if this process has not stored the
+    path."""
     file = parse(name)
     return Path(file.path or PLACES.get(file.digest, "")).name if file else ""
 
@@ -237,8 +239,8 @@ def read_object(named: NamedFile, argument: str, create: Callable[[NamedFile, by
 
 
 def _imports_of(path: Path) -> tuple[Sources, set[str]]:
-    """Return the Sources of the folder of a file, and the names of this file and of the files in
-    the folder that it imports."""
+    """Return the `Sources` of the folder that contains a file, and the names of the file itself and
+    of the files in this folder that it imports."""
     from microslip.foundation.source_digest import Sources  # late, since it imports ast
 
     sources = Sources(path.parent, "")
@@ -246,10 +248,10 @@ def _imports_of(path: Path) -> tuple[Sources, set[str]]:
 
 
 def _run(path: Path, name: str) -> ModuleType:
-    """Run a Python file as a module with this name.  The file can import the files beside it.
+    """Run a Python file as a module with the given name.  The file can import the files beside it.
 
-    Afterwards, sys.modules is as before, except for this module: files in two folders can have the
-    same name, and an edited file is run again.
+    Afterwards, sys.modules is restored, except for this module, because files in two folders can
+    have the same name, and an edited file is run again.
     """
     module = sys.modules[name] = ModuleType(name)
     module.__file__ = str(path)
@@ -367,6 +369,6 @@ class Family(Generic[T]):
 
 @lru_cache(maxsize=128)
 def _shared_object(cls: Callable[..., T], *numbers: tuple[str, float]) -> T:
-    """Return the object of a class with these parameters.  Calls with equal parameters share one
-    object, including its cached properties."""
+    """Return the object of a class with the given parameters.  Calls with equal parameters share
+    one object, including its cached properties."""
     return cls(**dict(numbers))

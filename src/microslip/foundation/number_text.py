@@ -73,7 +73,8 @@ def _text(value: float, error: float, digits: int) -> str:
 
 
 def _plain(value: float, digits: int, zeros: bool = False) -> str:
-    """Format a number with `digits` significant digits.  zeros: if True, keep trailing zeros."""
+    """Format a number with `digits` significant digits.  If `zeros` is true, trailing zeros are
+    kept."""
     number = _rounded(value, digits)
     if not zeros or not number:
         return _short(number.normalize())
@@ -133,6 +134,6 @@ def prefixed(value: float, unit: str) -> tuple[str, float]:
 
 
 def prefixed_text(value: float, unit: str, digits: int = EXACT_DIGITS) -> str:
-    """Format an exact quantity with a metric prefix.  value: value in the SI unit."""
+    """Format an exact quantity with a metric prefix.  `value` is the value in the SI unit."""
     name, size = prefixed(value, unit)
     return number_text(value / size, unit=name, digits=digits)

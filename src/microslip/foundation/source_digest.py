@@ -1,11 +1,12 @@
 """Digests of the code that computes results and makes products.
 
-The name of a result contains the digest of the solver. It covers the code of all subpackages that
-compute results, and the file of a comparison method.  The name of a dataset, page or figure
-contains the digest of its builder: the modules that make it, and the modules that they import from
-the subpackages in OUTER (except foundation).  The name of a motion or a pressure in a user's file
-contains the digest of this file and of what it imports from its folder. Comments, docstrings and
-layout do not change a digest.  Messages change only the digests of builders.
+The name of a result contains the digest of the solver.  This digest covers the code of all
+subpackages that compute results, and the file of a comparison method.  The name of a dataset, page
+or figure contains the digest of its builder.  The builder consists of the modules that make the
+product, and of the modules that they import from the subpackages in OUTER (except foundation).  The
+name of a motion or a pressure in a user's file contains the digest of this file and of the files
+that it imports from its folder. Comments, docstrings and layout do not change a digest.  Messages
+change only the digests of builders.
 
 Files are read when a digest is first needed.
 """
@@ -70,7 +71,7 @@ class Sources:
         return _sha256(json.dumps(code).encode())
 
     def closure(self, names: Iterable[str], inside: Callable[[str], bool] = bool) -> set[str]:
-        """Return the paths of these files and of all modules that they import directly or
+        """Return the paths of the given files and of all modules that they import directly or
         indirectly.
 
         A table module.csv belongs to the module module.py.
@@ -98,7 +99,7 @@ class Sources:
         return self.closure(kernels, is_physics)
 
     def builder(self, *files: str) -> set[str]:
-        """Return the paths of the modules that make a product, besides the physics and the
+        """Return the paths of the modules that make a product, without those of the physics and the
         foundation.
 
         A table that has the name of a module, such as variables.csv, belongs to the module.
@@ -144,7 +145,7 @@ used."""
 
 
 def is_physics(name: str) -> bool:
-    """Return True for files that influence results.  name: path inside the package."""
+    """Return True for files that influence results.  `name` is the path inside the package."""
     room, slash, _ = name.partition("/")
     return name in NUMBERS or bool(slash) and room not in OUTER
 
@@ -173,8 +174,8 @@ def _text(node: object, messages: bool) -> str:
     """Return the text of a syntax tree, without docstrings, line numbers and empty fields.
 
     messages: if False, messages are omitted.  A string with a blank is a message, unless an
-    attribute of the string is used, as in "a b".split().  All versions of Python give the same
-    text, unlike ast.dump.
+    attribute of the string is used, as in "a b".split().  Unlike ast.dump, this function returns
+    the same text in all versions of Python.
     """
     if isinstance(node, list):
         return f"[{''.join(_text(item, messages) for item in node)}]"
@@ -207,7 +208,7 @@ def of_request(request: dict) -> str:
 
 @cache
 def of_solver(method: str = "") -> str:
-    """Return the digest of the physics and of the file of a comparison method."""
+    """Return the digest of the code of the physics and of the file of a comparison method."""
     files = {f"{METHODS}{method}.py"}.intersection(LOADED.names)
     return LOADED.digest(LOADED.solver | LOADED.closure(files, is_physics))
 
@@ -226,7 +227,7 @@ def of_builder(*files: str) -> str:
 
 def workflow_file(name: str) -> Path:
     """Return the path of a file of the workflow: in the folder `bundle` of an installed package, or
-    else at the top of a source tree.  The file may be missing there."""
+    else at the top of a source tree.  The file may be missing at this path."""
     bundled = PACKAGE / "bundle" / name
     return bundled if bundled.is_file() else PACKAGE.parents[1] / name
 

@@ -63,7 +63,8 @@ def read(argument: str, text: str, whole: bool = False) -> float | int:
 
 def near_miss(name: object, names: Iterable[str]) -> str:
     """Return 'did you mean NAME? ' for the most similar name, or '' if no name is similar.  If the
-    quantity is twice an argument, as a diameter is twice a radius, the hint says so."""
+    name is that of a quantity twice as large as an argument, such as a diameter in place of a
+    radius, the hint says so."""
     word = str(name).lstrip("-").replace("-", "_")
     half = re.sub("|".join(HALVES), lambda match: HALVES[match[0]], word)
     for one in names:
@@ -76,8 +77,8 @@ def near_miss(name: object, names: Iterable[str]) -> str:
 
 
 def split(text: str, what: str, names: Iterable[str]) -> tuple[str, str | None]:
-    """Split a string such as "elliptic:phase=90" into the name and the part with the parameters,
-    which is None without a colon.
+    """Split a string such as "elliptic:phase=90" into the name and the part with the parameters.
+    Without a colon, the second part is None.
 
     Raises InputError about the argument `what` if `names` does not contain the name.
     """
@@ -92,7 +93,7 @@ def numbers_in(
     part: str | None, text: str, what: str, name: str, parameters: Iterable[str] | None = None
 ) -> dict[str, float]:
     """Read the parameters in the part of a string after the name, such as "forward=0.5,phase=90".
-    Returns the numbers, keyed by name; empty if the part is None.
+    Returns the numbers, keyed by name, or an empty dict if the part is None.
 
     If the part cannot be read, or if a number is not in `parameters`, raises InputError about the
     argument `what`.  The message contains the whole string, and an example with the name.
@@ -121,7 +122,7 @@ def refuse_strange(record: Any, what: str) -> None:
     """Raise InputError about the argument `what` if a numeric field of a dataclass is not finite.
 
     Numeric fields are those whose default is a number.  An array of one number is replaced by the
-    number, see `arguments.without_array`.
+    number; see `arguments.without_array`.
     """
     for field in fields(record):
         if isinstance(field.default, int | float):

@@ -1,9 +1,10 @@
 """Quantities with one number, one unit, and possibly a standard uncertainty, converted to SI units.
 
-A string has the form NUMBER UNIT or NUMBER UNIT +- NUMBER UNIT.  A number has the digits 0 to 9, a
-decimal point and an exponent.  A unit is a product of the units in UNITS with integer exponents, as
-in "kg/m^3".  Division is read from left to right.  Every other string is refused.  Factors are
-exact fractions, so that equal quantities are equal floats: "1 um" and "1e-3 mm".
+A string has the form NUMBER UNIT or NUMBER UNIT +- NUMBER UNIT.  A number consists of the digits 0
+to 9, and can have a decimal point and an exponent.  A unit is a product of the units in UNITS with
+integer exponents, as in "kg/m^3".  Division is read from left to right.  Every other string is
+refused.  Conversion factors are exact fractions, so that equal quantities, such as "1 um" and
+"1e-3 mm", give equal floats.
 """
 
 from __future__ import annotations
@@ -68,8 +69,8 @@ unit."""
 
 
 class Unit(NamedTuple):
-    """A unit: the factor to the product of its base units, and the exponents of m, kg, s, rad and
-    K."""
+    """A unit, defined by its factor to a product of base units, and by the exponents of the base
+    units m, kg, s, rad and K."""
 
     factor: Fraction
     powers: tuple[int, ...]
@@ -194,8 +195,8 @@ def plain_number(value: Any) -> float:
 
 
 def _from_text(text: str, si: str, units: bool = False) -> Quantity:
-    """Return the Quantity for a string.  units: if True, accept units of a pure number, such as
-    N/kN."""
+    """Return the `Quantity` for a string.  If `units` is true, units of a pure number, such as
+    N/kN, are accepted."""
     centre, *rest = UNCERTAINTY.split(text.strip())
     if len(rest) > 1:
         raise ValueError("it has more than one uncertainty")
@@ -254,8 +255,8 @@ def _number(text: str, si: str, units: bool) -> tuple[float, bool]:
 
 
 def _hint(digits: str, rest: str) -> str:
-    """Return a hint about the likely meaning of the string at which reading stopped, after the
-    digits of a number."""
+    """Return a hint about the likely meaning of the rest of a string, at which reading stopped
+    after the digits of a number."""
     if digits and (fraction := re.fullmatch(r"/\s*([1-9]\d*)\s*(.*)", rest, re.S)):
         value = float(Fraction(Decimal(digits)) / int(fraction[1]))
         return f" (did you mean {f'{value!r} {fraction[2]}'.strip()!r}?)"

@@ -1,12 +1,12 @@
-"""Batch files, which contain the records of batches, and journals of the jobs that compute them.
+"""Batch files, which contain the records of a batch, and journals of the jobs that compute records.
 
-The first line of a batch file contains the names of the rows of its requests.  Each of the
-following lines is a record, and the last line is a checksum.  The file is written atomically.
-Batch files are also the cache: a job takes records from all journals in the folder, and from all
+The first line of a batch file lists the names of the rows to which its requests belong.  Each of
+the following lines is a record, and the last line is a checksum.  The file is written atomically.
+Batch files also serve as a cache: a job takes records from all journals in the folder, and from all
 batch files that contain points of the same rows.  A journal contains the records that a job has
 computed so far, so a killed job loses only the point in progress.
 
-A record has the keys key, request, result and versions.
+A record is a dict with the keys `key`, `request`, `result` and `versions`.
 """
 
 from __future__ import annotations
@@ -46,7 +46,8 @@ Compute = Callable[[Sequence[dict]], Iterable[tuple[dict, float]]]
 
 
 class SourcesEdited(CacheError):
-    """Error if the code on disk differs from the running code: a result could come from either."""
+    """Error raised if the code on disk differs from the running code, so that a result could come
+    from either of the two."""
 
     def __init__(self, file: str):
         problem = f"{file} was edited while its code was running, and its result is not stored"
@@ -57,8 +58,8 @@ class SourcesEdited(CacheError):
 
 
 def write(path: str | Path, records: Sequence[dict]) -> None:
-    """Write the records of a batch to a file atomically.  Raises CacheError if the file cannot be
-    written."""
+    """Write the records of a batch to a file, either all of them or none.  Raises CacheError if the
+    file cannot be written."""
     final = all(is_settled(record["result"]) for record in records)
     rows = sorted({row_of(record["request"]) for record in records})
     lines = [canonical_json({"rows": rows}), *map(canonical_json, records)]
@@ -113,15 +114,16 @@ def _checked(path: str | Path) -> tuple[bytes, bool]:
 class Job(ExitStack):
     """Context manager for a job that writes a batch file.  On exit, it closes the journal.
 
-    The job takes records from other batch files and journals in the folder.  It appends each
-    computed record to its own journal, which is removed after its records are in a batch file.
+    The job takes records from other batch files and journals in the folder.  The job appends each
+    computed record to its own journal.  This journal is removed after its records have been written
+    to a batch file.
 
     Attributes
     ----------
     path : Path
         File of the batch.
     records : dict of str to dict
-        Records of the job and final records from the folder, by key.
+        Records of the job and final records from the folder, keyed by the name of the result.
     seconds : list of float
         CPU time of each computed record.
     """
@@ -199,7 +201,7 @@ class Job(ExitStack):
             self._read.add(file)
 
     def _add(self, records: Iterable[dict]) -> set[str]:
-        """Add those of the records that are final, and return their keys."""
+        """Add all final records among `records`, and return the keys of the added records."""
         final = {r["key"]: r for r in records if is_settled(r["result"])}
         self.records.update(final)
         return set(final)
@@ -220,7 +222,7 @@ class Job(ExitStack):
 
 
 def _lines_of(journal: Path) -> Iterator[dict]:
-    """Yield the records of a journal.  Its last line can be incomplete."""
+    """Yield the records of a journal.  An incomplete line is skipped."""
     with suppress(OSError):
         for line in journal.read_bytes().splitlines():
             with suppress(ValueError):
@@ -231,7 +233,8 @@ def _lines_of(journal: Path) -> Iterator[dict]:
 
 
 def computed(request: dict) -> tuple[dict, float]:
-    """Compute a request.  Returns its record and the CPU time of the solver in seconds.
+    """Compute a request.  Returns the record of the request and the CPU time of the solver in
+    seconds.
 
     Raises SourcesEdited if code that was imported during the computation differs from the code
     whose digest is in the name of the result.
@@ -250,7 +253,7 @@ def computed(request: dict) -> tuple[dict, float]:
 
 
 def solve(requests: Sequence[dict], path: str | Path) -> dict:
-    """Write the batch file of the requests.  Only records that are missing in the folder are
+    """Write the batch file for the requests.  Only records that are missing in the folder are
     computed.
 
     Returns the statistics of `Job.finish`.  Raises CacheError if the file cannot be written.
@@ -261,6 +264,6 @@ def solve(requests: Sequence[dict], path: str | Path) -> dict:
 
 @cache
 def versions() -> dict[str, str]:
-    """Return the versions of Python and of the numerical libraries, by name."""
+    """Return the versions of Python and of the numerical libraries, keyed by name."""
     libraries = {name: importlib.metadata.version(name) for name in ("numpy", "scipy", "numba")}
     return {"python": platform.python_version(), **libraries}

@@ -1,7 +1,7 @@
 """Files that are named by their content, and links with plain names to these files.
 
-The name of such a file contains a hash of everything that it is made from.  If the file exists and
-is undamaged, it is therefore up to date.
+The name of a file contains a hash of everything that the file is made from.  A file that exists and
+is undamaged is therefore up to date.
 """
 
 from __future__ import annotations
@@ -20,8 +20,8 @@ again."""
 
 
 def is_whole(path: Path) -> bool:
-    """Return False if a file is truncated, or if its format does not match its ending.  The
-    checksum of a batch file must match, and its points must not have failed."""
+    """Return False if a file is truncated, or if its format does not match its ending.  A batch
+    file must also have a correct checksum and no failed points."""
     if path.suffix == ".jsonl":
         return batch.is_final(path)
     try:
@@ -40,7 +40,8 @@ def is_whole(path: Path) -> bool:
 
 def link(file: Path, plain: Path) -> None:
     """Make a file available under a plain name, as a symbolic link or, where links are not
-    possible, as a copy.  Another file with this name may belong to the user, so it is renamed."""
+    possible, as a copy.  If another file already has this name, it may belong to the user, so it is
+    renamed."""
     target = os.path.relpath(file, plain.parent)
     if plain.is_symlink():
         if os.readlink(plain) == target:
@@ -59,8 +60,8 @@ def link(file: Path, plain: Path) -> None:
 
 
 def remove_others(path: Path) -> None:
-    """Remove the damaged files that a new file replaces. Their names differ from its name only in
-    the number at the end."""
+    """Remove the damaged files that a new file replaces. The name of a damaged file differs from
+    the name of the new file only in the number at the end."""
     stem, ending = path.name.partition("-")[0].removesuffix(path.suffix), path.suffix
     for other in path.parent.glob(f"{stem}*{ending}"):
         same = other.stem.partition("-")[0] == stem

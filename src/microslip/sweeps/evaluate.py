@@ -133,7 +133,8 @@ _KINDS: dict[str, Callable[..., dict]] = {one.__name__.removeprefix("_"): one fo
 
 
 def _refusal(**arguments: Any) -> dict:
-    """Return the result for a model or a method that does not apply, or {} if both apply.
+    """Return the result for a model or a method that does not apply, or an empty dict if both
+    apply.
 
     arguments: the arguments of point.applies, and possibly others.
     """

@@ -3,10 +3,10 @@
 The axes of a map are velocity, amplitude and, optionally, Poisson's ratio.  A map of the static
 limit has no velocity axis.  A map is divided into patches at the known kinks of the motion
 (theory.exact).  Each patch is a box in scaled coordinates.  Below the velocity of the kink, the
-scaled velocity is proportional to velocity^(1/3), since friction approaches its static limit with
-twice this exponent.  In this range, the amplitude axis is divided at its kinks, and nodes are
-clustered at the kinks.  Above the velocity of the kink, the scaled velocity is logarithmic.  Where
-there are no kinks, amplitudes are scaled by log(1 + 2 A).
+scaled velocity is proportional to velocity^(1/3), since the distance of friction from its static
+limit is proportional to velocity^(2/3).  For these velocities, the amplitude axis is divided at its
+kinks, and nodes are clustered at the kinks.  Above the velocity of the kink, the scaled velocity is
+logarithmic.  Where there are no kinks, amplitudes are scaled by log(1 + 2 A).
 """
 
 from __future__ import annotations
@@ -24,8 +24,8 @@ from microslip.theory.exact import Kinks, kink_velocity
 DIGITS = 9
 """Number of significant digits in the coordinates of a node."""
 CLEAR = 2.0
-"""Smallest ratio between the velocity of a kink and either end of the velocity range.  A kink
-closer to an end does not divide the map."""
+"""Smallest ratio between the velocity of a kink and either end of the velocity range.  A kink that
+is closer to an end does not divide the map."""
 SLOW_POWER = 1.0 / 3.0
 """Exponent of the velocity in the scaled coordinate below the kink."""
 FAST = 2.0
@@ -44,14 +44,15 @@ Box = tuple[tuple[float, ...], tuple[float, ...]]
 
 
 class Scale(NamedTuple):
-    """A monotone function and its inverse.  Nodes are evenly spaced in the values of the
-    function."""
+    """A monotone function and its inverse.  The values of the function at the nodes are evenly
+    spaced."""
 
     forward: Callable
     back: Callable
 
     def between(self, ends: Sequence) -> Scale:
-        """Return this scale mapped linearly so that its function is 0 and 1 at two ends."""
+        """Return a copy of this scale, mapped linearly so that its function is 0 at the first end
+        and 1 at the second end."""
         low, high = map(self.forward, ends)
         return Scale(
             lambda value: np.clip((self.forward(value) - low) / (high - low), 0.0, 1.0),
@@ -165,16 +166,18 @@ class MapCoordinates(NamedTuple):
 
     @property
     def _rows(self) -> list[tuple[tuple[float, float], Scale]]:
-        """Ends and scale of each range of amplitudes between two kinks, for velocities below the
-        velocity of the kink.  An amplitude at a kink belongs to the later range."""
+        """Ends and scale of each range of amplitudes between two kinks.  These ranges apply to
+        velocities below the velocity of the kink.  An amplitude at a kink belongs to the range
+        above it."""
         low, high = self.amplitude
         borders = (low, *(a for a in self.kinks.amplitudes if low < a < high), high)
         return [(ends, self._row_scale(ends)) for ends in pairwise(borders)]
 
     @property
     def _cut(self) -> Callable | None:
-        """Function that returns the velocity of the kink at an amplitude, at a distance from the
-        ends of the velocity range; None if no kink divides the map."""
+        """Function that returns the velocity of the kink at an amplitude.  This velocity differs
+        from both ends of the velocity range by a factor of at least CLEAR.  None if no kink divides
+        the map."""
         if not (self.velocity and self.kinks.velocity):
             return None
         low, high = CLEAR * self.velocity[0], self.velocity[1] / CLEAR
@@ -184,8 +187,8 @@ class MapCoordinates(NamedTuple):
         return lambda amplitude: np.clip(kink_velocity(self.kinks, amplitude), low, high)
 
     def _speeds(self, fast: bool, amplitude: Any) -> Scale:
-        """Return the scale of the velocity at an amplitude.  fast: if True, above the velocity of
-        the kink."""
+        """Return the scale of the velocity at an amplitude.  The scale applies above the velocity
+        of the kink if `fast` is true, otherwise below it."""
         if not (cut := self._cut):
             return LOG.between(self.velocity)
         slowest, fastest = self.velocity

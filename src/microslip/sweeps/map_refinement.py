@@ -1,12 +1,13 @@
-"""Refine certified maps adaptively into cells, and compute the points of the maps.
+"""Divide certified maps adaptively into cells, and compute the points of the maps.
 
 A cell is a box in scaled coordinates (map_coordinates) with equally spaced nodes: 5 along the
 velocity, 5 along the amplitude and 3 along Poisson's ratio.  Friction in a cell is interpolated by
-the polynomial through its nodes.  The surplus along a direction is computed from the largest
-differences of the highest order in this direction.  It equals the error of a polynomial whose
-degree is lower by one.  The error of the cell's own polynomial is estimated as a fraction of the
-surplus.  This fraction was calibrated on other points.  A cell whose error is too large is halved
-along the direction with the largest surplus.  Both halves reuse the nodes of the cell.
+the polynomial through its nodes.  The surplus along a direction is computed from the largest finite
+differences of the highest order in this direction.  This surplus equals the error of a polynomial
+whose degree is lower by one.  The error of the cell's own polynomial is estimated as a fraction of
+the surplus.  The fraction was calibrated on points that are not nodes.  A cell whose error is too
+large is halved along the direction with the largest surplus.  Both halves reuse the nodes of the
+cell.
 
 The cells depend only on the results at the nodes, not on the order of the requests.
 """
@@ -179,7 +180,8 @@ def refine(sweep: Sweep, ask: Callable[[list[dict]], Iterable[dict]]) -> tuple[A
 
 
 def _request(sweep: Sweep, coordinates: MapCoordinates, node: Node) -> dict:
-    """Return the request for a node.  It equals the request of a sweep for the same point."""
+    """Return the request for a node.  This request equals the request of an ordinary sweep for the
+    same point."""
     place = dict(zip(coordinates.directions, coordinates.place(node), strict=True))
     point = {"velocity": (0.0,)} | {name: (value,) for name, value in place.items()}
     (request,) = points_of(sweep.model_copy(update=point)).requests
@@ -215,8 +217,8 @@ def solve_points(sweep: Sweep, path: str | Path, processes: int) -> dict:
 
 
 def _begin(places: dict[str, Path]) -> None:
-    """Prepare a worker process: store the paths of motion and pressure files, keyed by their
-    digests, and end the process when its parent ends."""
+    """Prepare a worker process: store the paths of the motion and pressure files, keyed by file
+    digest, and end the process when its parent ends."""
     named_files.PLACES.update(places)
     Thread(target=_end_with_parent, daemon=True).start()
 

@@ -1,8 +1,9 @@
 """Compact storage of a period of the periodic state.
 
-Half the disc and half the period are stored; the rest follows from symmetry.  Tractions are stored
-as multiples of 1/127 of the friction bound, which is sufficient for drawings.  The density of the
-dissipated energy is stored in 65,535 steps, and forces with seven decimals.  Slip flags are exact.
+Only half the disc and half the period are stored; the rest follows from symmetry.  Tractions are
+stored as multiples of 1/127 of the friction bound, which is sufficient for drawings.  The density
+of the dissipated energy is stored in 65,535 steps, and forces with seven decimals.  Slip flags are
+exact.
 """
 
 from __future__ import annotations
@@ -42,7 +43,7 @@ def packed(period: Period, angles: int) -> dict:
         The quantities in HISTORIES: arrays of shape (steps + 1,), with one value for each time.
 
         tractions: base64 of an int8 array of shape (steps/2 + 1, 2, angles, cells), in units of
-        bound/127.  The second axis is forward and lateral.
+        bound/127.  The second axis contains the forward and the lateral component.
 
         slips: base64 of the bits of an array of shape (steps/2 + 1, angles, cells).
 
@@ -50,7 +51,8 @@ def packed(period: Period, angles: int) -> dict:
         dissipated energy, scaled so that its largest value is 65535.
 
         turned: True if the other half of the disc is the stored half rotated by half a turn, as in
-        translations.  False if it is the mirror image of the stored half across the lateral axis.
+        translations.  False if the other half is the mirror image of the stored half across the
+        lateral axis.
 
         mu_macro, converged, reason: values of the Period.
     """

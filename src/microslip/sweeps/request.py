@@ -62,7 +62,7 @@ class Batch(NamedTuple):
 
     @property
     def folder(self) -> str:
-        """Name of the batch's folder, which is the name of the motion without parameters."""
+        """Name of the folder of the batch, which is the name of the motion without parameters."""
         return folder_of(self.rows[0].get("motion", "none"))
 
 
@@ -74,8 +74,8 @@ def request_of(kind: str, **arguments: Any) -> dict:
 
 
 def is_settled(result: dict) -> bool:
-    """Return False if the solver failed or reached its time limit.  Such a point is computed
-    again."""
+    """Return False if the solver failed or reached its time limit at a point.  The next run
+    computes such a point again."""
     return not result.get("crashed") and result.get("exhausted") != "time"
 
 
@@ -155,9 +155,9 @@ def divide(points: Batch, size: int) -> list[Batch]:
 def cut(items: Sequence, mean: int) -> list[list]:
     """Divide items into lists of consecutive items, with about `mean` items each.
 
-    The lengths of the lists differ by at most an eighth, or by one item.  Within this margin,
-    hashes of the items determine the ends, so that an additional item changes only a few of the
-    lists if they are long.
+    The lengths of the lists differ by at most an eighth, or by one item.  Within this margin, the
+    hashes of the items decide where a list ends.  If the lists are long, an additional item
+    therefore changes only a few of them.
     """
     count = max(round(len(items) / max(mean, 1)), 1)
     margin = len(items) // (16 * count)
