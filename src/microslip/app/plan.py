@@ -1,10 +1,10 @@
 """Plan of a configuration: its products, the batches of requests that they need, and the files that
 are missing in the folder of results.
 
-A product is a dataset with its page, a figure, or a page of the explorer.  Its files are named by
-content, such as data/bore.0123456789abcdef.nc: the name contains a hash of everything that the
-product is made from, so that an existing file is always up to date.  Plain names, such as bore.nc,
-are links.
+A product is a dataset with its page, a figure, or a page of the explorer.  The files of a product
+are named by content, such as data/bore.0123456789abcdef.nc.  The name contains a hash of everything
+that the product is made from, so that an existing file is always up to date.  Plain names, such as
+bore.nc, are links.
 
 This module does not import Snakemake.  The import of this module must be fast, since every
 Snakemake process parses the workflow.
@@ -252,8 +252,8 @@ class Results:
         return next(name for name in names if name not in number), False
 
     def _list(self, folder: str) -> dict[str, dict[str, set[str]]]:
-        """Return the extensions of the files in a folder.  They are keyed by the file name without
-        its number, and then by the file name."""
+        """Return the extensions of the files in a folder.  The extensions are keyed by the file
+        name without its number, and then by the file name."""
         listed: dict[str, dict[str, set[str]]] = {}
         path = self.folder / folder
         for file in os.listdir(path) if self.here and path.is_dir() else ():

@@ -1,7 +1,7 @@
 """The contact of two elastic bodies in SI units, and the dimensionless groups of the solver.
 
 All formulas accept arrays of inputs.  For tangential loads, two half-spaces are equivalent to one
-half-space whose compliance is the sum of their compliances.  The normal and the tangential problem
+half-space whose compliance is the sum of both compliances.  The normal and the tangential problem
 are assumed to be uncoupled.
 """
 
@@ -133,7 +133,7 @@ class Contact:
 
     @property
     def mismatch(self) -> Any:
-        """Dundurs' constant beta, dimensionless; 0 for equal bodies.
+        """Dundurs' dimensionless constant beta, which is 0 for equal bodies.
 
         With p = (1 - 2 nu)/G and q = (1 - nu)/G for each body, beta is (p1 - p2) / (2 (q1 + q2)).
         Beta is a measure of the tangential displacement caused by pressure.

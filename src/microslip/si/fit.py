@@ -8,11 +8,11 @@ follows by linear least squares.
 
 The confidence region contains the pairs (u_lim, mu) whose sum of squares is at most a threshold.
 The threshold is the smallest sum of squares plus a margin.  If the rows have standard errors, the
-margin is a quantile of the chi-square distribution.  Otherwise, it is a quantile of the F
+margin is a quantile of the chi-square distribution.  Otherwise, the margin is a quantile of the F
 distribution times the mean square residual.  For each u_lim, the region is an interval of mu,
-because the sum is quadratic in mu.  The interval of a parameter is the range of its values in the
-region, as in a profile likelihood.  This interval does not depend on the parametrisation, and may
-be infinite on one side.
+because the sum of squares is quadratic in mu.  The interval of a parameter is the range of its
+values in the region, as in a profile likelihood.  This interval does not depend on the
+parametrisation, and may be infinite on one side.
 
 If no map is given, the solver first computes a coarse map.  The coarse map is used only to compute
 how friction changes between two guesses of u_lim.  Then the solver computes the friction of every
@@ -113,8 +113,8 @@ class Fit:
     """Result of `fit`: the coefficient of friction and u_lim that were fitted to measured friction.
 
     Each interval covers the scatter of the rows at the confidence level.  The interval is then
-    widened by the error estimate of the model, because this error is not random.  Bounds that the
-    rows do not determine are None.  The page docs/reference/fields.md explains all fields, and the
+    widened by the error estimate of the model, because this error is not random.  A bound is None
+    if the rows do not determine it.  The page docs/reference/fields.md explains all fields, and the
     names in `rows`.
 
     Attributes
@@ -379,8 +379,8 @@ def _read_rows(source: Any, shared: dict[str, Any], **form: str) -> dict[str, An
 
 
 def _read_bodies(nu: Any, radius: Any, counterbody: Any) -> tuple[dict[str, Any], dict[str, str]]:
-    """Read the inputs nu, radius and counterbody.  Returns their values, if known, and their
-    descriptions.  Raises InputError."""
+    """Read the inputs nu, radius and counterbody.  Returns the values and the descriptions
+    of the inputs that are given.  Raises InputError."""
     if radius is None and counterbody is not None:
         raise InputError("counterbody", counterbody, "allowed with a radius")
     if radius is not None and nu is None:

@@ -154,7 +154,7 @@ def fold(
     integral = spline.antiderivative()
 
     def drift(time: Any) -> np.ndarray:
-        """Return the mean from half a period before a time to half a period after it."""
+        """Return the mean over one period that is centred at a given time."""
         return (integral(time + 0.5 / hz) - integral(time - 0.5 / hz)) * hz
 
     for refinement in range(REFINEMENTS + 1):

@@ -1,4 +1,4 @@
-"""Materials with the sources of their properties, and hardness scales."""
+"""Materials, the sources of their properties, and hardness scales."""
 
 from __future__ import annotations
 

@@ -116,7 +116,7 @@ def solve_at(contact: Contact, velocity: float | None, tolerance: float, **chang
     the solver is replaced by the largest allowed velocity, at which the vibration has no effect.
     `changes` contains the dimensionless force, stiffness, mass and damping.
 
-    The argument in a raised InputError is the corresponding input of `predict`.
+    A raised InputError is about the corresponding input of `predict`.
     """
     inputs, settings = contact.inputs, settings_of(contact)
     if velocity is not None:
@@ -161,8 +161,8 @@ def largest_force(contact: Contact) -> float:
     """Return the smallest constant force at which the contact runs away, divided by mu times the
     mean load.
 
-    This force is 1 for a body with a mass.  Otherwise, it is the smallest normal load in a period
-    divided by the mean load.
+    This force is 1 for a body with a mass.  Otherwise, it is the ratio of the smallest normal load
+    in a period to the mean load.
     """
     if contact.inputs.mass or contact.steady:
         return 1.0
@@ -173,8 +173,8 @@ def _threshold(contact: Contact, limit: Result | None) -> Estimate | None:
     """Return the smallest constant force that moves the contact, divided by mu times the mean load.
 
     The threshold equals the static limit if the oscillation exerts no forward force.  Otherwise, a
-    contact without mass follows the forward oscillation.  Its threshold is the static limit of the
-    other components of the motion, or 1 if there are no other components.  This static limit is
+    contact without mass follows the forward oscillation.  The threshold is then the static limit of
+    the other components of the motion, or 1 if there are no other components.  This static limit is
     computed only if a force is prescribed.  The threshold is None if it is unknown.
     """
     if limit is None:
@@ -196,8 +196,9 @@ def _friction(
     """Compute the friction at a prescribed speed, or the velocity under a prescribed force.
 
     If the force is below the threshold by more than the threshold's error, the contact comes to
-    rest, and no drift is computed.  If the force differs from the threshold by less than this
-    error, the result is not converged, since computing the small speed would take minutes.
+    rest, and no drift is computed.  If the force differs from the threshold by less than the error
+    of the threshold, the result is not converged, since computing the small speed would take
+    minutes.
     """
     groups = contact.drive(contact.mean_load)
     drive: dict[str, Any] = within_range(groups)
@@ -230,11 +231,11 @@ def _friction(
 
 
 def within_range(drive: dict[str, float]) -> dict[str, float]:
-    """Return the dimensionless drive, reduced to the range of the solver.
+    """Return the dimensionless drive, limited to the range of the solver.
 
-    If the force exceeds this range, the contact runs away.  A body that is too heavy or too stiff
-    hardly moves.  The mass, stiffness and damping of such a body are divided by one factor, which
-    preserves the natural frequency.
+    If the force exceeds the range of the solver, the contact runs away.  A body that is too heavy
+    or too stiff hardly moves.  The mass, stiffness and damping of such a body are divided by one
+    factor, which preserves the natural frequency.
     """
     body = {name: value for name, value in drive.items() if name != "force"}
     scale = max(1.0, max(body.values(), default=0.0) / arguments.LARGEST_BODY)
@@ -261,8 +262,8 @@ def _rest(contact: Contact) -> tuple[dict[str, Value], str]:
     """Return the displacement and the number of cycles until the contact rests, or the reason why
     they are unknown.
 
-    The displacement and the number are computed for round contacts only, because other contacts
-    would take minutes.
+    The displacement and the number of cycles are computed for round contacts only, because other
+    contacts would take minutes.
     """
     drive = contact.drive(contact.mean_load)
     if set(drive) != {"force"}:

@@ -4,7 +4,7 @@ time [ms],lateral [um],load [N]
 0,0,10
 0.1,0.62,10.3
 
-The file has the format of scene/files.py, with a unit in each heading.
+The module scene/files.py describes the format of the file.  Here, each heading has a unit.
 """
 
 from __future__ import annotations

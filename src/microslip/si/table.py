@@ -1,4 +1,4 @@
-"""Predictions for many contacts that form a table, a curve or a grid, as a dataset or as text."""
+"""Predict many contacts, which form a table, a curve or a grid, and return a dataset or text."""
 
 from __future__ import annotations
 
@@ -369,9 +369,9 @@ def interpolation_errors(values: xr.DataArray) -> dict[str, float | None]:
     """For each axis, return the largest difference between a value and the linear interpolation of
     its two neighbours.
 
-    The difference is None for an axis with fewer than three values.  If the values are smooth, the
-    error of linear interpolation between them is a quarter of the sum of these differences over the
-    axes.
+    The difference is None for an axis with fewer than three values.  If the values are smooth,
+    linear interpolation between them has an error of one quarter of the sum of these differences
+    over all axes.
     """
     errors: dict[str, float | None] = {}
     for name in map(str, values.dims):

@@ -4,7 +4,7 @@ probability of each outcome under a prescribed force.
 The uncertain inputs are independent and normally distributed.  The draws form a low-discrepancy
 sequence, so that the same inputs always have the same draws.  A draw outside the range of its input
 is replaced by the closest value of the range.  Outputs in closed form are evaluated for each draw.
-The result of the solver depends on the draw through a few dimensionless groups.  If the groups of
+The result of the solver depends only on a few dimensionless groups of each draw.  If the groups of
 all draws lie on a line, the solver computes the result at a few points of this line, and results
 are interpolated between these points.  In general, there are several lines, and the changes of the
 result along them are added.  The lines are the principal axes of the groups.  If there are at most
@@ -267,8 +267,8 @@ def normal_numbers(count: int) -> np.ndarray:
     """Return draws of independent standard normal numbers with mean 0 and variance 1, as an array
     of shape (DRAWS, count).
 
-    The draws form a Kronecker sequence.  Its irrational numbers are powers of the root of
-    x^(count + 1) = x + 1.
+    The draws form a Kronecker sequence.  The irrational numbers of this sequence are powers of the
+    root of x^(count + 1) = x + 1.
     """
     from scipy.special import ndtri
 
@@ -297,7 +297,7 @@ def with_interval(one: Value, draws: Any) -> Value:
 
 def probabilities(contact: Contact, answer: Prediction) -> dict[str, Value]:
     """Return the probability of each outcome under a prescribed force, with its error estimate.
-    Without a force, the result is empty.
+    If no force is prescribed, the result is empty.
 
     The error estimate is the largest of three values: the change of the probability due to the
     error of the threshold, the difference between the even and the odd draws, and

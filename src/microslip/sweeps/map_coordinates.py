@@ -6,7 +6,8 @@ limit has no velocity axis.  A map is divided into patches at the known kinks of
 scaled velocity is proportional to velocity^(1/3), since the distance of friction from its static
 limit is proportional to velocity^(2/3).  For these velocities, the amplitude axis is divided at its
 kinks, and nodes are clustered at the kinks.  Above the velocity of the kink, the scaled velocity is
-logarithmic.  Where there are no kinks, amplitudes are scaled by log(1 + 2 A).
+logarithmic.  Where there are no kinks, the scaled amplitude is log(1 + 2 A), where A is the
+amplitude.
 """
 
 from __future__ import annotations
