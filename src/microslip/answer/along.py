@@ -4,7 +4,7 @@
 integrates along a prescribed path, which need not be periodic, and refines the resolution until the
 errors of the forces are within the tolerance.
 
-`iwan` builds an Iwan model.  If Poisson's ratio is above 0, it compares this model with the
+`iwan` builds an Iwan model.  If Poisson's ratio is above 0, `iwan` compares this model with the
 response of the full contact.
 """
 
@@ -225,7 +225,7 @@ class Response(Answer):
 
     @property
     def columns(self) -> dict[str, tuple[str, np.ndarray]]:
-        """Unit and values of every column, by name.
+        """Dictionary that maps the name of every column to the unit and the values of the column.
 
         The column `force_error` contains the larger of the errors of the two force components.
         """
@@ -235,7 +235,7 @@ class Response(Answer):
 
     @property
     def attributes(self) -> dict[str, object]:
-        """Attributes of the dataset made from the response."""
+        """Attributes of the dataset that `to_xarray` returns."""
         names = ("model", "tolerance", "reason")
         return {name: getattr(self, name) for name in names} | {"converged": int(self.converged)}
 
@@ -423,7 +423,8 @@ def _marched(
 
 
 def _pieces(counts: np.ndarray, size: int) -> Iterator[tuple[int, int]]:
-    """Yield the first and the last row of each piece of a path, for states of `size` values."""
+    """Yield the first and the last row of each piece into which a path is divided.  A state has
+    `size` values."""
     ends, first = np.cumsum(counts), 0
     while first < len(counts):
         values_before = ends[first - 1] if first else 0
@@ -464,7 +465,7 @@ def iwan(
 ) -> Iwan:
     """Build the Iwan model (parallel springs with sliders) of a contact that moves along a line.
 
-    At nu = 0, the model with many elements is exact.  At nu > 0, it is compared with the full
+    At nu = 0, a model with many elements is exact.  At nu > 0, the model is compared with the full
     contact along an initial loading and a loop, and the largest difference is included in the
     error.
 
@@ -511,7 +512,8 @@ def iwan(
 
 
 def _poisson_error(pressure: Pressure, poisson: float) -> float:
-    """Return the largest difference between the full contact and the exact model at nu = 0.
+    """Return the largest force difference between the full contact and the model that is exact at
+    nu = 0.
 
     The path consists of an initial loading, followed by a loop that reaches full slip in each
     direction.

@@ -1,4 +1,4 @@
-"""Result classes of the public functions, and quantities with error estimates."""
+"""Classes of the results of public functions, and of quantities with error estimates."""
 
 from __future__ import annotations
 
@@ -69,8 +69,8 @@ DIGITS = 6
 class Estimate:
     """A quantity with its error estimate.
 
-    Estimates can be added, and multiplied by numbers.  The error of a sum is the sum of the errors
-    of its terms, separately for each source.
+    Estimates can be added to each other and multiplied by numbers.  The error of a sum is the sum
+    of the errors of its terms, separately for each source.
 
     Attributes
     ----------
@@ -108,7 +108,7 @@ UNKNOWN = Estimate(math.nan, dict.fromkeys(("resolution", "periodicity", "solver
 
 @dataclass(frozen=True, eq=False)
 class Answer:
-    """Results for a problem, by name.  Every value and every estimate is also an attribute.
+    """Named results for a problem.  Every value and every estimate is also an attribute.
 
     Attributes
     ----------
@@ -136,7 +136,7 @@ class Answer:
 
     @property
     def converged(self) -> bool:
-        """Whether the result has converged.  If it has not, `reason` says why."""
+        """Whether the result has converged.  If the result has not converged, `reason` says why."""
         return bool(self.values.get("converged", not self.reason))
 
     def changed(self, **changes: Any) -> Self:
@@ -152,7 +152,7 @@ class Answer:
         )
 
     def to_dict(self) -> dict[str, Any]:
-        """Convert the values to a dict, with `converged` and `reason`."""
+        """Return a dict of the values, `converged` and `reason`."""
         return {**self.values, "converged": self.converged, "reason": self.reason}
 
 
@@ -290,8 +290,8 @@ class Result(Answer):
         return "\n".join(lines + [f"NOT CONVERGED: {quantity}: {self.reason}"] * bool(self.reason))
 
     def to_dict(self) -> dict[str, Any]:
-        """Convert to a dict with the names used in JSON and datasets, omitting fields that do not
-        apply."""
+        """Return a dict with the names used in JSON and datasets.  Fields that do not apply are
+        omitted."""
         names = [name for one in QUANTITIES for name in (one, f"{one}_error")]
         flat = {name: getattr(self, name) for name in (*FIELDS, *names)}
         flat |= {name: self.answer.by_source.get(source, 0.0) for source, name in ERRORS.items()}

@@ -93,7 +93,8 @@ def _fast_sliding(problem: Problem, tolerance: float) -> Exact | None:
 
 
 def _steady_bore(problem: Problem) -> Exact | None:
-    """Evaluate Eqs 17 and 18 for a steady bore motion, or Eqs 21 and 22 for a sphere."""
+    """Evaluate Eqs 21 and 22 for the steady bore of a sphere, or Eqs 17 and 18 for other
+    pressures."""
     velocity, error = problem.velocity, ROUNDING
     if problem.pressure == HERTZ:
         both = paper.bore_forward(velocity), paper.bore_torque(velocity)

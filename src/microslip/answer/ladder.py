@@ -2,8 +2,8 @@
 
 Level n has n cells, and its numbers of angles and steps are proportional to n.  So the error has a
 single leading term C / n^2, which is estimated from runs at the levels n/4, n/2 and n.  LEVELS
-interleaves two series of doublings, 2, 4, 8, ... and 3, 6, 12, ...; so the cost grows moderately
-from level to level, and level n can reuse the runs at n/2 and n/4.
+interleaves two series of doublings: 2, 4, 8, ... and 3, 6, 12, ....  The cost therefore grows
+moderately from level to level, and level n can reuse the runs at n/2 and n/4.
 
 The first level depends on the tolerance and on the motion.  The mesh and the path also adapt to the
 problem.  Rings are graded towards the slip front (discretise.focus_strength).  The number of time
@@ -100,7 +100,7 @@ class Ladder:
         """Tolerance for which an imposed resolution is suitable.
 
         It is the tolerance at which `imposed` would be the first level.  Below the level `start`,
-        it follows from the second order of the method.
+        this tolerance follows from the second order of the method.
         """
         coarser = self.start / self.imposed
         return LOOSEST * coarser ** (ORDER if coarser > 1.0 else 1.0 / math.log10(RATIO))
@@ -231,9 +231,9 @@ def with_mass(ladder: Ladder, problem: Problem, model: str, tolerance: float) ->
 
     The natural frequency divided by the vibration frequency is sqrt(stiffness / mass).  Here, the
     stiffness is the sum of the stiffnesses of the contact (1.5 for a sphere at nu = 0) and the
-    spring.  Time integration changes this frequency.  If it moves a resonance, runs can agree with
-    each other and still be wrong.  Therefore the steps are so short that the relative change of the
-    frequency is at most the tolerance.
+    spring.  Time integration changes this frequency.  If a resonance is shifted, runs can agree
+    with each other and still be wrong.  Therefore the steps are so short that the relative change
+    of the frequency is at most the tolerance.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""Checks of the arguments of a request, and choice of the contact model.
+"""Check the arguments of a request, and choose the contact model.
 
 An error message names the argument, its value and the allowed values.
 """
@@ -103,7 +103,7 @@ def problem_of(
     poisson: float = 0.0,
     drive: Mapping[str, float | None] | None = None,
 ) -> Problem:
-    """Check the arguments that describe a contact, and build the Problem.
+    """Check the arguments that describe a contact, and create the `Problem`.
 
     Parameters
     ----------
@@ -203,7 +203,7 @@ def without_forward_motion(problem: Problem) -> Problem:
 def is_even(problem: Problem) -> bool:
     """Return whether the oscillation alone exerts no forward force at any time.
 
-    If so, the force threshold of motion equals the static limit.
+    If the oscillation exerts none, the force above which the contact moves equals the static limit.
     """
     motion, pressure = problem.motion, problem.pressure
     if oscillates_forward(problem) or not motion.half_disc:

@@ -312,8 +312,8 @@ def _whole_disc(contact: PolarContact, field: np.ndarray) -> tuple[np.ndarray, n
     """Extend a field of shape (n, 2, M, N) to the whole disc.
 
     Returns the forward and the lateral component as arrays of shape (n, points).  For a rotation,
-    the other half of the disc is the mirror image across the lateral axis.  For a translation, it
-    is the first half rotated by 180 degrees.
+    the other half of the disc is the mirror image across the lateral axis.  For a translation, the
+    other half is the first half rotated by 180 degrees.
     """
     flat = field.reshape(len(field), 2, -1)
     if not contact.whole:

@@ -36,7 +36,8 @@ divided by the first trial velocity."""
 class Propulsion(Answer):
     """Stall force and no-load velocity of a self-propelled motion.
 
-    Both are negative if the motion propels the body backward, and 0 if it does not propel the body.
+    Both values are negative if the motion propels the body backward, and 0 if the motion does not
+    propel the body.
 
     Attributes
     ----------
@@ -143,9 +144,10 @@ def _at_rest(ahead: Result, back: Result) -> Propulsion:
 def _root(friction: Callable[[float], Result], first: float) -> tuple[float, float]:
     """Find the velocity at which friction vanishes, with its error estimate.
 
-    Brent's method finds a velocity at which the friction is 0 to within its error.  From there,
-    steps of doubling length on either side lead to two velocities that bracket the root: the
-    friction has opposite signs, and a magnitude larger than its error.
+    Brent's method finds a velocity at which the friction is 0 to within its error.  From this
+    velocity, steps of doubling length in both directions lead to two velocities that bracket the
+    root.  At these velocities, the friction has opposite signs and a magnitude larger than its
+    error.
 
     Parameters
     ----------

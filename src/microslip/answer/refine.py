@@ -1,4 +1,4 @@
-"""Refinement of the solution of a problem until its estimated error is within the tolerance.
+"""Refine the solution of a problem until its estimated error is within the tolerance.
 
 The error estimate has four sources:
 
@@ -242,5 +242,6 @@ def _estimates(
 
 
 def _weighted(weights: Iterable[float], errors: Iterable[float]) -> float:
-    """Return a weighted sum of errors, without terms of weight 0, whose error can be infinite."""
+    """Return a weighted sum of errors.  Terms of weight 0 are omitted, because their error can be
+    infinite."""
     return float(sum(w * e for w, e in zip(weights, errors, strict=True) if w))

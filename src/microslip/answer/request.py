@@ -2,9 +2,9 @@
 
 A run that does not converge is repeated.  The slower the forward motion, the longer its transients.
 In long transients, even small errors of the steps accumulate to a wrong state, and the search needs
-a better initial guess.  So the second attempt solves the steps to a tighter tolerance.  It first
-finds the periodic state at a higher velocity, where this is easier.  Then it lowers the velocity
-step by step, and each run starts from the previous run's state.
+a better initial guess.  So the second attempt solves the steps to a tighter tolerance.  The second
+attempt first finds the periodic state at a higher velocity, where the search is easier.  Then it
+lowers the velocity step by step, and each run starts from the previous run's state.
 """
 
 from __future__ import annotations
@@ -94,8 +94,8 @@ class Request:
         return replace(self, problem=replace(self.problem, **changes))
 
     def result(self, estimates: dict[str, Estimate], reason: str = "", **values: Any) -> Result:
-        """Create the `Result`.  Values that are not given are those of a result that needs no
-        run."""
+        """Create the `Result`.  Values that are not given are set to those of a result that needs
+        no run."""
         own: dict[str, Any] = {
             "model": CLOSED_FORM if self.chosen else self.model,
             "tolerance": self.tolerance,
@@ -113,7 +113,8 @@ def request_of(
     time_limit: float | None = None,
     **settings: Any,
 ) -> Request:
-    """Create the `Request` for a problem.  The result's `solve_time_s` counts from this call.
+    """Create the `Request` for a problem.  The time `solve_time_s` of the result is measured from
+    this call on.
 
     Parameters
     ----------
@@ -149,7 +150,7 @@ def request_of(
 def answer_of(request: Request) -> Result:
     """Compute the friction at a velocity of at least 0, prescribed directly or through a spring.
 
-    Uses a closed form if there is one, otherwise runs of a model.
+    The result comes from a closed form if there is one, otherwise from runs of a model.
     """
     problem, drive, reason = request.problem, request.problem.drive, ""
     moves = problem.motion.periodic and problem.velocity > 0.0
@@ -344,7 +345,7 @@ def result_of_runs(
 
 
 def within_friction(problem: Problem, friction: Estimate) -> Estimate:
-    """Clip the friction to its range: 0 to 1, or -1 to 1 for motions that can propel.
+    """Clip the friction to its range: 0 to 1, or -1 to 1 for motions that can propel the contact.
 
     Values outside this range result from rounding and discretisation errors.  If the error exceeds
     the width of the range, the result is the middle of the range with half the width as its error.

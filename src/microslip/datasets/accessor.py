@@ -21,8 +21,8 @@ BLOCK = 2**14
 
 
 class Map:
-    """Accessor that interpolates friction between the points of a sweep's dataset.  For a
-    prescribed force, it interpolates the velocity.
+    """Accessor that interpolates friction between the points of a sweep's dataset.  On a map over
+    forces, the accessor interpolates the velocity.
 
     Parameters
     ----------

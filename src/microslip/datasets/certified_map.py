@@ -29,7 +29,7 @@ from microslip.sweeps.request import solver_names
 def build(
     configuration: Configuration, name: str, records: Iterable[dict]
 ) -> tuple[xr.Dataset, dict[str, xr.Dataset]]:
-    """Build the dataset of a certified map.  The dict of its groups is empty.
+    """Build the dataset of a certified map.  The second result, the dict of groups, is empty.
 
     Parameters
     ----------
@@ -86,8 +86,8 @@ def build(
 
 
 def report(dataset: xr.Dataset, name: str) -> Iterator[str]:
-    """Yield a line with the number of points and the largest error bound of the map and, if the
-    error bound of some cells is too large, a line with the number of these cells."""
+    """Yield a line with the number of points and the largest error bound of the map.  If the error
+    bound of some cells is too large, yield a second line with the number of these cells."""
     errors = dataset["cell_error"].values
     failed = int(dataset["mu_macro"].isnull().sum())
     converged = f"{failed} not converged" if failed else "all converged"

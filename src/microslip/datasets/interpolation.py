@@ -4,7 +4,7 @@ On a regular grid, values are interpolated along each axis by the cubic through 
 nodes.  To estimate the error, the value at each node is also predicted from the neighbouring nodes,
 by a cubic with twice the spacing.  The error bound of a cell is the largest difference between
 prediction and value at the nodes of its cubic.  For a smooth function, the true error is a
-sixteenth of this bound.  At a kink, the two are about equal.
+sixteenth of this bound.  At a kink, the true error and the bound are about equal.
 
 In a certified map, each cell has its own polynomial and its own error bound.
 """
@@ -46,8 +46,8 @@ Points = dict[str, np.ndarray]
 class Axis:
     """One axis of a grid, with ascending coordinates.
 
-    The axis is logarithmic if the ratios of neighbouring coordinates vary less than the steps
-    between them.
+    The axis is logarithmic if the ratios of neighbouring coordinates vary less than their
+    differences.
 
     Attributes
     ----------
@@ -110,7 +110,7 @@ class Axis:
         return cell, share, index, weights
 
     def misses(self, table: np.ndarray) -> np.ndarray:
-        """Return the absolute error of a cubic through the neighbouring nodes, for each node.
+        """For each node, return the absolute error of the cubic through the neighbouring nodes.
 
         The nodes are along the first axis of the table.  An end node is assigned the error of its
         neighbour.  If there are only two nodes, both are assigned the difference between their
@@ -281,7 +281,7 @@ def of_map(dataset: xr.Dataset, name: str) -> Grid | Cells:
 def cells_of(dataset: xr.Dataset) -> Cells:
     """Read the cells of a certified map.
 
-    Raises InputError with the name of the variable if one is missing.
+    If a variable is missing, raises InputError with the name of the variable.
     """
     text = dataset.attrs[COORDINATES]
     try:
@@ -306,7 +306,7 @@ def cells_of(dataset: xr.Dataset) -> Cells:
 
 
 def grid_of(dataset: xr.Dataset, name: str) -> Grid:
-    """Read a variable of a regular map as a Grid.  Values that did not converge count as unknown.
+    """Read a variable of a regular map as a `Grid`.  Values that did not converge count as unknown.
 
     Raises InputError with the name of the variable or coordinate that is missing or not allowed.
     """

@@ -1,8 +1,8 @@
 """Write datasets to netCDF files with groups, and read such files.
 
-The root of a file contains the variables that have the sweep's axes, so that it can be converted to
-one table and joined with the roots of other files.  Variables with other axes, such as curves and
-single runs, are in groups.  A group is opened by its name:
+The root of a file contains the variables that have the sweep's axes.  The root can therefore be
+converted to one table, or joined with the roots of other files.  Variables with other axes, such as
+curves and single runs, are in groups.  A group is opened by its name:
 
     xr.open_dataset(path)                    # the root
     xr.open_dataset(path, group="history")   # one of its groups
@@ -66,9 +66,9 @@ requires."""
 def coded(variable: xr.Variable) -> xr.Variable:
     """Encode a variable of strings as integers with the attributes flag_values and flag_meanings.
 
-    All operations of xarray support integers, also on disk and in dask chunks.  The code of a
-    string is its CRC-32 in 31 bits, and 0 for an empty string.  A string therefore has the same
-    code in all files, so that files can be joined.
+    Integers are supported by all operations of xarray, also on disk and in dask chunks.  The code
+    of a string is its CRC-32 in 31 bits, and 0 for an empty string.  A string therefore has the
+    same code in all files, so that files can be joined.
     """
     codes: dict[int, str] = {}
     code_of = {}

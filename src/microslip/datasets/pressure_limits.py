@@ -1,4 +1,4 @@
-"""Closed forms for pressures other than the Hertz pressure of a sphere, as in datasets.catalogue.
+"""Closed forms for pressures that differ from the Hertz pressure of a sphere.
 
 Some closed forms are valid for any pressure (Eqs 6 and 7), others for axisymmetric indenters.  Some
 closed forms of circular Hertz contacts are also valid for elliptic ones.

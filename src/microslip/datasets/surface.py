@@ -18,10 +18,10 @@ FINE = 200
 class Surface:
     """Values of a map on a fine grid that contains all computed points.
 
-    The values equal those of `microslip.at` with two exceptions.  A value outside the range of the
-    two neighbouring points, which occurs on coarse maps, is clipped to this range, so that figures
-    show only computed extrema.  If the value at a point of a cubic is unknown, the interpolation is
-    linear.
+    The values equal those of `microslip.at` with two exceptions.  On coarse maps, a value can be
+    outside the range of the two neighbouring points.  Such a value is clipped to this range, so
+    that figures show only computed extrema.  If the value at a point of a cubic is unknown, the
+    interpolation is linear.
 
     Parameters
     ----------
@@ -106,8 +106,9 @@ def _cells(axis: Axis, coordinates: np.ndarray) -> list[np.ndarray]:
 def largest_around(values: np.ndarray) -> np.ndarray:
     """Return the largest entry at the nodes around each cell of a table.
 
-    The windows have four nodes along each side, and the table is padded with its edge entries.  The
-    result has the shape (n - 1, m - 1), but at least one entry along each axis.
+    The nodes around a cell form a window with four nodes along each side.  The table is padded with
+    its edge entries.  The result has the shape (n - 1, m - 1), but at least one entry along each
+    axis.
 
     values: entries at the nodes, as an array of shape (n, m).
     """

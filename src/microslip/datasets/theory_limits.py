@@ -18,7 +18,8 @@ CURVE_POINTS = 241
 def formulas(motion: str, pressure: str = "hertz") -> dict:
     """Return the closed forms for a motion and a pressure, given by their names.
 
-    The result is a dict of catalogue.ClosedForm by name.  It is empty if no closed form is known.
+    The result is a dict of catalogue.ClosedForm by name.  The dict is empty if no closed form is
+    known.
     """
     if pressure == "hertz":
         return catalogue.FORMS.get(motion, {})

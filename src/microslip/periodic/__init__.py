@@ -1,1 +1,1 @@
-"""Solver for a single run at one resolution, which computes a periodic, steady or static state."""
+"""Solver that computes a periodic, steady or static state in a single run at one resolution."""

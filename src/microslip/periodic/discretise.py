@@ -1,7 +1,8 @@
-"""Discretisation of a problem in space and time, and evaluation of its time integration.
+"""Discretise a problem in space and time, and evaluate the time integration.
 
-The functions build the mesh of the contact and the path in time.  From a march (a time integration
-along the path), they compute tractions, friction bounds, mean forces and the dissipated energy.
+Some functions build the mesh of the contact and the path in time.  The others compute tractions,
+friction bounds, mean forces and the dissipated energy from a march (a time integration along the
+path).
 """
 
 from __future__ import annotations
@@ -98,9 +99,10 @@ def contact_of(
 
 
 def path_of(problem: Problem, contact: Any, steps: int, integrator: Integrator = SDIRK2) -> Path:
-    """Build the path of a problem, starting at a turning point.
+    """Build the path of a problem.  The path starts at a turning point.
 
-    The path covers half a period if the second half is its mirror image, otherwise a whole period.
+    If the second half of a period is the mirror image of the first, the path covers half a period,
+    otherwise a whole period.
 
     Parameters
     ----------

@@ -129,7 +129,7 @@ def run_to_rest(
 
 
 class _Walk:
-    """Successive marches of a contact under a force, with sums of their effort and residuals."""
+    """Successive marches of a contact under a force, with the sums of effort and residuals."""
 
     def __init__(self, contact: RingContact, body: Body, step_tolerance: float):
         self.contact, self.body, self.step_tolerance = contact, body, step_tolerance

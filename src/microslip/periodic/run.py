@@ -1,7 +1,7 @@
 """Settings, effort and result of a run, and the budget of a point.
 
 A run is one simulation at one resolution; a march is one time integration over a period or half a
-period.  The budget limits the work of a point and its wall-clock time.  Both limits are checked
+period.  The budget limits the work and the wall-clock time of a point.  Both limits are checked
 after every march, so that they also end long searches.  With a limit on the work, the result is the
 same on every machine.  The time limit depends on the machine, so a result that reached the time
 limit is not stored.  The time that Numba needs to compile or load kernels does not count, because
@@ -182,7 +182,8 @@ class Settings:
     def contact(
         self, problem: Problem, model: str, resolution: Resolution, focus: Focus | None = None
     ) -> Contact:
-        """Build a contact with the method's step solver.  Its marches count towards the budget.
+        """Build a contact with the method's step solver.  The marches of this contact count towards
+        the budget.
 
         Raises Spent, before the contact is built, if one march would exceed the budget.
         """
@@ -267,7 +268,8 @@ def unsolved(steps: Any, tolerance: float) -> str:
 
 
 def failed_run(reason: str) -> Run:
-    """Create the `Run` of a failed march.  Its values are NaN, and its errors are infinite."""
+    """Create the `Run` of a failed march.  The values of this run are NaN, and the errors are
+    infinite."""
     return Run(dict.fromkeys(NAMES, np.nan), np.inf, np.inf, reason=reason)
 
 

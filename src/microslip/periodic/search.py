@@ -1,19 +1,20 @@
 """Search for the periodic state of a contact.
 
-A march is the time integration over a period or half a period.  It maps the state at its start to
-the state at its end, and the periodic state is the fixed point of this map.  The transients of
-plain marches last about 1/(2 pi v~) periods.  Anderson acceleration of the map finds its fixed
-point much sooner.  Convergence is judged by three quantities: the residual of the plain map
-(without acceleration), the distance to the next state, and an error computed from the residual and
-the drift rate of the motion.  The last quantity is needed near the static limit, where the state
-changes so slowly that a small residual is no evidence of convergence.
+A march is the time integration over a period or half a period.  It maps the state at the start to
+the state at the end.  The periodic state is the fixed point of this map.  The transients of plain
+marches last about 1/(2 pi v~) periods.  Anderson acceleration of the map finds its fixed point much
+sooner.  Convergence is judged by three quantities: the residual of the plain map (without
+acceleration), the distance to the next state, and an error computed from the residual and the drift
+rate of the motion.  The last quantity is needed near the static limit, where the state changes so
+slowly that a small residual is no evidence of convergence.
 
 The state of a driven body includes two more numbers, its position x and rate x' (see
 contact/march.py).  In one period, unbalanced forces hardly change the state of a heavy body or of a
-body on a soft spring.  So the map scales up the changes of x and x', as if the spring were stiffer
-and the body lighter, to match the stiffness of the contact.  The fixed point of the map stays the
-same.  A contact in full slip is much more compliant than a sticking contact.  For a contact in full
-slip, the stiffness is the rise of the mean force with the displacement.
+body on a soft spring.  To match the stiffness of the contact, the map therefore scales up the
+changes of x and x', as if the spring were stiffer and the body lighter.  This scaling does not
+change the fixed point of the map.  A contact in full slip is much more compliant than a sticking
+contact.  For a contact in full slip, the stiffness is the rise of the mean force with the
+displacement.
 """
 
 from __future__ import annotations
@@ -211,7 +212,7 @@ class PeriodMap:
         return contact.march(self.path, tractions, tolerance, previous, body=body, start=start)
 
     def image(self, tractions: np.ndarray) -> np.ndarray:
-        """Convert the tractions at the end of an interval to those at the start of the next
+        """Convert the tractions at the end of an interval to the tractions at the start of the next
         interval.
 
         This conversion is linear.

@@ -1,12 +1,12 @@
-"""Simulation of a problem at one resolution: build the contact and the path, then find the state.
+"""Simulate a problem at one resolution: build the contact and the path, then find the state.
 
 The steady state of a motion without oscillation is the fixed point of a march over a path of any
 length.
 
 The search for the state of a driven contact starts from the periodic state at a prescribed
-velocity: the velocity of the spring's far end, or an approximate velocity under the force.  The
-number of periods in a search does not depend on the number of steps, so a run with many steps
-starts from the result of a run with few steps.
+velocity.  This velocity is the velocity of the spring's far end, or an approximate velocity under
+the force.  The number of periods in a search does not depend on the number of steps, so a run with
+many steps starts from the result of a run with few steps.
 """
 
 from __future__ import annotations
@@ -129,9 +129,9 @@ def simulate(
 ) -> Run:
     """Simulate a problem with a model at one resolution.
 
-    The problem determines the state that is computed.  It is the steady state of a motion without
+    The problem determines the state that is computed.  This is the steady state of a motion without
     oscillation, the static limit at velocity 0, or the state of rest at velocity 0 under a force.
-    In all other cases, it is the periodic state.
+    In all other cases, the periodic state is computed.
 
     Parameters
     ----------
@@ -202,10 +202,10 @@ class _Search:
     """Search for the periodic state of one run, trying several initial states in turn.
 
     `unit` is the force, divided by mu F_z, that corresponds to an error of 1 in the result.  If the
-    contact is pulled by a spring, the result is a force, as it is for a prescribed velocity.  For a
-    prescribed force, the result is a velocity, and `unit` is the smaller of two estimates.  The
-    first is the stiffness of the contact times the displacement at velocity 1 in an interval.  The
-    second is the rise of the friction force with the velocity.
+    velocity is prescribed or a spring pulls the contact, the result is a force.  For a prescribed
+    force, the result is a velocity, and `unit` is the smaller of two estimates.  The first estimate
+    is the stiffness of the contact times the displacement at velocity 1 in an interval.  The second
+    estimate is the rise of the friction force with the velocity.
     """
 
     def __init__(

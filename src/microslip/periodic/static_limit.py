@@ -9,15 +9,15 @@ the bound allows:
     mu F_z mu_static = Integral { mean of q_forward
                                   + max s_forward : |q(t) + s| <= g(t) for all t } dA.
 
-This is the counterpart of Melan's shakedown theorem for ratcheting.  At points that slip in every
-period of the oscillation alone, s is 0, because q reaches the bound in several directions, so that
-no constant traction can be added.  For a loop without half-period symmetry, the mean of q at these
-points is not 0, because the oscillation drags the contact along.  At points that never slip, q
-contains an arbitrary constant, which does not change the sum of the two terms above.
+For ratcheting, this equation is the counterpart of Melan's shakedown theorem.  At points that slip
+in every period of the oscillation alone, s is 0, because q reaches the bound in several directions,
+so that no constant traction can be added.  For a loop without half-period symmetry, the mean of q
+at these points is not 0, because the oscillation drags the contact along.  At points that never
+slip, q contains an arbitrary constant, which does not change the sum of the two terms above.
 
 For a motion on a line under a constant load, q(t) moves along the segment between the tractions at
-the two turning points, which are +-q after their mean is subtracted.  So only these two instants
-matter.
+the two turning points.  After their mean is subtracted, these tractions are +-q.  So only the two
+turning points matter.
 
 Coarse runs of the static limit also give the edges of the stick zone in slow motions.  No formula
 gives the edges for motions on a loop, or for pressures without a closed form.  For rotating
@@ -182,7 +182,7 @@ def loop_energy(
     """Compute the energy that an oscillation on a line dissipates in a period, divided by mu F_z
     u_lim.
 
-    Each slipping point slips in a constant direction.  By Masing's rule, it slips twice as far
+    Each slipping point slips in a constant direction.  By Masing's rule, a point slips twice as far
     between the turning points as in the initial loading.  So the energy is four times the friction
     bound times the slip of the initial loading, summed over the points.
 
@@ -291,7 +291,7 @@ def largest_shift(tractions: np.ndarray, bounds: np.ndarray) -> np.ndarray:
 def limit_run(
     contact: Contact, problem: Problem, resolution: Resolution, tolerance: float, settings: Settings
 ) -> tuple[Run, np.ndarray | None]:
-    """Compute the static limit on one contact.
+    """Compute the static limit of one discretised contact.
 
     Parameters
     ----------
@@ -480,7 +480,7 @@ def stick_edges(
 ) -> tuple[list[Run], tuple[float, ...]]:
     """Find the radii of the stick zone's edges, on rings graded towards these edges.
 
-    Repeats the run on new rings until the radii stay the same, or at most MOST_PASSES times.
+    The run is repeated on new rings until the radii stay the same, or at most MOST_PASSES times.
 
     Parameters
     ----------

@@ -1,7 +1,7 @@
 """Motions and pressures from data files such as "file:stroke.csv".
 
 A motion is given by equally spaced samples of one period.  The CSV file has one line for each
-sample.  Its heading names at least one of the columns forward, lateral, angle, and load or
+sample.  The header line names at least one of the columns forward, lateral, angle, and load or
 indentation.  The end point of the period is omitted, because it equals the first point.  Without
 units, displacements are in u_lim, angles in u_lim / a, and loads and indentations are divided by
 their reference values.  Files with units are used for predictions in SI units; see si/strokes.py.

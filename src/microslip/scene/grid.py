@@ -34,7 +34,7 @@ def checked(
 ) -> tuple[list[np.ndarray], np.ndarray, float]:
     """Check the coordinates and the pressures of a grid, and scale the coordinates.
 
-    Coordinates are arrays of shapes (n,) and (m,); values is an array of shape (n, m).
+    Coordinates are arrays of shapes (n,) and (m,); `values` is an array of shape (n, m).
 
     Returns
     -------
@@ -70,9 +70,10 @@ def checked(
 
 
 def _step(label: str, axis: np.ndarray) -> float:
-    """Return the spacing of an axis, an array of shape (n,), which must be uniform within REGULAR.
+    """Return the spacing of coordinates, an array of shape (n,).  It must be uniform to within
+    REGULAR.
 
-    Raises InputError for other coordinates.  The message shows the pair of neighbours whose
+    Raises InputError for other coordinates.  The error message shows the pair of neighbours whose
     distance deviates most.
     """
     worst = int(np.isfinite(axis).argmin()) if len(axis) else 0
@@ -170,7 +171,7 @@ class Grid(NamedTuple):
 
 
 def cropped(points: Sequence[np.ndarray], values: np.ndarray, reading: str) -> Grid:
-    """Create a Grid without the zeros around the pressure.
+    """Create a `Grid` from which the zeros around the pressure are removed.
 
     points, values: return values of `checked`.  reading: one of READINGS.
     """
@@ -225,7 +226,7 @@ SMALLEST_LOAD = 1e-13
 
 
 def of_corner_loads(load: np.ndarray) -> np.ndarray:
-    """Compute the loads on the cells, an array of shape (cells, cells) with the sum 1.
+    """Compute the loads on the cells, as an array of shape (cells, cells) with the sum 1.
 
     load: load on the rectangle between the centre of the grid and each cell corner, as an array of
     shape (cells + 1, cells + 1); it is odd in both coordinates.

@@ -1,7 +1,7 @@
 """Hertz pressure on an ellipse, a circle and a ring.
 
-The circle is the contact of a sphere with a flat, as in the paper.  The ring is, for example, the
-contact of a torus or of the rim of a cup.
+The circle is the contact of a sphere with a flat, as in the paper.  Examples of the ring are the
+contacts of a torus and of the rim of a cup.
 """
 
 from __future__ import annotations
@@ -92,15 +92,15 @@ class Ellipse(Pressure):
         return hertz_loads(cells)
 
     def loading(self, displacement: np.ndarray | float) -> np.ndarray | float:
-        """Return the tangential force after a displacement from rest, which is the same as for a
-        sphere."""
+        """Return the tangential force after a displacement from rest.  The force is the same as for
+        a sphere."""
         return hertz.mindlin_force(displacement)
 
 
 def hertz_loads(cells: int) -> np.ndarray:
     """Compute the load of Hertz pressure on each cell of the rectangle around the ellipse.
 
-    The result is an array of shape (cells, cells).  It does not depend on the ratio of the
+    The result is an array of shape (cells, cells), which does not depend on the ratio of the
     semi-axes.
     """
     edges = np.arange(cells + 1) * 2.0 / cells - 1.0
@@ -174,8 +174,8 @@ _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(12)
 class Ring(RoundPressure):
     """A pressure proportional to sqrt((r - b)(1 - r)) on the ring from r = b = `inner` to r = 1.
 
-    This is the Hertz pressure of a line contact that is bent into a circle.  It approximates the
-    pressure under a slender torus; for a wide ring, it is an assumption.
+    This is the Hertz pressure of a line contact that is bent into a circle.  For a slender torus,
+    this pressure is an approximation; for a wide ring, it is an assumption.
 
     Parameters
     ----------
@@ -213,7 +213,7 @@ class Ring(RoundPressure):
 
     @property
     def _top(self) -> float:
-        """Factor in front of the root in the pressure, which makes the load 1.
+        """Factor of the square root in the pressure.  With this factor, the load is 1.
 
         It equals 1 / Integral sqrt((r - b)(1 - r)) 2 pi r dr, where r = middle - half cos t.
         """

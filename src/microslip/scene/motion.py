@@ -5,9 +5,9 @@ positive, points whose lateral coordinate is positive move forward.  Displacemen
 angles in u_lim / a, and time is the phase omega t.  For a motion of amplitude A, each wave adds the
 following term to the displacement along its direction:
 
-    A share sin(cycles phase + lead).
+    A * share * sin(cycles * phase + lead)
 
-A wave in angle has the unit phi_lk(a/2), the largest angle of a bore with the amplitude 1.  The
+A wave of the angle has the unit phi_lk(a/2), the largest angle of a bore with the amplitude 1.  The
 normal load or the indentation depth, divided by its reference value (the value without
 oscillation), is 1 plus the wave.  There is no contact while this sum is below 0.
 """
@@ -181,7 +181,8 @@ class Motion(spec.Named):
 
     @cached_property
     def rotates(self) -> bool:
-        """Whether the contact rotates.  If it does, the tractions depend on the polar angle."""
+        """Whether the contact rotates.  If the contact rotates, the tractions depend on the polar
+        angle."""
         return "angle" in self.components
 
     @cached_property
@@ -274,8 +275,8 @@ class Motion(spec.Named):
     def drift(self, velocity: float, amplitude: float, poisson: float) -> float:
         """Compute the mean forward displacement per radian of phase, in u_lim.
 
-        The drift is proportional to the velocity.  It is computed at velocity 1 and scaled, because
-        at small velocities the rounding error of the oscillation would exceed the drift.
+        The drift is proportional to the velocity.  The drift is computed at velocity 1 and scaled,
+        because at small velocities the rounding error of the oscillation would exceed the drift.
         """
         ends = np.array([0.0, 2.0 * np.pi])
         fast, _, _ = self.displacement(ends, 1.0, amplitude, poisson)
@@ -305,8 +306,9 @@ class Motion(spec.Named):
 
         If the load oscillates, the result is the smallest contact radius divided by the largest.
         For a translation, the result is the stick radius of a straight oscillation with the same
-        reach (Eq 8).  For a rotation, it is Lubkin's stick radius (Eq 30).  Lubkin's radius is
-        derived for Hertz pressure, but a mesh graded towards it does no harm under other pressures.
+        reach (Eq 8).  For a rotation, the result is Lubkin's stick radius (Eq 30).  Lubkin's radius
+        is derived for Hertz pressure, but a mesh graded towards it does no harm under other
+        pressures.
         """
         if self._normal.share:
             smallest = pressure.radius(self._extreme(-1.0, amplitude, pressure))
@@ -321,9 +323,9 @@ class Motion(spec.Named):
     def turns(self, velocity: float, amplitude: float) -> tuple[float, ...]:
         """Return the phases at which the time integration starts, turns and ends.
 
-        The time integration covers half a period or a whole period.  If the load oscillates, it
-        begins at the smallest load.  A longitudinal motion v t + A sin t turns where its velocity
-        changes sign.
+        The time integration covers half a period or a whole period.  If the load oscillates, the
+        integration begins at the smallest load.  A longitudinal motion v t + A sin t turns where
+        its velocity changes sign.
         """
         if self._longitudinal and velocity < amplitude * self.reach:
             back = float(np.arccos(-velocity / (amplitude * self.reach)))

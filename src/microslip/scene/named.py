@@ -109,8 +109,7 @@ class TransverseBore(Motion):
 
 @dataclass(frozen=True)
 class Elliptic(Motion):
-    """Sliding forward while oscillating along two directions, on a line, an ellipse or a Lissajous
-    figure.
+    """Sliding forward while oscillating on a line, an ellipse or a Lissajous figure.
 
     Parameters
     ----------

@@ -177,8 +177,8 @@ class Pressure(spec.Named):
     def stiffness(self) -> float:
         """Tangential force for a uniform displacement u_lim without slip, divided by mu F_z.
 
-        The value is 2 G* a.  It is an upper bound for a contact that does not fill the circle of
-        radius a.
+        The value is 2 G* a.  For a contact that does not fill the circle of radius a, this value is
+        an upper bound.
         """
         return 2.0 * self.G_star
 
@@ -207,7 +207,8 @@ class RoundPressure(Pressure):
 
     A subclass defines `ring_loads`, the integral of the friction bound over each ring, and
     `ring_moments`, the integral of the bound times the radius.  The rings have the edges r =
-    sin(psi), where psi is an array of shape (n + 1,).  Both return an array of shape (n,).
+    sin(psi), where psi is an array of shape (n + 1,).  Both functions return an array of shape
+    (n,).
     """
 
     def ring_loads(self, psi: np.ndarray) -> np.ndarray:
@@ -317,8 +318,8 @@ class Measured(spec.NamedByText, Pressure):
 
     @cached_property
     def torque(self) -> float:
-        """Mean distance from the centre, weighted by the pressure.  It is exact if the values are
-        means over cells."""
+        """Mean distance from the centre, weighted by the pressure.  The result is exact if the
+        values are means over cells."""
         edges = [side.edges(-(-FINE // side.steps)) for side in self._sides]
         loads = self.grid.loads(*edges)
         pairs = zip(edges, self._sides, strict=True)

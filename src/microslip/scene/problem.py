@@ -76,7 +76,8 @@ class Force(Drive):
 
 @dataclass(frozen=True)
 class Spring(Drive):
-    """A spring attached to the body.  Its far end moves at the velocity of the problem.
+    """A spring attached to the body.  The far end of the spring moves at the velocity of the
+    problem.
 
     Parameters
     ----------
@@ -280,9 +281,9 @@ class Problem:
 
     @property
     def depth(self) -> Callable[[np.ndarray], np.ndarray] | None:
-        """Function that returns, for a phase, the indentation depth divided by its reference value.
+        """Function that returns the indentation depth at a phase, divided by its reference value.
 
-        It is None if the load is constant.
+        The property is None if the load is constant.
         """
         if not self.motion.loads:
             return None

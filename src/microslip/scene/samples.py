@@ -65,7 +65,8 @@ class _Samples(Motion):
 
 @dataclass(frozen=True, eq=False)
 class SampledPath(_Samples):
-    """A motion through a sequence of rows, which is not repeated.  The phase is the row number."""
+    """A motion through a sequence of rows.  The sequence is not repeated.  The phase is the row
+    number."""
 
     periodic = False
     summary = "a path through rows"
@@ -120,8 +121,8 @@ class SampledPath(_Samples):
 class Sampled(spec.NamedByText, _Samples):
     """One period of a motion of any shape, given by equally spaced samples.
 
-    With the amplitude A, the indenter moves by A times the interpolated displacements.  If h is the
-    interpolated load or indentation for A = 1, it is 1 + A (h - 1) for any A.
+    With the amplitude A, the indenter moves by A times the interpolated displacements.  If the load
+    or indentation is h for A = 1, it is 1 + A (h - 1) for any A.
 
     Attributes
     ----------

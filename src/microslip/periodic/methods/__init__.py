@@ -5,7 +5,7 @@ file in this folder.  For example, the file `some_name.py` defines METHOD, a `me
 this method is called `some-name` in `microslip.solve` and in configurations.  Files whose names
 start with an underscore contain shared code.  The name of a method can be followed by parameters,
 for example "projected-gradient:step=0.5".  A method can require a package that microslip does not
-depend on.  Studies omit the method if that package is not installed.
+depend on.  Studies omit a method if its package is not installed.
 
 The functions that list and check names import neither the solver nor NumPy.
 """
@@ -78,8 +78,8 @@ def split(text: str) -> tuple[str, dict[str, float]]:
 def missing(text: str) -> str:
     """Return an error message if the package that a method requires is not installed, otherwise "".
 
-    Imports neither the solver nor the package.  Raises InputError if the string does not name a
-    method.
+    The function imports neither the solver nor the package.  Raises InputError if the string does
+    not name a method.
     """
     package = declared(split(text)[0], "requires")
     if package and find_spec(package) is None:
@@ -88,7 +88,7 @@ def missing(text: str) -> str:
 
 
 def method_named(text: str) -> Method:
-    """Return the Method with the given name, or raise InputError with the allowed names."""
+    """Return the `Method` with the given name, or raise InputError with the allowed names."""
     name, numbers = split(text)
     if name in OWN:
         return import_module("microslip.periodic.method").OWN[name]

@@ -2,19 +2,20 @@
 
 V. A. Yastrebov, https://github.com/cofebem/aspher (BSD-3-Clause).  The package must be installed.
 First, the method solves the normal contact on the squares.  Then it solves one tangential problem
-per backward Euler step by a projected conjugate gradient method.  It supports translations only, at
-any nu.
+per backward Euler step by a projected conjugate gradient method.  The method supports translations
+only, at any nu.
 
-The time integration starts without tractions.  It ends when the mean forces of two periods agree,
-or after MOST_PERIODS periods.  Within so few periods, only fast forward motions become periodic.
-Two settings differ from the defaults of the package:
+The time integration starts without tractions.  The integration ends when the mean forces of two
+periods agree, or after MOST_PERIODS periods.  Within so few periods, only fast forward motions
+become periodic.  Two settings differ from the defaults of the package:
 
-- The preconditioner is off.  It is designed for sticking points.  When the slip changes direction,
-  the preconditioned solver needs about five times as many iterations, and the mean forces are no
-  more accurate.
+- The preconditioner is off.  The preconditioner is designed for sticking points.  When the slip
+  changes direction, the preconditioned solver needs about five times as many iterations, and the
+  mean forces are no more accurate.
 
 - A step that the package rejects counts as failed, and the march continues from the best tractions.
-  By default, the package returns to the tractions before the step, which makes the means wrong.
+  By default, the package returns to the tractions before the step, which makes the mean forces
+  wrong.
 
 An iteration computes two products with the influence operator; solvers of microslip compute one.
 The effort counts iterations.

@@ -1,8 +1,8 @@
 """Projected gradient method with a fixed step.
 
 The method is stable for steps below twice the inverse of the largest eigenvalue.  With a stable
-step, it converges slowly, since the compliance is far larger for smooth tractions than for rough
-ones.
+step, the method converges slowly, since the compliance is far larger for smooth tractions than for
+rough ones.
 """
 
 from __future__ import annotations
