@@ -66,7 +66,7 @@ def main() -> None:
         rows.append({"motion": motion})
         rows[-1] |= {str(n): f"{one:.0e}" for n, one in zip(ANGLES, worst, strict=True)}
         print(rows[-1], flush=True)
-    heading = "Largest difference between the friction with the given number of angles and with"
+    heading = "The entries are the largest differences of the friction from that with"
     text = f"{heading} {MANY} angles, among {options.points} random points of each motion.\n\n"
     tables.publish(text + tables.markdown(rows), options)
 
