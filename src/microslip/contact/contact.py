@@ -10,8 +10,8 @@ convex problem, and is equivalent to the fixed point
 
 All quantities are dimensionless.
 
-The time integration of a contact along a path is called a march.  For contacts on rings, it is
-compiled (see march.py).  The march in this module is written in Python.  It serves contacts whose
+The time integration of a contact along a path is called a march.  For contacts on rings, the march
+is compiled (see march.py).  The march in this module is written in Python and serves contacts whose
 single steps take long to solve.
 """
 
@@ -114,7 +114,8 @@ class Body:
 
     @property
     def remembers(self) -> bool:
-        """Whether x and x' are part of the state.  Otherwise, x is computed from the tractions."""
+        """Whether x and x' are part of the state.  If they are not, x is computed from the
+        tractions."""
         return self.mass > 0.0 or self.damping > 0.0
 
     def along(self, path: Path, start: np.ndarray | None) -> tuple[np.ndarray, np.ndarray]:
@@ -198,7 +199,7 @@ class Contact(Protocol):
     def prolong(self, state: np.ndarray) -> np.ndarray | None:
         """Interpolate tractions from a coarser mesh to the points of this contact.
 
-        Returns None if this is not possible.
+        Returns None if the interpolation is not possible.
         """
         return None
 
@@ -238,7 +239,8 @@ def energy_norm(contact: Contact, change: np.ndarray) -> float:
 
 
 def full_slip(contact: Contact, forward: np.ndarray, lateral: np.ndarray) -> np.ndarray:
-    """Return tractions of the magnitude of the friction bound, in the direction of a vector field.
+    """Return tractions whose magnitude is the friction bound and whose direction is that of a
+    vector field.
 
     The tractions are 0 where the field is 0.
     """

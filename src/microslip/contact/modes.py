@@ -11,8 +11,8 @@ resolved.
 
 Coulomb's law applies at the points.  The influence operator is block-diagonal in the angular modes.
 At nu = 0, the forward tractions of a mode cause only forward displacements, and the lateral
-tractions cause only lateral displacements.  The ring matrix is the same for both.  At nu > 0, the
-complex waves e^{i m theta} of forward - i lateral are coupled in pairs m and 2 - m (see
+tractions cause only lateral displacements.  The ring matrix is the same for both directions.  At nu
+> 0, the complex waves e^{i m theta} of forward - i lateral are coupled in pairs m and 2 - m (see
 influence.py).
 """
 
@@ -53,7 +53,7 @@ def _single_waves(
     forward and the lateral values of the waves at the points, and have the shape (waves, points).
 
     For a rotation, forward tractions are cosines and lateral tractions are sines.  For a
-    translation, both are cosines and sines with even numbers m.
+    translation, the tractions in both directions are cosines and sines with even numbers m.
     """
     numbers = np.arange(angles + 1)
     cosines, sines = np.cos(np.outer(numbers, theta)), np.sin(np.outer(numbers, theta))
@@ -94,8 +94,8 @@ def _coupled_matrices(
     ratio: np.ndarray,
     kappa: float,
 ) -> np.ndarray:
-    """Return the matrices of coupled pairs and of pairs without coupling, of shape (pairs, 2, n, 2,
-    n)."""
+    """Return the matrices of coupled pairs and of pairs without coupling, as an array of shape
+    (pairs, 2, n, 2, n)."""
     near, far = influence
     n = near.shape[1]
     out = np.zeros((len(pairs) + len(single), 2, n, 2, n))
@@ -113,7 +113,7 @@ def _coupled_matrices(
 
 
 def _modes_to_average(angles: int) -> int:
-    """Return the number of modes for which kernels are averaged, at least angles + 1; see
+    """Return the number of modes for which kernels are averaged.  It is at least angles + 1; see
     SHARED_MODES."""
     return next((most for most in SHARED_MODES if angles < most), angles + 1)
 

@@ -11,8 +11,8 @@ is one sector, in which each matrix couples two neighbouring waves.  A contact o
 angular points has one angle and one wave.
 
 The compiler turns operations on tuples of four numbers into vector instructions if indices are
-unsigned.  Kernels are compiled without fastmath.  With it, the compiler could reorder and fuse
-operations, and the last bits of a result would depend on which kernels were compiled before.
+unsigned.  Kernels are compiled without fastmath.  With fastmath, the compiler could reorder and
+fuse operations, and the last bits of a result would depend on which kernels were compiled before.
 """
 
 from __future__ import annotations
@@ -71,7 +71,7 @@ def plus(a: tuple, b: tuple) -> tuple:
 
 @kernel(inline="always")
 def plus_multiple(total: tuple, numbers: tuple, factor: float) -> tuple:
-    """Return total + factor times numbers."""
+    """Return total + factor * numbers."""
     return (
         fused(numbers[0], factor, total[0]),
         fused(numbers[1], factor, total[1]),

@@ -64,7 +64,7 @@ def theta_method(theta: float) -> Integrator:
     """Return the integrator whose single stage is at the fraction `theta` of the step.
 
     theta is between 0.5 (midpoint rule, second order) and 1 (backward Euler).  The order is 1 for
-    every theta above 0.5.  Raises ValueError if theta is outside this range.
+    every theta above 0.5.  Raises ValueError if theta is below 0.5 or above 1.
     """
     if not 0.5 <= theta <= 1.0:
         raise ValueError(f"theta = {theta}: allowed is a number from 0.5 to 1")
@@ -162,8 +162,8 @@ class Path:
 
     @cached_property
     def weights(self) -> np.ndarray:
-        """Weights of the phases in a time average by the trapezoidal rule, of shape (steps +
-        1,)."""
+        """Weights of the phases in a time average by the trapezoidal rule, as an array of shape
+        (steps + 1,)."""
         halves = 0.5 * np.diff(self.phase) / (self.phase[-1] - self.phase[0])
         return np.append(halves, 0.0) + np.append(0.0, halves)
 
@@ -213,9 +213,9 @@ def phases_between(
 ) -> np.ndarray:
     """Return phases from the first turning point to the last one.
 
-    There are `steps` steps between neighbouring turning points, graded towards both, and hence
-    (len(turns) - 1) steps + 1 phases.  For `grading` and `width`, see turning_point_grading and
-    turning_point_width.
+    There are `steps` steps between neighbouring turning points, and hence (len(turns) - 1) steps +
+    1 phases.  The steps are graded towards both turning points.  For `grading` and `width`, see
+    turning_point_grading and turning_point_width.
     """
     t = np.linspace(-np.pi / 2, np.pi / 2, steps + 1)
     t = t + 0.5 * grading * np.sin(2 * t)

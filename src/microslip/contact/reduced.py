@@ -6,26 +6,26 @@ of Eqs 21, 22 and 29.  The model has no memory, so that only the forces at each 
 
 slider: one friction element in series with an isotropic spring (Benad et al. 2019).  Like the whole
 contact, the element slides once the displacement exceeds u_lim, so both have the same dimensionless
-groups.  The model neglects partial slip.  It is cheap, and accurate at high velocities.  Near the
-static limit, its friction is given by Eq 7.
+groups.  The model neglects partial slip.  The slider is cheap, and accurate at high velocities.
+Near the static limit, the friction of the slider is given by Eq 7.
 
 dahl: the Dahl model in two directions (Tsai and Tseng 2005),
 
     dF/dt = k (dw/dt - |dw/dt| F),        |F| <= 1,
 
 where k is the stiffness of the contact without slip.  The model has the stiffness and the friction
-bound of the contact, but it never sticks.  Therefore, under any vibration its friction tends to 0
-as the velocity tends to 0.  Along a straight segment of the path, the equation has a closed-form
-solution, which is linear in the initial force.
+bound of the contact, but it never sticks.  Therefore, under any vibration, the friction of the
+model tends to 0 as the velocity tends to 0.  Along a straight segment of the path, the equation has
+a closed-form solution, which is linear in the initial force.
 
 mdr: the method of dimensionality reduction, which replaces the contact by a row of independent
 springs with friction.  The model is exact for tangential loading of an axisymmetric indenter in one
-direction (Cattaneo and Mindlin).  For slip in two directions, it is an approximation, because the
-springs do not interact.  Springs at -a < x < a have the stiffness G* and the friction bound G* (1 -
-h(x)) per unit length.  Here h(x) is the depth for the contact radius x divided by the reference
-depth.  So the spring at x begins to slide at the displacement (1 - h) u_lim, which is (1 - x^2)
-u_lim for a sphere.  At d times the reference depth, the spring begins to slide at (d - h) u_lim if
-d > h.
+direction (Cattaneo and Mindlin).  For slip in two directions, the model is an approximation,
+because the springs do not interact.  Springs at -a < x < a have the stiffness G* and the friction
+bound G* (1 - h(x)) per unit length.  Here h(x) is the depth for the contact radius x divided by the
+reference depth.  So the spring at x begins to slide at the displacement (1 - h) u_lim, which is (1
+- x^2) u_lim for a sphere.  At d times the reference depth, the spring begins to slide at (d - h)
+u_lim if d > h.
 """
 
 from __future__ import annotations

@@ -14,8 +14,8 @@ The models mdr, radial and polar support a changing normal load.  For motion alo
 0, mdr is exact.
 
 An exact model converges to the solution of the contact problem as cells and steps are refined.  An
-approximate model neglects elasticity, partial slip or the interaction of points, which no
-refinement corrects.
+approximate model neglects elasticity, partial slip or the interaction of points.  Refinement does
+not remove the resulting error.
 
 Every model has the interface `contact.Contact`.  To add a model, add a file to this folder
 and an entry to `MODELS`.  A model is imported when its first contact is built, because compiled
@@ -37,7 +37,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Model:
-    """Functions that build a model and state where it applies.
+    """Functions that build the contact of a model and state where the model applies.
 
     Attributes
     ----------

@@ -1,4 +1,4 @@
-"""Contacts with points on rings.  Their time integration is compiled (march.py)."""
+"""Contacts with points on rings.  The time integration of these contacts is compiled (march.py)."""
 
 from __future__ import annotations
 
@@ -31,7 +31,8 @@ def load_on_rings(pressure: Pressure, edges: np.ndarray, depth: np.ndarray) -> n
 
 
 def interpolate(x: np.ndarray, nodes: np.ndarray, values: np.ndarray) -> np.ndarray:
-    """Interpolate values at nodes linearly to the points x, along the last axis.
+    """Interpolate values linearly from the nodes to the points x.  The nodes are along the last
+    axis.
 
     Beyond the outermost nodes, the values are constant.
     """
@@ -276,7 +277,8 @@ class RingContact(Contact):
         return np.concatenate([[0.0], np.cumsum(part**2) * self.radius / self.stiffness])
 
     def bounds(self, depths: np.ndarray, edge: np.ndarray | None = None) -> np.ndarray:
-        """Return the mean friction bound of each ring at each depth, of shape (len(depths), cells).
+        """Return the mean friction bound of each ring at each depth, as an array of shape
+        (len(depths), cells).
 
         edge: for each depth, the radius inside which rings are in contact; None for the contact
         radii.  The load outside these rings is added to the outermost ring in contact.

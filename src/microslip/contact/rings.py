@@ -105,7 +105,7 @@ def make_rings(count: int, focus: Focus | float | None = None, pressure: Pressur
 
 
 def _of_edges(psi: np.ndarray, focus: Focus | float | None, pressure: Pressure) -> Rings:
-    """Create Rings from the edges for a contact without a hole.
+    """Create `Rings` from the edges that apply to a contact without a hole.
 
     If the contact has a hole, the edges are mapped to the annulus outside the hole.
     """
@@ -117,7 +117,8 @@ def _of_edges(psi: np.ndarray, focus: Focus | float | None, pressure: Pressure) 
 
 
 def _as_focus(focus: Focus | float) -> Focus:
-    """Convert a radius to a Focus, and check the Focus.  Raises InputError if it is invalid."""
+    """Convert a radius to a Focus, and check the Focus.  Raises InputError if the Focus is
+    invalid."""
     focus = focus if isinstance(focus, Focus) else Focus((focus,))
     radii = focus.radii
     ordered = radii and all(one < other for one, other in zip(radii, radii[1:], strict=False))

@@ -79,7 +79,8 @@ def best_penalty(scale: np.ndarray, rings: int) -> np.ndarray:
 
     The splitting converges fastest if the penalty is the geometric mean of the smallest and the
     largest eigenvalue of A.  The smallest eigenvalue belongs to a narrow ring, and the largest
-    belongs to the whole contact.  Their ratio is proportional to the number of rings.
+    belongs to the whole contact.  The ratio of the two eigenvalues is proportional to the number of
+    rings.
 
     Parameters
     ----------
@@ -170,8 +171,8 @@ def imbalance(
 ) -> float:
     """Return the residual of the equation of the body after an additional displacement, `advance`.
 
-    The advance is added to the slip of the points that slip.  excess: residual without the forward
-    force if the advance is 0.
+    The advance is added to the slip of the points that slip.  `excess` is the residual without the
+    forward force if the advance is 0.
     """
     weight, penalty, _, _, _ = points
     force = excess + stiffness * advance

@@ -5,7 +5,8 @@ For a round contact, the cells are squares, as in the paper, and this model is t
 other models.
 
 Tractions have the symmetries that the rigid displacement, the pressure and the influence operator
-have in common.  Of all cells related by these symmetries, only one is resolved (see `_images`).
+have in common.  Of each set of cells that are related by these symmetries, only one cell is
+resolved (see `_images`).
 """
 
 from __future__ import annotations
@@ -170,7 +171,7 @@ class DescentSolver:
         """Solve a step for the imposed displacement b.
 
         share: factor by which the tolerance is multiplied.  Returns the tractions, the slip, the
-        number of iterations, the residual, and the displacement of a driven body, which is 0.
+        number of iterations, the residual, and 0 for the displacement of a driven body.
         """
         contact, q, slip = self.contact, np.array(guess), np.empty_like(b)
         while True:

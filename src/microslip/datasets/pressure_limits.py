@@ -30,7 +30,7 @@ and 22."""
 
 def formulas_under(motion: str, name: str) -> dict[str, ClosedForm]:
     """Return the closed forms for a motion and a pressure, as a dict keyed by the name of the form.
-    name: name of the pressure."""
+    `name` is the name of the pressure."""
     pressure, of_sphere = pressure_named(name), FORMS.get(motion, {})
     forms = {key: form for key, form in of_sphere.items() if form.any_pressure}
     if motion == "continuous-bore" and pressure.is_round:

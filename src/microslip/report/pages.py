@@ -1,8 +1,8 @@
 """Write pages that describe the contents and the provenance of datasets.
 
 The page of the study `claims` contains the verdicts, the numbers that support them, and commands
-that repeat the runs. It is made from the dataset and the template claims.html. Every page is one
-self-contained HTML file.
+that repeat the runs. This page is made from the dataset and the template claims.html. Every page is
+one self-contained HTML file.
 """
 
 from __future__ import annotations
@@ -142,7 +142,7 @@ def _number(value: float, digits: int = 4) -> str:
 
 
 def _with_error(value: float, error: float) -> str:
-    """Format the significant digits of a number, and the error estimate."""
+    """Format the significant digits of a number, followed by the error estimate."""
     if not np.isfinite(value):
         return "none"
     if not np.isfinite(error):

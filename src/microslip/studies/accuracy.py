@@ -143,7 +143,7 @@ def _point(name: str, point: StudyPoint, answers: Answers) -> Row:
 
 
 def _trials(study: Accuracy, points: list[Row], answers: Answers) -> pd.DataFrame:
-    """Return a table of the trials at all points. points: rows of the points."""
+    """Return a table of the trials at all points.  `points` contains the rows of the points."""
     import pandas as pd
 
     rows: list[Row] = []

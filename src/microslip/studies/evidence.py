@@ -183,7 +183,8 @@ def tables_of(study: Claims, answers: Answers) -> dict[str, pd.DataFrame]:
 
 
 def beside_previous(points: pd.DataFrame, *by: str) -> pd.DataFrame:
-    """Return all points except the first of each group, each with the value of the previous point.
+    """Return all points except the first of each group, and add the value of the previous point to
+    each.
 
     by: names of the columns whose values identify a group.
     """
@@ -230,7 +231,7 @@ def limit_of(closed: Row, rings: Row, squares: Row, own: Row) -> dict:
 
 
 def paper_run_of(own: Row, accurate: Row) -> dict:
-    """Return the friction of the paper's own run.  Its error is estimated as the difference from a
+    """Return the friction of the paper's own run.  The error is estimated as the difference from a
     run at the study's tolerance, plus the error of that run."""
     mu, (value, error) = number(own, "mu_macro"), friction(accurate)
     return {"value": mu, "error": error + abs(mu - value)}
@@ -252,7 +253,7 @@ def flat_end_of(*rows: Row) -> dict:
     """Return friction for a flat end, extrapolated from three indenters.
 
     The difference in friction between an indenter with exponent n and a flat end is a power series
-    in 1/n.  The extrapolated value has a third-order error.  Its error estimate is the difference
+    in 1/n.  The extrapolated value has a third-order error.  The error estimate is the difference
     from the first-order extrapolation.
     """
     (fine, error), (middle, second), (coarse, third) = map(friction, rows)
@@ -298,8 +299,8 @@ def traction_angle(row: Row) -> tuple[float, float]:
 
 
 def least_stick(row: Row) -> tuple[float, float]:
-    """Return the smallest stick area in a period, and the area of the smallest cell.  Both are
-    divided by the contact area."""
+    """Return the smallest stick area in a period, and the area of the smallest cell.  Both areas
+    are divided by the contact area."""
     both = np.add(row["stick_right"], row["stick_left"])
     return float(both[1:].min()), min(row["area"]) / np.pi
 

@@ -145,7 +145,8 @@ def of(kind: str, point: AnyPoint, **arguments: Any) -> dict:
 
 
 def solve(point: AnyPoint, tolerance: float, model: str = "auto", cells: int | None = None) -> dict:
-    """Return the request for a solve at a point. It equals the request of a sweep for this point.
+    """Return the request for a solve at a point. The request equals the request of a sweep for this
+    point.
 
     cells: imposed number of rings or squares.  If None, the number follows from the tolerance.
     """

@@ -99,11 +99,12 @@ def outcome(
 ) -> int:
     """Return the outcome of a probe, an index into OUTCOMES.
 
-    The outcome is "not applicable" if the method was not run.  It is "converged" if the run
-    converged and its result differs from the reference by at most the sum of the two error
-    estimates.  It is "wrong" if the run converged to a result that differs by more.  It is "slow"
-    if the run did not converge within its budget and reports this.  It is "diverged" if the run
-    diverged or did not return a finite number.
+    - not applicable: the method was not run.
+    - converged: the run converged, and its result differs from the reference by at most the sum of
+      the two error estimates.
+    - wrong: the run converged to a result that differs by more.
+    - slow: the run did not converge within its budget and reports this.
+    - diverged: the run diverged or did not return a finite number.
 
     Parameters
     ----------

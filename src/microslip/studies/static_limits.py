@@ -47,7 +47,7 @@ def asymptote(amplitude: ArrayLike) -> np.ndarray:
 
     The radius of the stick zone is c = (4/e) exp(-D(1/2) amplitude), and the rotation uses the
     fraction (2/pi) arcsin(r/c) of the friction bound.  For comparison, Eq 33 tends to 3/2 c^2.  The
-    result is dimensionless and positive. amplitude: array of any shape.
+    result is dimensionless and positive.  The amplitude can be an array of any shape.
     """
     radius = 4.0 / np.e * np.exp(-hertz.D_half() * np.asarray(amplitude, float))
     return remainder() * radius**2
@@ -80,8 +80,8 @@ def left_share(motion: str, radius: np.ndarray, amplitude: np.ndarray) -> np.nda
 
 
 def values(study: Claims, tables: dict[str, pd.DataFrame]) -> dict[str, Any]:
-    """Return the values of all variables of the static limits. tables: the tables of the runs
-    that support the values."""
+    """Return the values of all variables of the static limits.  `tables` contains the tables of the
+    runs that support the values."""
     radius = np.linspace(0.0, 1.0, RADII)
     entries: dict[str, Any] = {
         "share_radius": radius,

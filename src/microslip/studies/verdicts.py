@@ -1,10 +1,10 @@
-"""Decide for each statement whether it is true, from the margin and the error of each of its
-checks.
+"""Decide whether each statement is true, from the margins and the errors of the checks of the
+statement.
 
 A statement of the paper has parts, and each part is judged by checks.  A check has a margin with an
-error.  It holds if the margin is larger than the error.  It fails if the margin is negative and its
-absolute value is larger than the error.  Otherwise, the check is open.  A part holds if at least
-one check holds and no check fails.  A statement holds if all its parts hold.
+error.  A check holds if the margin is larger than the error.  A check fails if the margin is
+negative and its absolute value is larger than the error.  Otherwise, the check is open.  A part
+holds if at least one check holds and no check fails.  A statement holds if all its parts hold.
 """
 
 from __future__ import annotations

@@ -15,9 +15,9 @@ bound on the dissipation.  With the force F (|F| <= 1) and d = 1 - mu, it follow
 - longitudinal (forward v t + x sin t): the sphere never moves backward if v >= x, so d = 0.
 
 For the transverse motion, the dissipated energy per radian is the work v mu + y <F_lateral cos t>.
-It is at least v and at most v (1 - d) + y sqrt(d), hence at most v + y^2 / (4 v). For the bore, the
-dissipated energy per radian, divided by phi, is between v and v + 1 / (20 (v - 1)). If b is the
-upper bound on d, both energies are at most v (1 + b / (4 - 2 b)). The same bound applies to
+This energy is at least v and at most v (1 - d) + y sqrt(d), hence at most v + y^2 / (4 v). For the
+bore, the dissipated energy per radian, divided by phi, is between v and v + 1 / (20 (v - 1)). If b
+is the upper bound on d, both energies are at most v (1 + b / (4 - 2 b)). The same bound applies to
 longitudinal motions with v >= x.
 
 The bounds apply to any nu and any stiffness. The functions take the dimensionless groups of the

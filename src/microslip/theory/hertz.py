@@ -5,7 +5,7 @@ Unless a docstring states otherwise, quantities are in working units: contact ra
 shear modulus is 3/4. Tractions are in mu*F_z/a^2, torques are in mu*F_z*a, and angles are in
 u_lim/a.
 
-Every function accepts floats or arrays and broadcasts them. It raises ValueError if an argument is
+Every function accepts floats or arrays, broadcasts them, and raises ValueError if an argument is
 not finite or is outside its range.
 
 Functions of SciPy are written with their full names (`scipy.special.ellipe`), so that each
@@ -85,7 +85,7 @@ def load_inside(r: Numbers) -> Numbers:
 def ring_bounds(edges: np.ndarray) -> np.ndarray:
     """Compute the mean friction bound of each ring between consecutive radii.
 
-    edges: n + 1 radii. Raises ValueError unless they are strictly increasing between 0 and 1.
+    edges: n + 1 radii. Raises ValueError unless the radii are strictly increasing between 0 and 1.
     Returns n dimensionless values. The sum of the values times the ring areas is the load between
     the first and the last edge.
     """
@@ -252,10 +252,9 @@ def lubkin_torque(stick_radius: Numbers) -> Numbers:
     """Return the torque of pure torsion from rest as a function of the stick radius.
 
     Raises ValueError unless 0 <= stick_radius <= 1; the argument can have any shape. The torque is
-    in mu*F_z*a. It is 0 at the stick radius 1 and TORQUE_FULL_SLIP at the stick radius 0,
-    independent of Poisson's ratio. The torque is the integral of lubkin_traction, and equals the
-    sum of the torques (16/3) G s^3 (-d phi_lk(s)) of punches with radii from s = c to 1 (Lubkin
-    1951).
+    in mu*F_z*a. For every Poisson's ratio, it is 0 at the stick radius 1 and TORQUE_FULL_SLIP at
+    the stick radius 0. The torque is the integral of lubkin_traction, and equals the sum of the
+    torques (16/3) G s^3 (-d phi_lk(s)) of punches with radii from s = c to 1 (Lubkin 1951).
     """
     c = checked("stick_radius", stick_radius, high=1.0)[..., None]
     # With dD/ds = -E(k)/s, the integrand is s^2 E(k). After the substitution s = t^2, its only

@@ -2,10 +2,10 @@
 
 The static limits and the torsion of an indenter are accurate to about 1e-8. The limit for
 transverse oscillation applies to Poisson's ratio 0, and the limit for bore applies to any ratio.
-For a sphere, both agree with the closed forms of `paper`, which are faster. Quantities are
+For a sphere, both limits agree with the closed forms of `paper`, which are faster. Quantities are
 dimensionless as in `paper`.
 
-Eqs 9, 17 and 18 of the paper apply to any axisymmetric pressure. They are evaluated by adaptive
+Eqs 9, 17 and 18 of the paper, which apply to any axisymmetric pressure, are evaluated by adaptive
 quadrature.
 """
 

@@ -2,16 +2,16 @@
 
 If the sphere moves along a line, the tangential force depends only on the history of its
 displacement. During the first loading, the force is F(d), with d in u_lim and F in mu F_z. For a
-sphere, it is 1 - (1 - d)^(3/2) (Cattaneo and Mindlin). After each turning point, the force follows
-the same curve at twice the scale until the previous turning point is reached. From there on, the
-force follows the older branch. These rules are exact for Poisson's ratio 0. Quantities are
+sphere, the force is 1 - (1 - d)^(3/2) (Cattaneo and Mindlin). After each turning point, the force
+follows the same curve at twice the scale until the previous turning point is reached. From there
+on, the force follows the older branch. These rules are exact for Poisson's ratio 0. Quantities are
 dimensionless as in `paper`.
 
 An Iwan model consists of parallel Jenkins elements, each of which is a spring in series with a
-slider. Let F(u) be the force of the first loading along one line at nu = 0. It is 1 minus the load
-at the indentation depth 1 - u. The slope of F is 2 G* c, where c is the contact radius at this
-depth. In an Iwan model whose elements have the stiffness rho dphi for slip displacements from phi
-to phi + dphi, the slope is Integral_u^1 rho dphi. Hence
+slider. Let F(u) be the force of the first loading along one line at nu = 0. This force is 1 minus
+the load at the indentation depth 1 - u. The slope of F is 2 G* c, where c is the contact radius at
+this depth. In an Iwan model whose elements have the stiffness rho dphi for slip displacements from
+phi to phi + dphi, the slope is Integral_u^1 rho dphi. Hence
 
     rho(phi) = -F''(phi) = 2 G* / h'(c)    at the depth h(c) = 1 - phi,
 

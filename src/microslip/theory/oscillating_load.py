@@ -15,8 +15,8 @@ dimensionless, in the working units of an indenter's pressure.Pressure.
 
 Under a sinusoidal indentation, a contact of constant stiffness, for example a flat end, acts as a
 single spring. M. Popov (Front. Mech. Eng. 6:69, 2020) gives two empirical formulas for its
-friction, Eqs 37 and 38. Both depend on the ratio of velocity to amplitude. If this ratio is above
-1, the contact slides all the time.
+friction, Eqs 37 and 38. Both formulas depend on the ratio of velocity to amplitude. If this ratio
+is above 1, the contact slides all the time.
 """
 
 from __future__ import annotations

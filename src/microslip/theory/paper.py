@@ -5,12 +5,12 @@ Amplitudes are in u_lim (transverse, y~0) or in phi_lk(1/2) (bore, phi~). Veloci
 u_lim (transverse), a omega (continuous bore) or Omega phi0 a (oscillating bore). Forward is the
 direction of the macroscopic velocity, and lateral is perpendicular to it.
 
-Every function accepts floats or arrays and broadcasts them. It raises ValueError if an argument is
+Every function accepts floats or arrays, broadcasts them, and raises ValueError if an argument is
 not finite or is outside its range.
 
-The mean velocities of a contact under a constant force apply to large amplitudes. At each instant,
-a massless rigid contact moves at the velocity at which friction balances the force. Therefore, its
-velocity is proportional to the velocity of the vibration.
+The formulas for the mean velocity of a contact under a constant force apply to large amplitudes. At
+each instant, a massless rigid contact moves at the velocity at which friction balances the force.
+Therefore, the velocity of the contact is proportional to the velocity of the vibration.
 """
 
 from __future__ import annotations
@@ -28,8 +28,9 @@ def large_amplitude_transverse(velocity: Numbers, amplitude: Numbers) -> Numbers
     """Return the friction of a rigid slider under transverse oscillation (Eq 6).
 
     This is the large-amplitude limit of the contact. The friction is (2/pi) K(m =
-    -(amplitude/velocity)^2). It is 1 at amplitude 0, and 0 at velocity 0 for every amplitude above
-    0. Raises ValueError unless velocity >= 0 and amplitude >= 0; the arguments are broadcast.
+    -(amplitude/velocity)^2). The friction is 1 at amplitude 0, and 0 at velocity 0 for every
+    amplitude above 0. Raises ValueError unless velocity >= 0 and amplitude >= 0; the arguments are
+    broadcast.
     """
     velocity, amplitude = checked("velocity", velocity), checked("amplitude", amplitude)
     # K(-m) = q K'(q) with q = v/sqrt(v^2 + A^2) is accurate for every ratio v/A.
@@ -94,10 +95,10 @@ def steady_bore_traction(lateral: Numbers, forward: Numbers, velocity: Numbers) 
     """Return the traction (lateral, forward) in continuous bore under full slip (Eq 15).
 
     The traction has the magnitude hertz.friction_bound(r) and is opposite to the local velocity
-    (-forward, velocity + lateral). It is 0 at the centre of rotation. The sign that is wrong in Eq
-    15 of the paper is corrected here. The mean lateral force is 0 (Eq 16). lateral, forward:
-    position relative to the contact centre. Raises ValueError unless velocity >= 0; the arguments
-    are broadcast.
+    (-forward, velocity + lateral). At the centre of rotation, the traction is 0. The sign that is
+    wrong in Eq 15 of the paper is corrected here. The mean lateral force is 0 (Eq 16). The
+    arguments `lateral` and `forward` are the position relative to the contact centre. Raises
+    ValueError unless velocity >= 0; the arguments are broadcast.
     """
     lateral = checked("lateral", lateral, low=-np.inf)
     forward = checked("forward", forward, low=-np.inf)
@@ -114,8 +115,8 @@ def forward_kernel(ratio: Numbers) -> Numbers:
     bound.
 
     Raises ValueError unless ratio >= 0; the argument can have any shape. The kernel is 4 E(k) at
-    the modulus k = ratio for ratio <= 1, and Q_M(1/ratio) for ratio > 1. It decreases from 2 pi at
-    ratio 0 to 4 at ratio 1, and approaches pi/ratio at large ratios.
+    the modulus k = ratio for ratio <= 1, and Q_M(1/ratio) for ratio > 1. The kernel decreases from
+    2 pi at ratio 0 to 4 at ratio 1, and approaches pi/ratio at large ratios.
     """
     inside, even, odd = _ring_integrals(ratio)
     return np.where(inside, even, odd)[()]
@@ -129,7 +130,7 @@ def torque_kernel(ratio: Numbers) -> Numbers:
 
     Raises ValueError unless ratio >= 0; the argument can have any shape. The kernel is 4 (E - (1 -
     k^2) K)/k at the modulus k = ratio for ratio <= 1, and Q_Y(1/ratio) for ratio > 1. At small
-    ratios, it is about pi*ratio. It is 4 at ratio 1, and approaches 2 pi at large ratios.
+    ratios, the kernel is about pi*ratio. It is 4 at ratio 1, and approaches 2 pi at large ratios.
     """
     inside, even, odd = _ring_integrals(ratio)
     return np.where(inside, odd, even)[()]
@@ -261,9 +262,9 @@ def static_limit_transverse(amplitude: Numbers) -> Numbers:
     """Return the exact static friction under transverse oscillation, v -> 0, for Poisson's ratio 0.
 
     The friction is the integral of sqrt(g^2 - (g - g_c)^2) over the stick zone, where g_c is the
-    inner bound of mindlin_traction. It is 0 for amplitude >= 1. For other Poisson's ratios,
-    Mindlin's traction and this limit are approximations. Raises ValueError unless amplitude >= 0;
-    the argument can have any shape.
+    inner bound of mindlin_traction. The friction is 0 for amplitude >= 1. For other Poisson's
+    ratios, Mindlin's traction and this limit are approximations. Raises ValueError unless amplitude
+    >= 0; the argument can have any shape.
     """
     amplitude = np.minimum(checked("amplitude", amplitude), 1.0)
     step, bound, inner = _stick_zone_rule(np.sqrt(1 - amplitude), np.sqrt(amplitude))

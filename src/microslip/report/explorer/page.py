@@ -50,7 +50,7 @@ exist."""
 
 
 def page(content: dict) -> str:
-    """Return the HTML of the page. content: value returned by `build`."""
+    """Return the HTML of the page. `content` is the value returned by `build`."""
     texts = {name: (FOLDER / name).read_text(encoding="utf-8").rstrip() for name in ASSETS}
     template, style = jinja2.Template(texts.pop("page.html")), texts.pop("style.css")
     # A "<" could end the script, so it is escaped.
@@ -113,7 +113,7 @@ def _values(dataset: xr.Dataset, **names: str) -> dict:
 
 
 def _map(dataset: xr.Dataset, records: Sequence[dict]) -> dict:
-    """Pack a map. records: records of the periods of points."""
+    """Pack a map. `records` contains the records of the periods of points."""
     shown = dataset.transpose("amplitude", "velocity", ...)
     motion = MOTIONS.get(dataset.attrs["motion"])
     return {

@@ -104,7 +104,7 @@ def draw(*datasets: xr.Dataset) -> Figure:
 
 
 def _panels(dataset: xr.Dataset, titled: bool) -> list[Panel]:
-    """Return the panels of a dataset. titled: if True, write the title of the dataset above the
+    """Return the panels of a dataset. If `titled` is True, the title of the dataset is above the
     panels."""
     title = look.literal(dataset.attrs.get("title", "")) if titled else ""
     if "cell_error" in dataset:

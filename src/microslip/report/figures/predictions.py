@@ -42,7 +42,8 @@ BAND = 2.0
 def curve(dataset: xr.Dataset) -> Figure:
     """Draw friction over the longest axis, with one line for each value of the other axis.
 
-    For contacts under a force, the speed is drawn instead. Values that did not converge are hollow.
+    For contacts under a force, the speed is drawn instead of the friction. Values that did not
+    converge are hollow.
     """
     abscissa, lines = selection.lines(dataset, "converged")
     attributes = {name: dataset[name].attrs for name in dataset.dims}

@@ -35,7 +35,8 @@ SHADES = LinearSegmentedColormap.from_list("bound", ["#FFFFFF", "#8CC8EE"])
 
 
 def _conditions(dataset: xr.Dataset, run: str, *names: str) -> str:
-    """Format the conditions of a run. run: first word in the names of the run's variables."""
+    """Format the conditions of a run. `run` is the first word in the names of the run's
+    variables."""
     values = {name: float(dataset[f"{run}_{name}"]) for name in names}
     return look.conditions(dataset.attrs.get("motion", ""), values)
 

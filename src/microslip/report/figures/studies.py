@@ -154,8 +154,8 @@ versus_work = partial(_versus, cost="effort")
 
 
 def _beyond(low: float, high: float, share: float) -> tuple[float, float]:
-    """Return a value below and a value above a logarithmic range. Their distance from the range is
-    `share` times the range."""
+    """Return a value below and a value above a logarithmic range. The distance of both values from
+    the range is `share` times the range."""
     factor = (high / low) ** share
     return low / factor, high * factor
 

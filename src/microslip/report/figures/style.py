@@ -244,7 +244,7 @@ _WORD = re.compile(r"([A-Za-z]+)(\d*)(?:_([A-Za-z0-9]+))?")
 
 
 def mathtext(formula: str) -> str:
-    """Convert a formula to mathtext. If it contains words, only the symbols are converted.
+    """Convert a formula to mathtext. If the formula contains words, only the symbols are converted.
 
     A symbol is a letter or the name of a Greek letter, with an optional number or index: x, v0,
     u_lim, phi_lk. Other sequences of letters are words.
@@ -295,7 +295,8 @@ PIXELS = 401
 
 
 def grid(figure: Any, count: int, across: int, **shared: Any) -> list[Axes]:
-    """Return `count` new panels in rows of `across` panels. shared: arguments of `subplots`."""
+    """Return `count` new panels in rows of `across` panels. `shared` contains arguments of
+    `subplots`."""
     axes = list(figure.subplots(-(-count // across), across, squeeze=False, **shared).flat)
     for empty in axes[count:]:
         empty.remove()
@@ -318,7 +319,7 @@ def heading(axes: Axes, note: str = "", room: float = np.inf) -> None:
 
 
 def legend_above(axes: Axes, note: str = "", **more: Any) -> None:
-    """Write a letter, a note and a legend above a panel. more: arguments of `legend`."""
+    """Write a letter, a note and a legend above a panel. `more` contains arguments of `legend`."""
     place: Ink = {"loc": "lower left", "bbox_to_anchor": (0.0, 1.02), "alignment": "left"}
     place |= {"handletextpad": 0.6, "columnspacing": 0.8, "borderaxespad": 0.0, "borderpad": 0.0}
     # The title is also drawn if the legend is empty.
@@ -334,7 +335,7 @@ def legend_of_figure(figure: Any, handles: Iterable, where: str, ncols: int, **m
 
 
 def colour_bar(shown: Any, panels: Axes | Sequence[Axes], label: str, **settings: Any) -> Colorbar:
-    """Add a colour bar beside one or several panels. shown: coloured artist in one of the
+    """Add a colour bar beside one or several panels. `shown` is the coloured artist in one of the
     panels."""
     bar = shown.axes.figure.colorbar(shown, ax=panels, label=label, **settings)
     bar.ax.tick_params(direction="out")
@@ -353,7 +354,8 @@ def logarithmic_if_wide(axes: Axes, values: np.ndarray) -> None:
 
 
 def logarithmic(axes: Axes, limits: Sequence[float] | np.ndarray | None = None) -> None:
-    """Make the abscissa of a panel logarithmic. limits: first and last value of the abscissa."""
+    """Make the abscissa of a panel logarithmic. `limits` are the first and the last value of the
+    abscissa."""
     axes.set(xscale="log")
     if limits is not None:
         axes.set_xlim(*limits)
@@ -378,8 +380,8 @@ def edges(points: np.ndarray, logarithmic: bool) -> np.ndarray:
     """Return the edges of cells around n points, as an array of shape (n + 1,).
 
     The edges are half-way between neighbouring points. The first and the last point are in the
-    middle of their cells. points: coordinates in ascending order. logarithmic: if True, use
-    geometric means, else arithmetic means.
+    middle of their cells. The coordinates `points` must be in ascending order. If `logarithmic` is
+    True, geometric means are used, else arithmetic means.
     """
     if logarithmic:
         return np.exp(edges(np.log(points), False))
@@ -403,8 +405,8 @@ def disc(
 ) -> ScalarMappable:
     """Draw an image of the contact, with a circle of radius 1 as the edge.
 
-    x, y, values: lateral position, forward position and value of each point. NaN is white. method:
-    method of scipy.interpolate.griddata.
+    x, y, values: lateral position, forward position and value of each point. NaN is white. `method`
+    is the method of scipy.interpolate.griddata.
     """
     line = np.linspace(-1.0, 1.0, PIXELS)
     places = np.meshgrid(line, line)
@@ -428,7 +430,7 @@ def unit_range(axes: Axes) -> None:
 
 
 def closed_form(axes: Axes, x: Any, y: Any, name: str, label: str) -> None:
-    """Draw a closed form in its colour and line style. name: variable of the closed form in
+    """Draw a closed form in its colour and line style. `name` is the variable of the closed form in
     datasets."""
     color, ls = LIMITS[name]
     axes.plot(x, y, color=color, ls=ls, label=label, gid=name)
