@@ -41,11 +41,11 @@ def no_vibration(problem: Problem) -> Exact | None:
 def closed_form(problem: Problem, tolerance: float) -> Exact | None:
     """Return the estimates of a closed form, or None if no closed form applies.
 
-    Closed forms exist in four cases.  The first is the steady state of a motion without
-    oscillation, where every point slips in the direction of its rigid velocity.  The second is the
-    limit of vanishing velocity, and the third is motion along one line at nu = 0.  The fourth is
-    fast sliding, if the midpoint of the bounds in theory/exact.py is accurate to within the
-    tolerance.
+    Closed forms exist in four cases.  The first case is the steady state of a motion without
+    oscillation, where every point slips in the direction of its rigid velocity.  The second case is
+    the limit of vanishing velocity, and the third case is motion along one line at nu = 0.  The
+    fourth case is fast sliding, if the midpoint of the bounds in theory/exact.py is accurate to
+    within the tolerance.
 
     Parameters
     ----------

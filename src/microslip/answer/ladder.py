@@ -99,8 +99,8 @@ class Ladder:
     def accuracy(self) -> float:
         """Tolerance for which an imposed resolution is suitable.
 
-        It is the tolerance at which `imposed` would be the first level.  Below the level `start`,
-        this tolerance follows from the second order of the method.
+        At this tolerance, `imposed` would be the first level.  Below the level `start`, this
+        tolerance follows from the second order of the method.
         """
         coarser = self.start / self.imposed
         return LOOSEST * coarser ** (ORDER if coarser > 1.0 else 1.0 / math.log10(RATIO))

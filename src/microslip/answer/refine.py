@@ -15,14 +15,14 @@ The methods are of second order, f(n) = f + C / n^2 + ..., and the difference D 
 levels gives the correction D / 3.  If the differences decrease with another order p, the
 differences beyond the last level add up to D / (2^p - 1), and the extrapolated value is wrong by
 D (1 / (2^p - 1) - 1 / 3).  The error estimate is this error for the observed order, times a safety
-factor.  It is at least the correction and at most D, each times the safety factor.
+factor.  The estimate is at least the correction and at most D, each times the safety factor.
 
 Two levels can agree by chance.  Therefore D is at least a quarter of the difference of the first
 two levels, the value expected for second order.  This is the grid convergence index of Roache (J.
 Fluids Eng. 116, 1994), applied to both pairs of levels.  In two cases, the last two levels are
 taken to agree by chance: the differences change sign, or the observed order is far above 2.  Then
-the last level need not be better than the one before, and D is the difference of the first two
-levels.
+the last level need not be better than the second-to-last level, and D is the difference of the
+first two levels.
 
 If the differences increase, n/4 is too coarse for the leading term to dominate, and a slightly
 finer level is probably too coarse as well.  The next n is then a level whose coarser levels have

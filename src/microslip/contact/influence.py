@@ -140,8 +140,8 @@ def toroidal_kernels(
 def modes_for(r: float, s: float, n: int) -> int:
     """Return the number of values G_m(r, s) from which `n` values C_m can be computed.
 
-    The number is n + 2 if the upward recurrence is stable.  Otherwise it is larger, but at most
-    MOST_MODES (n + 2).
+    The number is n + 2 if the upward recurrence is stable.  Otherwise the number is larger, but at
+    most MOST_MODES (n + 2).
     """
     growth = np.log(s / r)
     return n + 2 if (n + 1) * growth < 2.0 else n + 3 + int(DECAY / growth)

@@ -113,8 +113,8 @@ def _coupled_matrices(
 
 
 def _modes_to_average(angles: int) -> int:
-    """Return the number of modes for which kernels are averaged.  It is at least angles + 1; see
-    SHARED_MODES."""
+    """Return the number of modes for which kernels are averaged.  The number is at least angles +
+    1; see SHARED_MODES."""
     return next((most for most in SHARED_MODES if angles < most), angles + 1)
 
 

@@ -1,8 +1,8 @@
 """Discretise a problem in space and time, and evaluate the time integration.
 
-Some functions build the mesh of the contact and the path in time.  The others compute tractions,
-friction bounds, mean forces and the dissipated energy from a march (a time integration along the
-path).
+Some functions build the mesh of the contact and the path in time.  Other functions compute
+tractions, friction bounds, mean forces and the dissipated energy from a march (a time integration
+along the path).
 """
 
 from __future__ import annotations

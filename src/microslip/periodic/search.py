@@ -1,12 +1,12 @@
 """Search for the periodic state of a contact.
 
-A march is the time integration over a period or half a period.  It maps the state at the start to
-the state at the end.  The periodic state is the fixed point of this map.  The transients of plain
-marches last about 1/(2 pi v~) periods.  Anderson acceleration of the map finds its fixed point much
-sooner.  Convergence is judged by three quantities: the residual of the plain map (without
-acceleration), the distance to the next state, and an error computed from the residual and the drift
-rate of the motion.  The last quantity is needed near the static limit, where the state changes so
-slowly that a small residual is no evidence of convergence.
+A march is the time integration over a period or half a period.  A march maps the state at the start
+to the state at the end.  The periodic state is the fixed point of this map.  The transients of
+plain marches last about 1/(2 pi v~) periods.  Anderson acceleration of the map finds its fixed
+point much sooner.  Convergence is judged by three quantities: the residual of the plain map
+(without acceleration), the distance to the next state, and an error computed from the residual and
+the drift rate of the motion.  The last quantity is needed near the static limit, where the state
+changes so slowly that a small residual is no evidence of convergence.
 
 The state of a driven body includes two more numbers, its position x and rate x' (see
 contact/march.py).  In one period, unbalanced forces hardly change the state of a heavy body or of a

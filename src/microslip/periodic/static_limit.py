@@ -387,8 +387,8 @@ def edge_focus(
     ring with two edges.  Under an oscillating load, the edges are computed for the static limit
     only.
 
-    The effort of a search is charged to every point that uses its result.  So the work left for a
-    point does not depend on earlier points.
+    The effort of a search is charged to every point that uses its result.  So the work that is left
+    for a point does not depend on earlier points.
 
     Parameters
     ----------

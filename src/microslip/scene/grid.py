@@ -70,8 +70,8 @@ def checked(
 
 
 def _step(label: str, axis: np.ndarray) -> float:
-    """Return the spacing of coordinates, an array of shape (n,).  It must be uniform to within
-    REGULAR.
+    """Return the spacing of coordinates, an array of shape (n,).  The spacing must be uniform to
+    within REGULAR.
 
     Raises InputError for other coordinates.  The error message shows the pair of neighbours whose
     distance deviates most.

@@ -215,7 +215,8 @@ class Ring(RoundPressure):
     def _top(self) -> float:
         """Factor of the square root in the pressure.  With this factor, the load is 1.
 
-        It equals 1 / Integral sqrt((r - b)(1 - r)) 2 pi r dr, where r = middle - half cos t.
+        The factor equals 1 / Integral sqrt((r - b)(1 - r)) 2 pi r dr, where r = middle - half cos
+        t.
         """
         return 1.0 / (np.pi**2 * self._half**2 * self._middle)
 

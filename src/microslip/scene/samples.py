@@ -232,8 +232,8 @@ class Sampled(spec.NamedByText, _Samples):
         """Return the radius towards which rings are graded.
 
         If the load oscillates, the result is the smallest contact radius divided by the largest.
-        Otherwise, it is the stick radius of a straight oscillation that has the same largest
-        distance from the centre.
+        Otherwise, the result is the stick radius of a straight oscillation that has the same
+        largest distance from the centre.
         """
         if self.loads:
             least, most = self._extremes(amplitude, pressure)

@@ -77,8 +77,8 @@ def shown_by(checks: pd.DataFrame) -> str:
     """Return the name of the run that best shows the verdict on a part, or "" if all checks are
     open.
 
-    If checks fail, this is the run of the check that fails most clearly.  Otherwise, it is the run
-    of the check that holds most narrowly.
+    If checks fail, the run of the check that fails most clearly is returned.  Otherwise, the run of
+    the check that holds most narrowly is returned.
 
     checks: table with the columns outcome, margin and run.
     """

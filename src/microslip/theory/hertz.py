@@ -174,8 +174,8 @@ def bore_amplitude(angle: Numbers, poisson: float = 0.0) -> Numbers:
 
 
 def _twist_unit(poisson: Numbers) -> np.ndarray:
-    """Return the ratio of the torsion angle to D. It depends on Poisson's ratio, because torsion
-    depends on G, but u_lim depends on G* = 4G/(2-nu)."""
+    """Return the ratio of the torsion angle to D. This ratio depends on Poisson's ratio, because
+    torsion depends on G, but u_lim depends on G* = 4G/(2-nu)."""
     return 4 / (np.pi * (2 - checked("poisson", poisson, high=0.5)))
 
 

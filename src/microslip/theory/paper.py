@@ -129,8 +129,8 @@ def torque_kernel(ratio: Numbers) -> Numbers:
     the radius.
 
     Raises ValueError unless ratio >= 0; the argument can have any shape. The kernel is 4 (E - (1 -
-    k^2) K)/k at the modulus k = ratio for ratio <= 1, and Q_Y(1/ratio) for ratio > 1. At small
-    ratios, the kernel is about pi*ratio. It is 4 at ratio 1, and approaches 2 pi at large ratios.
+    k^2) K)/k at the modulus k = ratio for ratio <= 1, and Q_Y(1/ratio) for ratio > 1. The kernel is
+    about pi*ratio at small ratios, is 4 at ratio 1, and approaches 2 pi at large ratios.
     """
     inside, even, odd = _ring_integrals(ratio)
     return np.where(inside, odd, even)[()]
