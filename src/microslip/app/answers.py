@@ -38,8 +38,8 @@ def point(motion: str, **arguments: Any) -> Answer:
     estimate.  This ratio is 1 if the vibration has no effect, and 0 if no friction remains.  The
     apparent coefficient of friction is mu_apparent = mu mu_macro.  F_z is the load without
     oscillation (the reference load), and u_lim is the tangential displacement at which the whole
-    contact slides.  The contact radius is a, and phi_lk(a/2) is the angle at which the stick radius
-    is a/2.  Bore means spin: rotation about the contact normal.
+    contact slides.  Here, a is the contact radius, and phi_lk(a/2) is the angle at which the stick
+    radius is a/2.  Bore means spin: rotation about the contact normal.
     """
     import microslip
 

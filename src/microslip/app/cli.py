@@ -53,7 +53,7 @@ def main(words: list[str]) -> int:
 
 
 def _without_command(words: list[str]) -> int:
-    """Print the list of commands, or an error message about the words."""
+    """Print the list of commands, or an error message if the command is missing or unknown."""
     from microslip.app import sweep
 
     functions = {name: one.answer for name, one in COMMANDS.items()} | {"sweep": sweep.main}

@@ -15,9 +15,9 @@ from microslip.foundation.files import advice
 def job_log(path: str | Path, shown: int = logging.WARNING) -> Iterator[logging.Logger]:
     """Context manager that yields a logger for a job.  The logger writes to the file `path`.
 
-    Messages of at least the level `shown` also go to standard error.  An error ends the process
-    with exit code 1.  The log then contains the traceback.  For a CacheError, a SolverError, a full
-    disk or an interrupt, the log contains only one line.
+    Messages of at least the level `shown` are also printed on standard error.  An error ends the
+    process with exit code 1.  The log then contains the traceback.  For a CacheError, a
+    SolverError, a full disk or an interrupt, the log contains only one line.
     """
     try:
         file = logging.FileHandler(path, "w", "utf-8")

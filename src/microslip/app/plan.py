@@ -84,8 +84,8 @@ class Plan:
         self.batches = cache(self._batches)  # not @cache, since it would keep every plan
 
     def _product(self, name: str) -> Product:
-        """Return a product.  The name of its files contains a hash of everything that they are made
-        from."""
+        """Return a product.  The name of the product's files contains a hash of everything that the
+        files are made from."""
         configuration = self.configuration
         sweep, figure = configuration.sweeps.get(name), configuration.figures.get(name)
         kind, rule = name, "dataset"
@@ -216,8 +216,8 @@ class Results:
         return list(names)
 
     def order_of_batch(self, folder: str, name: str) -> str:
-        """Return the JSON text of a batch for its job.  For a certified map, return the JSON text
-        of the name of the map."""
+        """Return the JSON text of a batch for its job.  For a certified map, the text contains only
+        the name of the map."""
         path = f"{folder}/{name.partition('-')[0]}"
         for product in self.missing:
             if path in (batches := self.plan.batches(product)):
@@ -231,8 +231,8 @@ class Results:
         return canonical_json([[name, self.stems[name], self.missing[name]] for name in names])
 
     def plain(self) -> dict[str, tuple[str, str]]:
-        """Return a dict from the plain name of each file to the name of its product and its
-        path."""
+        """Return a dict that maps the plain name of each file to the name of the product and the
+        path of the file."""
         return {
             plain: (name, f"data/{self.stems[name]}{ending}")
             for name, product in self.plan.products.items()
@@ -240,8 +240,8 @@ class Results:
         }
 
     def _chosen(self, folder: str, stem: str, endings: tuple[str, ...]) -> tuple[str, bool]:
-        """Return the name of complete files and True.  If there are none, return an unused name and
-        False."""
+        """Return the name of complete files and True.  If there are no complete files, return an
+        unused name and False."""
         number = self._listed(folder).get(stem, {})
         for variant in sorted(number):
             if content.GAPS not in number[variant] and number[variant].issuperset(endings):

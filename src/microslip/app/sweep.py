@@ -48,8 +48,8 @@ def main(arguments: list[str]) -> int:
     The workflow runs in the current folder and writes datasets to results/, and figures to
     results/figures/.  Existing results are not computed again.  A CONFIGURATION is the name of a
     file in the folder config, here or in the package; the default is config/config.yaml.  A TARGET
-    is a dataset or a figure of the configuration, such as bore, or a file, such as results/bore.nc;
-    without a TARGET, all datasets and figures are made.  All other options are passed to Snakemake
+    is a dataset or a figure of the configuration, such as bore, or a file, such as results/bore.nc.
+    Without a TARGET, all datasets and figures are made.  All other options are passed to Snakemake
     (see snakemake --help); default options are in profiles/default.  The exit code is 2 for bad
     input, and otherwise the exit code of Snakemake. Examples: microslip sweep --cores 2; microslip
     sweep extended --dry-run; microslip sweep --configfile mine.yaml --config points_per_job=10.
@@ -108,8 +108,8 @@ def _run(arguments: list[str]) -> int:
 
 
 def configurations() -> dict[str, Path]:
-    """Return the configurations in the folder config of the package and of the current folder,
-    keyed by name."""
+    """Return the paths of all configurations, keyed by name.  They are in the folder config of the
+    package and of the current folder."""
     folders = source_digest.workflow_file("config/config.yaml").parent, Path("config")
     return {file.stem: file for folder in folders for file in sorted(folder.glob("*.yaml"))}
 

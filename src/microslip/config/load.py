@@ -212,7 +212,8 @@ def from_mapping(
 
 
 def with_paths(mapping: dict, folders: Iterable = ()) -> dict:
-    """Return a copy of a checked mapping with absolute paths and digests of the sweeps' files.
+    """Return a copy of a checked mapping in which the files of the sweeps have absolute paths and
+    digests.
 
     A job can use this copy in any working directory.
     """

@@ -204,7 +204,8 @@ def _axis(
 
 
 def _spaced(item: dict) -> list[float]:
-    """Return the values of a range such as {"log": [0.001, 10, 25]}, to six significant digits."""
+    """Return the values of a range such as {"log": [0.001, 10, 25]}, rounded to six significant
+    digits."""
     spacing, ends = next(iter(item.items())) if len(item) == 1 else ("", None)
     key, is_log = f".{spacing}", spacing == "log"
     if spacing not in ("log", "linear"):
@@ -363,8 +364,8 @@ class Sweep(Settings):
         return len(self.amplitude) > 1 and sum(v > 0 for v in self.velocity) > 1
 
     def model_post_init(self, context: Any, /) -> None:
-        """Raise Refusal if settings contradict each other. Only checks that need no solver are
-        made."""
+        """Raise Refusal if settings contradict each other. Only checks that do not need the solver
+        are made."""
         free = [name for name in ("cells", "steps") if getattr(self, name) is None]
         free = [name for name in free if self.amplitude or name != "steps"]
         if self.tolerance is None and (free or self.is_certified):
@@ -612,7 +613,7 @@ class Configuration(Settings):
 
     @property
     def studies(self) -> dict[str, Accuracy | Stability | Claims]:
-        """Studies in the configuration by name."""
+        """Studies in the configuration, keyed by name."""
         return {name: study for name in STUDIES if (study := getattr(self, name)) is not None}
 
     @property

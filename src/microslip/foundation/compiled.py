@@ -6,13 +6,16 @@ by Numba's settings and by a listener to Numba's events:
 - Numba notices an edit of the file of a function, but not an edit of another file that the function
   uses.  Therefore, the name of the folder of compiled code contains a digest of all kernels and of
   all files that they import.
+
 - Numba raises an error for a folder that is read-only or full.  Therefore, the folder is checked
   once.  If this folder is not usable, another folder is used, or compiled code is not stored.  If
   code cannot be stored later, for example on a disk that has filled up, the function is used
   without storing it.
+
 - Numba raises an error for a damaged file.  Therefore, the folder contains a list of checksums,
   which is written after each compilation.  At the start of a process, files that do not match this
   list are removed.
+
 - Two processes that compile one function at the same time can mix up the codes of its signatures.
   Therefore, only one process compiles at a time.  The other processes wait, and then use the code
   that it has stored.

@@ -81,7 +81,7 @@ class Table:
 
     @property
     def columns(self) -> dict[str, list[Any]]:
-        """The cells with the units of the headings, such as "10 N"."""
+        """The cells of each column, each with the unit of the heading, such as "10 N"."""
         return {n: [_with_unit(c, self.units[n]) for c in one] for n, one in self.cells.items()}
 
     @property
@@ -362,8 +362,8 @@ def _count_problem(where: int, count: int, columns: int, separator: str) -> str:
 
 
 def _with_point(where: int, name: str, cell: str, decimal: str) -> str:
-    """Return the string of a cell with decimal points, and with hyphens as minus signs.  Raises
-    ValueError if the decimal mark of a number differs from the declared one."""
+    """Return the string of a cell, with a decimal point and with a hyphen as the minus sign.
+    Raises ValueError if the decimal mark of a number differs from the declared one."""
     cell = cell.strip("'").strip().replace("−", "-")
     if decimal == "." and re.match(r"[+-]?\d*,\d", cell, re.ASCII):
         allowed = "allowed: a decimal point, or decimal = ','"

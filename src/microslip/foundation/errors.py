@@ -18,7 +18,8 @@ class InputError(ValueError):
     """An invalid argument.
 
     The message is one line, "argument = value: what is allowed".  Other layers use the attributes
-    to replace the argument with the name of an option, or the value with the string of a quantity.
+    of the error to replace the argument by the name of an option, or the value by the string of a
+    quantity.
 
     Attributes
     ----------
@@ -38,7 +39,8 @@ class InputError(ValueError):
         return " ".join(f"{self.argument} = {shown(self.value)}: {self.allowed}".split())
 
     def renamed(self, argument: str, value: object = None) -> InputError:
-        """Return a copy for another argument, and with another value unless `value` is None."""
+        """Return a copy with another argument name, and with another value unless `value` is
+        None."""
         return InputError(argument, self.value if value is None else value, self.allowed)
 
 
@@ -46,8 +48,8 @@ class SolverError(RuntimeError):
     """The solver failed at a point.  Either a step could not be solved, or tractions are not
     finite.
 
-    This is the only error that leaves a gap in a dataset.  Its message becomes the `reason` of the
-    point.
+    This is the only error that leaves a gap in a dataset.  The error message becomes the `reason`
+    of the point.
     """
 
 

@@ -4,8 +4,8 @@
     mine/soft_square.py:share=0.5    the class in a Python file
     file:pad.csv,grid=samples        a data file, with options
 
-A result depends on the content of a file and not on its folder.  So the name of a motion or a
-pressure from a file contains a digest: "soft_square.py:sha256=0123456789abcdef,share=0.5" or
+A result depends on the content of a file and not on its folder.  Therefore, the name of a motion or
+a pressure from a file contains a digest: "soft_square.py:sha256=0123456789abcdef,share=0.5" or
 "file:sha256=0123456789abcdef,grid=samples".  The digest of a Python file covers the files that it
 imports from its folder.  Each process stores the path that belongs to a digest.  `remember` stores
 paths that another process has passed on.
@@ -277,8 +277,8 @@ def _run(path: Path, name: str) -> ModuleType:
 
 @lru_cache(maxsize=32)
 def _class_in(file: NamedFile, base: type) -> type:
-    """Return the subclass of `base` in a Python file.  Raises ImportError unless there is exactly
-    one."""
+    """Return the subclass of `base` in a Python file.  Raises ImportError unless the file contains
+    exactly one such class."""
     path = Path(file.path)
     name = f"microslip_{file.digest}_{path.stem}"
     try:

@@ -82,8 +82,8 @@ def _plain(value: float, digits: int, zeros: bool = False) -> str:
 
 
 def _short(number: Decimal) -> str:
-    """Format a decimal with all its digits.  Only very large and very small numbers have an
-    exponent."""
+    """Format a decimal with all its digits.  Only very large and very small numbers are written
+    with an exponent."""
     is_usual = not number or SIZES[0] <= number.adjusted() < SIZES[1]
     return f"{number or abs(number):f}" if is_usual else f"{float(number):g}"
 
@@ -94,7 +94,8 @@ def _rounded(number: float, digits: int, rounding: str | None = None) -> Decimal
 
 
 def interval_text(low: float, high: float, unit: str = "", *, error: float = 0.0) -> str:
-    """Format an interval.  Both bounds are rounded outwards to two significant digits of the width.
+    """Format an interval.  Both bounds are rounded outwards, to two significant digits of the width
+    of the interval.
 
     Parameters
     ----------
@@ -126,7 +127,7 @@ def interval_text(low: float, high: float, unit: str = "", *, error: float = 0.0
 
 
 def prefixed(value: float, unit: str) -> tuple[str, float]:
-    """Return the unit with the largest metric prefix for which the value is at least 1, and the
+    """Return the unit with the largest metric prefix with which the value is at least 1, and the
     size of this prefix.  For 0, the unit has no prefix."""
     size = abs(value) or 1.0
     prefix, factor = next((one for one in PREFIXES.items() if size >= one[1]), ("p", 1e-12))

@@ -74,7 +74,7 @@ class Sources:
         """Return the paths of the given files and of all modules that they import directly or
         indirectly.
 
-        A table module.csv belongs to the module module.py.
+        A table such as variables.csv belongs to the module variables.py.
 
         inside: function that returns False for the path of an imported module to be omitted.
         """
@@ -173,7 +173,7 @@ def parse(content: bytes, messages: bool) -> tuple[str, list[str]]:
 def _text(node: object, messages: bool) -> str:
     """Return the text of a syntax tree, without docstrings, line numbers and empty fields.
 
-    messages: if False, messages are omitted.  A string with a blank is a message, unless an
+    messages: if False, messages are omitted.  A string with a blank counts as a message, unless an
     attribute of the string is used, as in "a b".split().  Unlike ast.dump, this function returns
     the same text in all versions of Python.
     """
@@ -214,7 +214,7 @@ def of_solver(method: str = "") -> str:
 
 
 def is_edited() -> bool:
-    """Return True if the code of the physics on disk differs from the code that was read."""
+    """Return True if the code of the physics on disk has changed since it was read."""
     now = Sources()
     return now.digest(now.solver) != of_solver()
 

@@ -216,7 +216,7 @@ def _from_text(text: str, si: str, units: bool = False) -> Quantity:
 
 
 def _number(text: str, si: str, units: bool) -> tuple[float, bool]:
-    """Return the SI value of a number with a unit, and True if the unit is of the same kind as the
+    """Return the SI value of a number with a unit, and whether the unit is of the same kind as the
     SI unit."""
     text = text.replace("−", "-").strip()
     match = NUMBER.match(text)
@@ -255,8 +255,8 @@ def _number(text: str, si: str, units: bool) -> tuple[float, bool]:
 
 
 def _hint(digits: str, rest: str) -> str:
-    """Return a hint about the likely meaning of the rest of a string, at which reading stopped
-    after the digits of a number."""
+    """Return a hint about the part of a string that follows the digits of a number and could not be
+    read."""
     if digits and (fraction := re.fullmatch(r"/\s*([1-9]\d*)\s*(.*)", rest, re.S)):
         value = float(Fraction(Decimal(digits)) / int(fraction[1]))
         return f" (did you mean {f'{value!r} {fraction[2]}'.strip()!r}?)"

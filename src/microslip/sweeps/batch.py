@@ -97,7 +97,7 @@ def _checksum(content: bytes, final: bool) -> bytes:
 
 
 def _checked(path: str | Path) -> tuple[bytes, bool]:
-    """Return the content of a file without the checksum, and True if the records are final.
+    """Return the content of a file without its checksum, and whether the records are final.
 
     Raises CacheError if the file is missing or damaged.
     """
@@ -112,7 +112,7 @@ def _checked(path: str | Path) -> tuple[bytes, bool]:
 
 
 class Job(ExitStack):
-    """Context manager for a job that writes a batch file.  On exit, it closes the journal.
+    """Context manager for a job that writes a batch file.  The journal is closed on exit.
 
     The job takes records from other batch files and journals in the folder.  The job appends each
     computed record to its own journal.  This journal is removed after its records have been written

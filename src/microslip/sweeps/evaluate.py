@@ -39,8 +39,8 @@ def computed(request: dict) -> dict:
 
     If no periodic state is found, `converged` is False, and `reason` is the cause.  If the solver
     raises another SolverError or an InputError, `crashed` is also True, `reason` is the error
-    message in one line, and the point is a gap in the dataset.  Any other exception is an error of
-    the code or the machine and propagates.
+    message in one line, and the point is a gap in the dataset.  Any other exception indicates an
+    error of the code or of the machine, and is not caught.
     """
     arguments = {
         name: float(value) if name in REALS and value is not None else value

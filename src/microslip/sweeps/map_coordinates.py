@@ -103,12 +103,12 @@ class MapCoordinates(NamedTuple):
 
     @property
     def degrees(self) -> tuple[int, ...]:
-        """Degrees of the polynomials in a cell, by direction."""
+        """Degree of the polynomials in a cell along each direction."""
         return tuple(DEGREES[name] for name in self.directions)
 
     @property
     def patches(self) -> list[Box]:
-        """Boxes in scaled coordinates that cover the map, from slow to fast velocities."""
+        """Boxes in scaled coordinates that cover the map, ordered from slow to fast velocities."""
         boxes = [((0.0, float(y)), (1.0, y + 1.0)) for y in range(len(self._rows))]
         if self._cut:
             ends = np.linspace(FAST, FAST + 1.0, FAST_PATCHES + 1).tolist()

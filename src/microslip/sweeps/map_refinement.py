@@ -78,7 +78,7 @@ def nodes_of(cell: Box, degrees: tuple[int, ...]) -> list[Node]:
 
 
 def halves_of(cell: Box, direction: int) -> tuple[Box, Box]:
-    """Return the two halves of a cell that is divided along the direction with this index."""
+    """Return the two halves of a cell that is divided along the direction with the given index."""
     begin, end = map(list, cell)
     begin[direction] = end[direction] = 0.5 * (begin[direction] + end[direction])
     return (cell[0], tuple(end)), (tuple(begin), cell[1])

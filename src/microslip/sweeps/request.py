@@ -67,8 +67,8 @@ class Batch(NamedTuple):
 
 
 def request_of(kind: str, **arguments: Any) -> dict:
-    """Return a request with the arguments of the function that computes it. Numbers are converted
-    to canonical strings."""
+    """Return a request with the arguments of the function that computes its result. Numbers are
+    converted to canonical strings."""
     texts = {name: number(v) for name, v in arguments.items() if name in REALS and v is not None}
     return {"kind": kind} | arguments | texts
 
@@ -80,8 +80,8 @@ def is_settled(result: dict) -> bool:
 
 
 def folder_of(motion: str) -> str:
-    """Return the name of the folder for the batches of a motion.  It is the name of the motion or
-    of its file, without parameters."""
+    """Return the name of the folder for the batches of a motion.  The folder has the name of the
+    motion or of its file, without parameters."""
     return re.sub(r"[^\w-]", "_", motion.partition(":")[0].removesuffix(".py"))
 
 
@@ -114,7 +114,7 @@ def settings_of(sweep: Sweep) -> dict:
 def points_of(sweep: Sweep) -> Batch:
     """Return the requests for all points of a sweep.
 
-    The requests are in the order of the dataset's dimensions.  The last dimension, which is
+    The order of the requests is that of the dataset's dimensions.  The last dimension, which is
     velocity or force, changes fastest and is the axis of the batch.
     """
     axes = {name: [*map(number, values)] for name, values in sweep.axes.items()}
