@@ -28,7 +28,7 @@ class Map:
     ----------
     dataset : xarray.Dataset
         Dataset of a sweep, a selection from it, or several such datasets joined, in memory or in
-        dask chunks.
+        dask chunks.  The dataset of a certified map must be whole.
     """
 
     def __init__(self, dataset: xr.Dataset):
@@ -65,9 +65,6 @@ class Map:
         requests = {one: value for one, value in requests.items() if value is not None}
         data = self._dataset
         name = "velocity" if "force" in data.coords else "mu_macro"
-        for needed in (name, f"{name}_error"):
-            if needed not in data.variables:
-                raise InputError(needed, None, interpolation.LOST)
         of_map = interpolation.of_map(data, name)
         numbers = {n: float(c) for n, c in data.coords.items() if not c.ndim and n in AXES}
         ranges = of_map.ranges | {one: (number, number) for one, number in numbers.items()}
@@ -94,13 +91,10 @@ class Map:
         value.attrs = {key: text for key, text in data[name].attrs.items() if key in about and text}
         value.attrs[ANCILLARY] = f"{name}_error"
         error.attrs = {"long_name": f"bound of the error of {name}", "units": "1"}
-        answer = xr.Dataset({name: value, f"{name}_error": error})
-        scalars = [n for n in numbers if n not in answer.coords]
-        answer = answer.assign_coords(
-            {n: described({"long_name": n}, numbers[n], ()) for n in scalars}
-        )
-        names = ("motion", "pressure")
-        return answer.assign_attrs({key: data.attrs[key] for key in names if key in data.attrs})
+        scalars = [n for n in numbers if n not in value.coords]
+        coords = {n: described({"long_name": n}, numbers[n], ()) for n in scalars}
+        attributes = {key: data.attrs[key] for key in ("motion", "pressure") if key in data.attrs}
+        return xr.Dataset({name: value, f"{name}_error": error}, coords, attributes)
 
 
 def _coordinate(name: str, value: Any) -> xr.DataArray:

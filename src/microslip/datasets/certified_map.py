@@ -18,7 +18,7 @@ from numpy.typing import ArrayLike
 
 from microslip.config.settings import Configuration
 from microslip.datasets import sweep_dataset
-from microslip.datasets.interpolation import BORDERS, COORDINATES
+from microslip.datasets.interpolation import BORDERS, CHECKSUMS, COORDINATES, NUMBERS, parts_of
 from microslip.datasets.variables import TABLE, described
 from microslip.foundation.canonical import canonical_json
 from microslip.sweeps import map_refinement
@@ -54,17 +54,17 @@ def build(
     places = [coordinates.place(node) for node in points]
     values, errors = np.array([answers[node] for node in points]).T
     variables: dict[str, ArrayLike] = {"mu_macro": values, "mu_macro_error": errors}
+    # If Poisson's ratio or the velocity is constant in the map, it is a scalar coordinate.
+    axes: dict = {"velocity": ((), 0.0), "poisson": ((), sweep.poisson[0])}
     ends = np.array(cells.cells)  # (cell, lower or upper, direction)
-    for direction, own in zip(coordinates.directions, ends.T, strict=True):
-        variables |= zip(BORDERS[direction], own, strict=True)
+    for k, direction in enumerate(coordinates.directions):
+        axes[direction] = "point", np.array(places)[:, k]
+        variables |= zip(BORDERS[direction], ends[:, :, k].T, strict=True)
     nodes = [map_refinement.nodes_of(cell, degrees) for cell in cells.cells]
     variables["cell_error"] = cells.errors
     variables["cell_node"] = [[index[node] for node in own] for own in nodes]
-    # If Poisson's ratio or the velocity is constant in the map, it is a scalar coordinate.
-    axes: dict = {"velocity": ((), 0.0), "poisson": ((), sweep.poisson[0])}
-    for direction, axis in zip(coordinates.directions, zip(*places, strict=True), strict=True):
-        axes[direction] = "point", np.array(axis)
-    variables["point"], variables["node"] = np.arange(len(points)), np.arange(len(nodes[0]))
+    counts = len(nodes), len(nodes[0]), len(points)
+    variables |= zip(NUMBERS, map(np.arange, counts), strict=True)
     dims = {name: TABLE[name]["dims"].split() or "point" for name in variables}
     every = {name: described(TABLE[name], variables[name], dims[name]) for name in variables}
     dataset = xr.Dataset(every, axes)
@@ -82,7 +82,9 @@ def build(
         directions=" ".join(coordinates.directions),
         degrees=np.array(degrees, np.int32),
     )
-    return dataset.assign_attrs(about | {COORDINATES: coordinates.to_json()}), {}
+    dataset = dataset.assign_attrs(about | {COORDINATES: coordinates.to_json()})
+    checksums = (f"{name}:{checksum}" for name, checksum in parts_of(dataset)[1].items())
+    return dataset.assign_attrs({CHECKSUMS: " ".join(checksums)}), {}
 
 
 def report(dataset: xr.Dataset, name: str) -> Iterator[str]:

@@ -11,6 +11,7 @@ In a certified map, each cell has its own polynomial and its own error bound.
 
 from __future__ import annotations
 
+import zlib
 from collections.abc import Iterable
 from dataclasses import dataclass
 from functools import cached_property
@@ -25,6 +26,8 @@ NODES = 4
 """Number of nodes of a local cubic."""
 COORDINATES = "map_coordinates"
 """Name of the attribute of a certified map that contains the scaled coordinates as JSON."""
+CHECKSUMS = "checksums"
+"""Name of the attribute of a certified map that contains the checksums of its parts."""
 BORDERS = {
     "velocity": ("cell_left", "cell_right"),
     "amplitude": ("cell_low", "cell_high"),
@@ -33,9 +36,17 @@ BORDERS = {
 """Names of the variables that contain the lower and the upper ends of the cells, by direction."""
 AXES = ("mass", "damping", "stiffness", "poisson", "amplitude", "velocity", "force")
 """Coordinates of maps, in the order of the dimensions of a result."""
+NUMBERS = ("cell", "node", "point")
+"""Dimensions of a certified map.  Their coordinates number the cells, nodes and points."""
+PARTS = (*NUMBERS, "mu_macro", "cell_error", "cell_node", *sum(BORDERS.values(), ()), *AXES)
+"""Variables of a certified map that have a checksum."""
 SAME = 1e-12
 """Difference below which two coordinates count as equal."""
 LOST = "microslip.at needs it, and the dataset has lost it: keep it"
+NOT_WHOLE = (
+    "in the dataset, so the certified map is not whole: select from the result of microslip.at, "
+    "and open the map again with open_map (or make it again if its file is of another version)"
+)
 ANY = "microslip.solve computes any"
 
 Points = dict[str, np.ndarray]
@@ -262,47 +273,54 @@ class Cells:
         begin, end = self.borders.transpose(2, 0, 1)
         inside = ((scaled[:, None] >= begin) & (scaled[:, None] <= end)).all(axis=2)
         cell = inside.shape[1] - 1 - inside[:, ::-1].argmax(axis=1)  # the last one on a border
-        degrees = np.array(self.nodes.shape[1:]) - 1
-        shares = degrees * ((scaled - begin[cell]) / (end[cell] - begin[cell]))
-        weights = (
-            lagrange(np.arange(degree + 1.0)[None], share)
-            for degree, share in zip(degrees, shares.T, strict=True)
-        )
+        counts = self.nodes.shape[1:]
+        shares = np.subtract(counts, 1) * ((scaled - begin[cell]) / (end[cell] - begin[cell]))
+        weights = [lagrange(np.arange(n)[None], x) for n, x in zip(counts, shares.T, strict=True)]
         value = polynomial(np.moveaxis(self.nodes[cell], 0, -1), weights)
-        value[~inside.any(axis=1)] = np.nan
         return value, np.where(np.isnan(value), np.inf, self.bounds[cell])
 
 
 def of_map(dataset: xr.Dataset, name: str) -> Grid | Cells:
     """Return the interpolation of a variable in a certified or regular map."""
-    return cells_of(dataset) if COORDINATES in dataset.attrs else grid_of(dataset, name)
+    is_certified = COORDINATES in dataset.attrs or not dataset.sizes.keys().isdisjoint(NUMBERS)
+    return cells_of(dataset) if is_certified else grid_of(dataset, name)
+
+
+def parts_of(dataset: xr.Dataset) -> tuple[dict[str, np.ndarray], dict[str, str]]:
+    """Return the parts of a certified map as flat arrays, ordered by the numbers of cells, nodes
+    and points, and the checksums of these arrays and of the scaled coordinates.
+
+    A checksum is computed from the values in single precision.  It therefore does not depend on the
+    type of the numbers.
+    """
+    names = [name for name in PARTS if name in dataset.variables]
+    numbers = [name for name in NUMBERS if name in dataset.dims]
+    ordered = dataset[names].sortby(numbers).transpose(*numbers, ...)
+    parts = {name: ordered[name].values.ravel() for name in names}
+    contents = {COORDINATES: str(dataset.attrs.get(COORDINATES)).encode()}
+    for name, part in parts.items():
+        contents[name] = part.astype("<f4").tobytes() if part.dtype.kind in "iuf" else b""
+    return parts, {name: f"{zlib.crc32(content):08x}" for name, content in contents.items()}
 
 
 def cells_of(dataset: xr.Dataset) -> Cells:
     """Read the cells of a certified map.
 
-    If a variable is missing, raises InputError with the name of the variable.
+    If a part is missing or has changed, raises InputError with the name of the part.
     """
-    text = dataset.attrs[COORDINATES]
-    try:
-        coordinates = MapCoordinates.from_json(text)
-    except (KeyError, TypeError, ValueError):
-        allowed = "is of another version; allowed: a certified map of this version: make it again"
-        raise InputError(COORDINATES, text, allowed) from None
-    names = [BORDERS[direction] for direction in coordinates.directions]
-    for name in ("cell_node", "cell_error", "point", "node", *sum(names, ())):
-        if name not in dataset.variables:
-            raise InputError(name, None, LOST)
-    degrees, cell_node = np.array(coordinates.degrees), dataset["cell_node"]
-    if set(cell_node.dims) != {"cell", "node"} or cell_node.sizes["node"] != np.prod(degrees + 1):
-        raise InputError("cell_node", dict(cell_node.sizes), LOST)
-    # the order of the points and of the nodes may have changed, and points may be missing
-    cell_nodes = cell_node.sortby("node").transpose("cell", "node").values.astype(int)
-    values = np.full(max(cell_nodes.max(), int(dataset["point"].max())) + 1, np.nan)
-    values[dataset["point"].values] = dataset["mu_macro"].values
-    borders = np.stack([[dataset[name].values for name in pair] for pair in names])
-    nodes = values[cell_nodes].reshape(-1, *(degrees + 1))
-    return Cells(coordinates, borders.transpose(2, 0, 1), nodes, dataset["cell_error"].values)
+    parts, checksums = parts_of(dataset)
+    # without the attribute, the word CHECKSUMS stands for the missing part
+    words = str(dataset.attrs.get(CHECKSUMS, CHECKSUMS)).split()
+    original = {name: checksum for name, _, checksum in (word.partition(":") for word in words)}
+    for name, checksum in (original | checksums).items():
+        is_lost = name not in checksums and name not in AXES
+        if is_lost or original.get(name) != checksum:
+            raise InputError(name, "is missing" if is_lost else "has changed", NOT_WHOLE)
+    coordinates = MapCoordinates.from_json(dataset.attrs[COORDINATES])
+    borders = np.array([[parts[n] for n in BORDERS[d]] for d in coordinates.directions], float)
+    nodes = parts["mu_macro"].astype(float)[parts["cell_node"].astype(int)]
+    nodes = nodes.reshape(-1, *np.array(coordinates.degrees) + 1)
+    return Cells(coordinates, borders.transpose(2, 0, 1), nodes, parts["cell_error"].astype(float))
 
 
 def grid_of(dataset: xr.Dataset, name: str) -> Grid:
@@ -310,26 +328,29 @@ def grid_of(dataset: xr.Dataset, name: str) -> Grid:
 
     Raises InputError with the name of the variable or coordinate that is missing or not allowed.
     """
-    nodes, work = dataset[[name, f"{name}_error"]], dataset.get("work", xr.DataArray(0.0))
-    if ((work % 1.0) > 0.0).any():  # between points, the numbers of solves are not integers
+    names = [name, f"{name}_error"]
+    nodes = dataset[[one for one in names if one in dataset.variables]]
+    dims = [dim for dim in AXES if dim in nodes.dims]
+    for one in (*dims, *names):
+        if one not in nodes.variables or not nodes[one].size:
+            raise InputError(one, None, LOST)
+        if nodes[one].dtype.kind not in "iuf":
+            raise InputError(one, f"of type {nodes[one].dtype}", "allowed are numbers")
+    for dim in nodes.dims:
+        if dim not in dims:
+            raise InputError(str(dim), nodes.sizes[dim], "entries; allowed is one: select it")
+        if nodes[dim].to_index().has_duplicates:
+            raise InputError(
+                str(dim), "is there twice", "in the dataset; allowed is each value once"
+            )
+    # between points, the numbers of solves are not integers
+    if "work" in dataset and ((dataset["work"] % 1.0) > 0.0).any():
         allowed = "allowed are computed points, with microslip.at in place of other interpolations"
         raise InputError(name, "interpolated", f"in the dataset; {allowed}")
     if "converged" in dataset:
         nodes = nodes.where(dataset["converged"] == 1)  # a join fills gaps with NaN
-    nodes = nodes.compute()
-    dims = [dim for dim in AXES if dim in nodes.dims]
-    for extra in nodes.dims:
-        if extra not in dims:
-            raise InputError(str(extra), nodes.sizes[extra], "entries; allowed is one: select it")
-    for dim in dims:
-        if dim not in nodes.coords or not nodes.sizes[dim]:
-            raise InputError(dim, None, LOST)
-        if nodes.indexes[dim].has_duplicates:
-            raise InputError(dim, "is there twice", "in the dataset; allowed is each value once")
-    for one in (name, f"{name}_error", *dims):
-        if dataset[one].dtype.kind not in "iuf":
-            raise InputError(one, f"of type {dataset[one].dtype}", "allowed are numbers")
-    value, error = nodes[name], nodes[f"{name}_error"]
+    nodes = nodes.compute().sortby(dims).transpose(*dims)
+    value, error = (nodes[one] for one in names)
     most = 1.0 + error + SAME if name == "mu_macro" else np.inf
     wrong = {dim: (~(nodes[dim] < np.inf) | (nodes[dim] < 0.0), "are numbers >= 0") for dim in dims}
     wrong |= {error.name: (error < 0.0, "is 0 or more"), name: (abs(value) > most, "is -1 to 1")}
@@ -337,9 +358,8 @@ def grid_of(dataset: xr.Dataset, name: str) -> Grid:
         if bad.any():
             first = float(nodes[one].values[bad.values][0])
             raise InputError(one, first, f"in the dataset; allowed {allowed}")
-    nodes = nodes.sortby(dims).transpose(*dims)
     axes = {}
     for dim in dims:
         values = nodes[dim].values.astype(float)
         axes[dim] = Axis(values, int(dim == "velocity" and len(values) > 1 and values[0] == 0.0))
-    return Grid(axes, *(nodes[one].values.astype(float) for one in (name, f"{name}_error")))
+    return Grid(axes, *(nodes[one].values.astype(float) for one in names))

@@ -60,12 +60,8 @@ class Surface:
         levels : sequence of float
             Levels of the contours, in ascending order.
         """
-        error = np.zeros(np.subtract(self._points.shape, 1))
-        for missed in (
-            self._rows.misses(self._points),
-            self._columns.misses(self._points.T).T,
-        ):
-            error += largest_around(np.nan_to_num(missed))
+        misses = self._rows.misses(self._points), self._columns.misses(self._points.T).T
+        error = sum(largest_around(np.nan_to_num(missed)) for missed in misses)
         cells = error <= np.diff(levels).min(initial=np.inf) / 2.0
         # A line on the border of two cells is drawn if it is reliable in one of them.
         rows = _cells(self._rows, self.amplitude)
