@@ -4,7 +4,9 @@ the amplitude, speed or load that gives a requested reduction of friction."""
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import replace
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -18,7 +20,10 @@ from microslip.foundation.errors import InputError, shown
 from microslip.foundation.number_text import number_text
 from microslip.scene.by_name import motion_named
 from microslip.scene.hertz import HERTZ
+from microslip.scene.motion import PLANE, ROUNDING, Motion
+from microslip.scene.named import Transverse
 from microslip.scene.problem import Problem
+from microslip.scene.samples import Sampled
 from microslip.si.contact import INPUT_OF, Contact, contact_of
 from microslip.si.inputs import Inputs
 from microslip.si.output import Prediction, Value
@@ -35,14 +40,6 @@ SLOWEST = 1e-3
 MARGIN = 0.8
 """Safety factor on the accepted error of a second run, because the second velocity can be
 smaller."""
-SIMPLER: dict[str, dict[str, Any]] = {
-    "a sphere suffices: on a circular contact with the same u_lim, mu_macro differs by less than "
-    "its error": {"pressure": HERTZ},
-    "Poisson's ratio matters for u_lim only: with the ratio 0 and the same u_lim, mu_macro differs "
-    "by less than its error": {"poisson": 0.0},
-}
-"""Simplifications of a Problem, keyed by the sentence to print if a simplification changes mu_macro
-by less than its error."""
 RUNS_AWAY = "runs away"
 """First words of the solver's reason for a contact that accelerates without limit."""
 MAP = "map"
@@ -282,24 +279,63 @@ def _rest(contact: Contact) -> tuple[dict[str, Value], str]:
     return {"displacement": Value(rest.displacement, rest.displacement_error)} | cycles, ""
 
 
+def with_mean_load(problem: Problem) -> Problem:
+    """Return the problem without the oscillation of its normal load.
+
+    A problem in which the contact separates is returned unchanged, because its units do not belong
+    to the mean load.  If nothing else oscillates, the result is steady sliding.
+    """
+    motion = problem.motion
+    if not motion.loads or abs(problem.mean_load - 1.0) > ROUNDING:
+        return problem
+    if problem.mean_speed <= limits.RETURNED * problem.size:
+        return replace(problem, motion=Transverse(), amplitude=0.0)
+    if isinstance(motion, Sampled):
+        constant = replace(motion, height=None, text=f"{motion.text} (mean load)")
+        return replace(problem, motion=constant)
+
+    class MeanLoad(Motion):
+        waves = {name: wave for name, wave in motion.waves.items() if name in PLANE}
+
+    return replace(problem, motion=MeanLoad())
+
+
+SIMPLER: dict[str, Callable[[Problem], Problem]] = {
+    "a sphere suffices: on a circular contact with the same u_lim, mu_macro differs by less than "
+    "its error": partial(replace, pressure=HERTZ),
+    "Poisson's ratio matters for u_lim only: with the ratio 0 and the same u_lim, mu_macro differs "
+    "by less than its error": partial(replace, poisson=0.0),
+    "a constant load suffices: with the mean load, mu_macro differs by less than its error": (
+        with_mean_load
+    ),
+}
+"""Functions that simplify a Problem, keyed by the sentence to print if the simpler Problem has the
+same mu_macro within the error."""
+
+
 def simplifications(contact: Contact, answer: Prediction) -> list[str]:
     """Return the sentences of SIMPLER that are true for a contact.  The simpler contact must have
     the same friction at the same speed, within the error of the result.
 
-    A contact counts as simpler only if the solver chooses another model for it.  The list is empty
-    for a contact under a prescribed force, and for a result that is a closed form, comes from a map
-    or is not converged.
+    A contact counts as simpler only if the solver chooses a cheaper model for it, or if its load
+    becomes constant.  The list is empty for a contact under a prescribed force, and for a result
+    that is a closed form, comes from a map or is not converged.
     """
-    inputs, friction, sentences = contact.inputs, answer.values["friction"], []
-    if inputs.force is not None or not answer.converged or answer.model not in MODELS:
+    friction, tolerance = answer.values["friction"], contact.inputs.tolerance or TOLERANCE
+    if contact.inputs.force is not None or not answer.converged or answer.model not in MODELS:
         return []
-    # for the choice of a model, only velocity 0 differs from other velocities
-    problem = replace(problem_of(contact), velocity=min(contact.velocity, 1.0))
-    drive, tolerance = within_range(contact.drive(contact.mean_load)), inputs.tolerance or TOLERANCE
-    for sentence, change in SIMPLER.items():
-        if limits.choose_model(replace(problem, **change)) != answer.model:
-            result = solve_at(contact, contact.velocity, tolerance, **drive, **change)
-            if result.converged and abs(result.friction.value - friction.value) <= friction.error:
+
+    def cost(problem: Problem) -> tuple[int, bool]:
+        return list(MODELS).index(limits.choose_model(problem)), problem.motion.loads
+
+    velocity = min(contact.velocity, arguments.LARGEST["velocity"])
+    drive, sentences = within_range(contact.drive()), []
+    problem = limits.problem_of(contact.motion, velocity, **settings_of(contact), drive=drive)
+    for sentence, simplify in SIMPLER.items():
+        simpler = simplify(problem)
+        if cost(simpler) < cost(problem):
+            other = solve(simpler, tolerance=tolerance)
+            if other.converged and abs(other.mu_macro - friction.value) <= friction.error:
                 sentences.append(sentence)
     return sentences
 
