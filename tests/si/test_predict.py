@@ -13,7 +13,7 @@ import pytest
 from bad_input_tables.odd_quantities import Q
 
 import microslip
-from microslip.answer.answer import DRIVE, Estimate
+from microslip.answer.answer import Estimate, about
 from microslip.app import cli
 from microslip.si import inputs, output
 from microslip.si import solve as module
@@ -170,9 +170,9 @@ def test_a_failure_of_the_solver_has_its_reason(changes, unknown, monkeypatch):
 
 
 def test_an_unconverged_static_limit_does_not_matter_for_friction_at_a_speed(monkeypatch, capsys):
-    def failed(motion, velocity, *changes, **settings):
-        result = microslip.solve(motion, velocity, *changes, **settings)
-        if velocity > 0.0:
+    def failed(problem, **settings):
+        result = microslip.solve(problem, **settings)
+        if problem.velocity > 0.0:
             return result
         friction = replace(result.friction, by_source={"resolution": 0.26})
         return result.changed(friction=friction, **LOST)
@@ -238,13 +238,11 @@ def test_random_combinations_are_answered_or_refused_in_one_line(monkeypatch):
     """
     rigid = microslip.solve("transverse", 0.5, 0.5, model="rigid", tolerance=0.1)
 
-    def solve(motion, velocity=None, amplitude=None, **settings):
-        drift = random.choice([0.0, 0.5, 1e-9, math.nan]) if velocity is None else velocity
-        seed = hash((velocity or 0.0, amplitude or 0.0)) % 2**32  # equal points, equal friction
+    def solve(problem, **_):
+        drift = problem.velocity if problem.force is None else random.choice([0.0, 0.5, math.nan])
+        seed = hash((problem.velocity, problem.size)) % 2**32  # equal points, equal friction
         share = Estimate(np.random.default_rng(seed).random(), {"resolution": 0.01})
-        drive = settings.keys() & DRIVE
-        answer = {"mean_velocity": Estimate(drift), "amplitude": amplitude, "friction": share}
-        return rigid.changed(**answer, **{name: settings[name] for name in drive})
+        return rigid.changed(**about(problem), mean_velocity=Estimate(drift), friction=share)
 
     monkeypatch.setattr(module, "solve", solve)
     random, answers = np.random.default_rng(5), 0

@@ -192,9 +192,9 @@ def test_a_body_beyond_what_the_solver_takes_swings_as_it_did():
     ("argument", "option"), [("stiffness", "drive_stiffness"), ("velocity", "speed")]
 )
 def test_a_refusal_of_the_solver_names_the_argument_of_predict(monkeypatch, argument, option):
-    def refuse(motion, velocity, *changes, **settings):
-        if velocity == 0.0:
-            return microslip.solve(motion, velocity, *changes, **settings)
+    def refuse(problem, **settings):
+        if problem.velocity == 0.0:
+            return microslip.solve(problem, **settings)
         raise InputError(argument, 2e6, "allowed is at most 1e+06")
 
     monkeypatch.setattr(solve, "solve", refuse)

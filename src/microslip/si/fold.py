@@ -174,29 +174,25 @@ def fold(
     share = power[:, order] / np.maximum(power.mean(axis=(0, 1)), 1e-300)
     sizes = [float(np.median(one)) for one in np.array_split(np.sqrt(share.sum(axis=-1)), PARTS)]
     steady = min(sizes) / np.mean(sizes)
-    problem = (
-        f"not periodic throughout: in part {np.argmin(sizes) + 1} of {PARTS}, the oscillation is "
-    )
-    problem += f"only {100.0 * steady:.2g} % of its mean; allowed is a steady one; cut off the rest"
+    problem = f"not periodic throughout: in part {np.argmin(sizes) + 1} of {PARTS}, the "
+    problem += f"oscillation is only {100.0 * steady:.2g} % of its mean; allowed is a steady one; "
+    problem += "cut off the rest"
     _refuse(steady < STEADY, "time", longest, problem)
     peaks = np.array([_peak_to_peak(one) for one in mean.T])
     ratios = peaks / np.maximum(2.0 * scatter.max(axis=0), 1e-300)
     best = int(np.argmax(ratios))
-    problem = (
-        f"peak to peak at {hz:.6g} Hz, only {ratios[best]:.2g} times its standard error; allowed "
-    )
-    problem += f"is at least {SIGNIFICANT:g} times; use a longer record, or give the correct "
-    problem += "approximate frequency of the motion"
+    problem = f"peak to peak at {hz:.6g} Hz, only {ratios[best]:.2g} times its standard error; "
+    problem += f"allowed is at least {SIGNIFICANT:g} times; use a longer record, or give the "
+    problem += "correct approximate frequency of the motion"
     # checked before the drift, since the phases of noise look like a drift
     _refuse(ratios[best] <= SIGNIFICANT, names[best], peaks[best], problem, 3)
     _check_repeats(hz, parts, order, column)
     loss = 0.5 * (2.0 * np.pi * np.arange(parts.shape[1])) ** 2 * variance
     change = math.sqrt(variance) / (PHASE_OF_A_DRIFT * longest)
     most = change * math.sqrt(LARGEST_LOSS / max(loss[order], 1e-300))
-    problem = (
-        f"the frequency changes by about {change:.2g} Hz during the record of {longest:.6g} s; "
-    )
-    problem += f"allowed are {most:.2g} Hz at this length; cut the record into shorter ones"
+    problem = f"the frequency changes by about {change:.2g} Hz during the record of "
+    problem += f"{longest:.6g} s; allowed are {most:.2g} Hz at this length; cut the record into "
+    problem += "shorter ones"
     _refuse(loss[order] > LARGEST_LOSS, "time", longest, problem)
     lost = np.fft.irfft(-np.expm1(-loss)[:, None] * parts.mean(axis=0), rows, axis=0) * rows
     mean += values.mean(axis=0) * [name in NORMAL for name in names]
@@ -326,10 +322,9 @@ def _step(time: np.ndarray) -> tuple[float, float]:
     if half <= 0.5 * step:  # a missing sample shifts some times by at least half a step
         most = min(most, (0.5 - EVEN) * step)
     row = int(np.argmax(rest))
-    problem = (
-        f"not equally spaced, in row {row} (the first is 0); allowed are equal steps, and times "
-    )
-    _refuse(rest[row] > most, "time", time[row], f"{problem}rounded to their last digit", 17)
+    problem = f"not equally spaced, in row {row} (the first is 0); allowed are equal steps, "
+    problem += "and times rounded to their last digit"
+    _refuse(rest[row] > most, "time", time[row], problem, 17)
     alike = max(2.0 * half / step, 1.0)  # times that are rounded to the same number
     return float(step), float(np.sqrt(12.0 * alike * np.mean(rest**2) / len(time)))
 

@@ -18,10 +18,8 @@ from microslip.contact.registry import MODELS
 from microslip.foundation import arguments
 from microslip.foundation.errors import InputError, shown
 from microslip.foundation.number_text import number_text
-from microslip.scene.by_name import motion_named
 from microslip.scene.hertz import HERTZ
 from microslip.scene.motion import PLANE, ROUNDING, Motion
-from microslip.scene.named import Transverse
 from microslip.scene.problem import Problem
 from microslip.scene.samples import Sampled
 from microslip.si.contact import INPUT_OF, Contact, contact_of
@@ -106,37 +104,40 @@ def answer_of(contact: Contact) -> Prediction:
     return Prediction(values=values, outcome=outcome, **about)
 
 
-def solve_at(contact: Contact, velocity: float | None, tolerance: float, **changes: Any) -> Result:
+def solve_at(contact: Contact, velocity: float | None, tolerance: float, **drive: float) -> Result:
     """Return the `Result` for a contact, computed by microslip.solve or interpolated in a map.
 
-    velocity: dimensionless velocity; None under a prescribed force.  A velocity above the range of
-    the solver is replaced by the largest allowed velocity, at which the vibration has no effect.
-    `changes` contains the dimensionless force, stiffness, mass and damping.
-
-    A raised InputError is about the corresponding input of `predict`.
+    The velocity and the drive are those of `problem_of`.  A raised InputError is about the
+    corresponding input of `predict`.
     """
-    inputs, settings = contact.inputs, settings_of(contact)
-    if velocity is not None:
-        velocity = min(velocity, arguments.LARGEST["velocity"])
-    if inputs.map is not None:
-        assert velocity is not None  # a map is not allowed with a force
-        friction = FrictionMap(inputs.map, str(contact.motion), settings["pressure"])
-        return friction.solve(velocity, settings["amplitude"], settings["poisson"], tolerance)
+    inputs = contact.inputs
     try:
-        settings |= {"tolerance": tolerance, **changes}
-        return solve(contact.motion, velocity, **settings)
+        problem = problem_of(contact, velocity, **drive)
+        if inputs.map is not None:
+            friction = FrictionMap(inputs.map, problem.motion.name, contact.pressure)
+            return friction.solve(problem, tolerance)
+        return solve(problem, tolerance=tolerance)
     except InputError as error:
         name = INPUT_OF.get(error.argument, "")
-        if not changes or name not in inputs.quantities:
+        if not drive or name not in inputs.quantities:
             raise
         group = f"{error.value:.6g}" if isinstance(error.value, float) else shown(error.value)
         raise inputs.error(name, f"dimensionless {group}: {error.allowed}") from None
 
 
-def settings_of(contact: Contact) -> dict[str, Any]:
-    """Return the amplitude, Poisson's ratio and the pressure for microslip.solve."""
+def problem_of(contact: Contact, velocity: float | None = 0.0, **drive: float) -> Problem:
+    """Return the dimensionless Problem.
+
+    velocity: dimensionless velocity, 0 for the limit of vanishing speed; None under a prescribed
+    force.  A velocity above the range of the solver is replaced by the largest allowed velocity, at
+    which the vibration has no effect.
+    drive: dimensionless force, stiffness, mass and damping.
+    """
+    if velocity is not None:
+        velocity = min(velocity, arguments.LARGEST["velocity"])
     size = None if contact.steady else float(contact.amplitude)
-    return {"amplitude": size, "poisson": float(contact.poisson), "pressure": contact.pressure}
+    body: dict[str, Any] = {"poisson": float(contact.poisson), "pressure": contact.pressure}
+    return limits.problem_of(contact.motion, velocity, size, **body, drive=drive or None)
 
 
 def static_limit(contact: Contact) -> Result:
@@ -149,11 +150,6 @@ def static_limit(contact: Contact) -> Result:
     return solve_at(contact, 0.0, tolerance)
 
 
-def problem_of(contact: Contact) -> Problem:
-    """Return the dimensionless Problem in the limit of vanishing speed."""
-    return limits.problem_of(contact.motion, 0.0, **settings_of(contact))
-
-
 def largest_force(contact: Contact) -> float:
     """Return the smallest constant force at which the contact runs away, divided by mu times the
     mean load.
@@ -161,9 +157,7 @@ def largest_force(contact: Contact) -> float:
     This force is 1 for a body with a mass.  Otherwise, it is the ratio of the smallest normal load
     in a period to the mean load.
     """
-    if contact.inputs.mass or contact.steady:
-        return 1.0
-    return min(1.0, limits.least_load(problem_of(contact)))
+    return 1.0 if contact.inputs.mass else min(1.0, limits.least_load(problem_of(contact)))
 
 
 def _threshold(contact: Contact, limit: Result | None) -> Estimate | None:
@@ -270,7 +264,7 @@ def _rest(contact: Contact) -> tuple[dict[str, Value], str]:
     from microslip.answer.force import shakedown  # late, since it loads compiled code
 
     try:
-        rest = shakedown(contact.motion, force=float(drive["force"]), **settings_of(contact))
+        rest = shakedown(problem_of(contact), force=float(drive["force"]))
     except InputError as error:  # a motion that exerts a forward force by itself
         return {}, error.allowed
     if not rest.converged:
@@ -283,34 +277,31 @@ def with_mean_load(problem: Problem) -> Problem:
     """Return the problem without the oscillation of its normal load.
 
     A problem in which the contact separates is returned unchanged, because its units do not belong
-    to the mean load.  If nothing else oscillates, the result is steady sliding.
+    to the mean load.  If nothing else oscillates, the amplitude of the result is 0.
     """
     motion = problem.motion
     if not motion.loads or abs(problem.mean_load - 1.0) > ROUNDING:
         return problem
-    if problem.mean_speed <= limits.RETURNED * problem.size:
-        return replace(problem, motion=Transverse(), amplitude=0.0)
     if isinstance(motion, Sampled):
-        constant = replace(motion, height=None, text=f"{motion.text} (mean load)")
-        return replace(problem, motion=constant)
-
-    class MeanLoad(Motion):
-        waves = {name: wave for name, wave in motion.waves.items() if name in PLANE}
-
-    return replace(problem, motion=MeanLoad())
+        motion = replace(motion, height=None, text=f"{motion.text} (mean load)")
+    else:
+        waves = {name: wave for name, wave in motion.components.items() if name in PLANE}
+        motion = type("MeanLoad", (Motion,), {"waves": waves})()
+    problem = replace(problem, motion=motion)
+    return problem if limits.oscillates(problem) else replace(problem, amplitude=0.0)
 
 
 SIMPLER: dict[str, Callable[[Problem], Problem]] = {
-    "a sphere suffices: on a circular contact with the same u_lim, mu_macro differs by less than "
-    "its error": partial(replace, pressure=HERTZ),
-    "Poisson's ratio matters for u_lim only: with the ratio 0 and the same u_lim, mu_macro differs "
-    "by less than its error": partial(replace, poisson=0.0),
-    "a constant load suffices: with the mean load, mu_macro differs by less than its error": (
-        with_mean_load
+    "a sphere suffices: on a circular contact with the same u_lim": partial(
+        replace, pressure=HERTZ
     ),
+    "Poisson's ratio matters for u_lim only: with the ratio 0 and the same u_lim": partial(
+        replace, poisson=0.0
+    ),
+    "a constant load suffices: with the mean load": with_mean_load,
 }
-"""Functions that simplify a Problem, keyed by the sentence to print if the simpler Problem has the
-same mu_macro within the error."""
+"""Functions that simplify a Problem, keyed by the beginning of the sentence to print if the simpler
+Problem has the same mu_macro within the error."""
 
 
 def simplifications(contact: Contact, answer: Prediction) -> list[str]:
@@ -328,15 +319,13 @@ def simplifications(contact: Contact, answer: Prediction) -> list[str]:
     def cost(problem: Problem) -> tuple[int, bool]:
         return list(MODELS).index(limits.choose_model(problem)), problem.motion.loads
 
-    velocity = min(contact.velocity, arguments.LARGEST["velocity"])
-    drive, sentences = within_range(contact.drive()), []
-    problem = limits.problem_of(contact.motion, velocity, **settings_of(contact), drive=drive)
-    for sentence, simplify in SIMPLER.items():
+    problem, sentences = problem_of(contact, contact.velocity, **within_range(contact.drive())), []
+    for words, simplify in SIMPLER.items():
         simpler = simplify(problem)
         if cost(simpler) < cost(problem):
             other = solve(simpler, tolerance=tolerance)
             if other.converged and abs(other.mu_macro - friction.value) <= friction.error:
-                sentences.append(sentence)
+                sentences.append(f"{words}, mu_macro differs by less than its error")
     return sentences
 
 
@@ -369,7 +358,7 @@ class FrictionMap:
         allowed = f"allowed is the dataset of a sweep of {motion}, pressure {pressure}"
         if own != (motion, pressure) or "drive" in attributes:
             raise InputError("map", what, f"{allowed}, with a prescribed velocity")
-        self.dataset, self.motion, self.pressure = dataset, motion, pressure
+        self.dataset = dataset
 
     def at(
         self, velocity: Any, amplitude: Any, poisson: float | None
@@ -382,22 +371,21 @@ class FrictionMap:
             raise (error.renamed("nu") if error.argument == "poisson" else error) from None
         return answer.mu_macro.values, answer.mu_macro_error.values
 
-    def solve(self, velocity: float, amplitude: float | None, poisson: float, tol: float) -> Result:
+    def solve(self, problem: Problem, tolerance: float) -> Result:
         """Return the interpolated friction as a Result of microslip.solve.  The result is not
         converged if its error bound is above the tolerance, or if the point is outside the map."""
         value, error = math.nan, math.inf
         try:
-            value, error = (float(one) for one in self.at(velocity, amplitude, poisson))
-            reason = f"the error bound of the map is {error:.1e}; allowed is at most {tol:g}"
-        except InputError as problem:
-            reason = f"{problem.argument} = {problem.value}: {problem.allowed.partition(';')[0]}"
-        except ValueError as problem:
-            reason = str(problem)
-        reason = "" if error <= tol else reason
-        point = Problem(motion_named(self.motion), velocity, amplitude, poisson)
+            place = problem.velocity, problem.amplitude, problem.poisson
+            value, error = (float(one) for one in self.at(*place))
+            reason = f"the error bound of the map is {error:.1e}; allowed is at most {tolerance:g}"
+        except InputError as refusal:
+            reason = f"{refusal.argument} = {refusal.value}: {refusal.allowed.partition(';')[0]}"
+        except ValueError as outside:
+            reason = str(outside)
+        reason = "" if error <= tolerance else reason
         friction = {"friction": Estimate(value, {"model": error})}
-        place = {"pressure": self.pressure, "model": MAP, "tolerance": tol}
-        return Result.of(point, friction, reason, **place)
+        return Result.of(problem, friction, reason, model=MAP, tolerance=tolerance)
 
 
 # Search
