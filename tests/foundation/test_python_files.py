@@ -8,6 +8,7 @@ import pytest
 from stubs.new_process import output
 
 import microslip
+from microslip.app.cli import main
 from microslip.config import load
 from microslip.foundation import named_files
 from microslip.foundation.errors import InputError
@@ -145,7 +146,7 @@ BAD = [
     ("mine/x.py:shar=2", MOTION, "unknown number shar; allowed: share"),
     ("mine/x.py:share", MOTION, "in it 'share': allowed are numbers as in x.py:key=0.5"),
     ("mine/x.py:share=2", MOTION, "= 2: allowed is a share in 0..1"),
-    ("mine/x.py", MOTION.replace("self.share)", "1 / 0)"), "x.py: ZeroDivisionError in line 16: "),
+    ("mine/x.py", MOTION.replace("self.share)", "1 / 0)"), "DivisionError in waves, line 16: "),
 ]
 
 
@@ -157,3 +158,23 @@ def test_a_file_without_a_clear_motion_is_refused_in_one_line(mine, name, conten
         motion_named(name)
     assert refused.value.argument == "motion"
     assert problem in str(refused.value) and "\n" not in str(refused.value)
+
+
+LATER = (
+    MOTION
+    + """
+    def displacement(self, phase, velocity, amplitude, poisson):
+        return velocity * phase, 0 * phase, 0 * phase / (velocity in (0.0, 1.0) or 1 // 0)
+"""
+)
+
+
+def test_a_file_that_fails_later_is_one_line_and_the_package_a_traceback(mine, monkeypatch, capsys):
+    (mine / "x.py").write_text(LATER)
+    words = ["point", "mine/x.py", "--velocity", "0.3", "--amplitude", "1"]
+    assert main(words) == 2
+    error = capsys.readouterr().err
+    assert "x.py: ZeroDivisionError in displacement, line 19: " in error and error.count("\n") == 1
+    monkeypatch.setattr("microslip.answer.point.request_of", None)
+    with pytest.raises(TypeError):
+        main(words)

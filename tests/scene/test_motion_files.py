@@ -60,6 +60,9 @@ ROWS = "0\n1\n0\n-1\n"
         ("time\n" + ROWS, "no displacement and n"),
         ("lateral\n", "no line follows the heading"),
         ("time,lateral\n0,0\n1,1\n2,0\n4,-1\n", "time is not equally spaced"),
+        (f"lateral\n{ROWS}0\n", "lateral = 0.0: the last row repeats the first; leave it out"),
+        (f"lateral\n{ROWS}-999\n0.5\n", "line 6: lateral is -999, far outside"),
+        (f"lateral\n{ROWS}-0.5\n-500.2\n0.5\n", "line 7: lateral is -500.2, far outside"),
     ],
 )
 def test_bad_files_are_refused_in_one_line(tmp_path, capsys, content, problem):

@@ -9,6 +9,7 @@ from microslip.foundation.errors import InputError
 from microslip.scene.by_name import MOTIONS, motion_named
 from microslip.scene.motion import Motion, Wave
 from microslip.scene.named import Elliptic, TransverseBore
+from microslip.scene.pressure import Pressure
 from microslip.scene.problem import Force, Problem, Spring
 
 PERIODIC = [one() for one in MOTIONS.values() if one.periodic]
@@ -77,6 +78,7 @@ def aside(phase, velocity):
 
 OWN = [
     OwnWave,
+    type("Misspelt", (Motion,), {"waves": {"lateral": Wave(), "sideways": Wave()}}),
     own(ahead, lambda phase, velocity: phase, aside),  # not periodic
     own(aside, aside, aside),  # does not advance
     own(ahead, aside),
@@ -84,8 +86,11 @@ OWN = [
 ]
 
 
-def test_an_own_displacement_is_accepted():
-    assert own(ahead, aside, aside)().drift(0.5, 1.0, 0.0) == pytest.approx(0.5)
+def test_an_own_displacement_is_accepted_while_it_is_finite():
+    motion = own(ahead, aside, lambda phase, velocity: np.where(phase > 9.0, np.nan, 0.0))()
+    assert motion.drift(0.5, 1.0, 0.0) == pytest.approx(0.5)
+    with pytest.raises(InputError, match="^motion = 'own': displacement: .* not finite .* phase 9"):
+        Problem(motion, 0.5, 1.0).displacement(np.array([1.0, 9.5]))
 
 
 @pytest.mark.parametrize(
@@ -95,6 +100,7 @@ def test_an_own_displacement_is_accepted():
         (Force, {"force": 0.5, "mass": -1.0}, "mass"),
         (Spring, {"stiffness": -1.0}, "stiffness"),
         *((one, {}, "motion = ") for one in OWN),
+        (Pressure, {}, "pressure = .*defines G_star"),
         *((Elliptic, {"phase": value}, "phase") for value in (math.nan, math.inf, "1", None)),
     ],
 )

@@ -224,6 +224,7 @@ BAD = [
     ("1,2\n3\n", PITCH, "line 2: 1 cells, but 2"),
     (",2,3,\n1,2,3,1\n1,2,3,1\n", PITCH, "line 1: cell 1 is empty"),
     ("1,x\n3,4\n5,6\n", PITCH, "line 1: '1,x' has numbers"),
+    (",0,1,2\n0,5,6,7\n1,8,9,9\n", PITCH, "line 1: ',0,1,2' looks like coordinates"),
     ("1,2\n3,-4\n", PITCH, "line 2, cell 2: pressure is -4; allowed: a finite number"),
     ("1,2\n# x\n3,4\n", PITCH, "line 2: no row of the matrix"),
     ("1,2\n", PITCH, "a matrix of 1 x 2"),

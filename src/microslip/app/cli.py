@@ -19,6 +19,7 @@ from microslip.app.commands import COMMANDS
 from microslip.app.parser import Option, Parser, message, option
 from microslip.app.terminal import complain
 from microslip.foundation.errors import CacheError, InputError
+from microslip.foundation.named_files import problem_in_code
 
 SOURCES = ("measured", "path", "record", "table")
 """Arguments that are paths of input files."""
@@ -97,14 +98,16 @@ def _respond(name: str, options: argparse.Namespace, readers: Mapping[str, Optio
             allowed = "allowed is another file than the table that is read"
             raise InputError("output", output, allowed)
         answer = COMMANDS[name].answer(**arguments).write(output, figure)
-    except InputError as error:
-        argument = spellings.get(error.argument, option(error.argument))
-        value = getattr(options, error.argument) if error.argument in spellings else error.value
-        names = () if error.argument == "table" else readers
-        complain(f"microslip {name}: {message(argument, value, error.allowed, names)}")
-        return 2
-    except CacheError as error:
-        complain(f"microslip {name}: {error}")
+    except Exception as error:
+        problem = str(error) if isinstance(error, CacheError) else problem_in_code(error)
+        if isinstance(error, InputError):
+            argument = spellings.get(error.argument, option(error.argument))
+            value = getattr(options, error.argument) if error.argument in spellings else error.value
+            names = () if error.argument == "table" else readers
+            problem = message(argument, value, error.allowed, names)
+        if not problem:
+            raise
+        complain(f"microslip {name}: {problem}")
         return 2
     answer.print(options.json)
     return 0 if answer.complete else 1

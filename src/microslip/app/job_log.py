@@ -9,6 +9,7 @@ from pathlib import Path
 
 from microslip.foundation.errors import NO_WRITING, CacheError, SolverError
 from microslip.foundation.files import advice
+from microslip.foundation.named_files import problem_in_code
 
 
 @contextmanager
@@ -17,7 +18,8 @@ def job_log(path: str | Path, shown: int = logging.WARNING) -> Iterator[logging.
 
     Messages of at least the level `shown` are also printed on standard error.  An error ends the
     process with exit code 1.  The log then contains the traceback.  For a CacheError, a
-    SolverError, a full disk or an interrupt, the log contains only one line.
+    SolverError, an error in a user's Python file, a full disk or an interrupt, the log contains
+    only one line.
     """
     try:
         file = logging.FileHandler(path, "w", "utf-8")
@@ -44,6 +46,8 @@ def job_log(path: str | Path, shown: int = logging.WARNING) -> Iterator[logging.
         elif getattr(error, "errno", None) in NO_WRITING:
             name = getattr(error, "filename", None) or "a file"
             log.error("Error: %s", advice("write", name, error))
+        elif problem := problem_in_code(error):
+            log.error("Error: %s", problem)
         else:
             log.exception("The job failed:")
     finally:

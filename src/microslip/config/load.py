@@ -118,15 +118,23 @@ def read_yaml(path: str | os.PathLike) -> dict:
         line, byte = content.count(b"\n", 0, error.start) + 1, content[error.start]
         problem = f"line {line}: not text: byte 0x{byte:02x}; allowed: UTF-8"
     except yaml.YAMLError as error:
-        position = getattr(error, "position", None)  # of a character that is not allowed
-        where = "" if position is None else f"line {text.count(chr(10), 0, position) + 1}: "
         hint = "; allowed: spaces, no tabs" if "'\\t'" in str(error) else ""
-        problem = f"not valid YAML: {where}{error}{hint}"
+        problem = f"not valid YAML: {_yaml_problem(error, text)}{hint}"
     except RecursionError:
         problem = "not valid YAML: too many levels"
     except ValueError as error:  # the file is too large, or its name is no name
         problem = str(error)
     raise ConfigError(f"{path!s}: {problem}")
+
+
+def _yaml_problem(error: Any, text: str) -> str:
+    """Return the message of a YAMLError, with line numbers instead of excerpts."""
+    if isinstance(error, yaml.reader.ReaderError):
+        line = text.count("\n", 0, error.position) + 1
+        return f"line {line}: {error.reason}: #x{error.character:04x}"
+    marks = ((error.context, error.context_mark), (error.problem, error.problem_mark))
+    parts = [f"line {mark.line + 1}: {what}" if mark else what for what, mark in marks if what]
+    return "; ".join(parts)
 
 
 def reread(config: dict, paths: Iterable[str | os.PathLike]) -> dict:

@@ -69,13 +69,19 @@ def shown(value: object) -> str:
 
 
 def described(error: BaseException, path: str | os.PathLike) -> str:
-    """Describe an error in one line: its type, the line number in the file at `path`, and the
-    message."""
+    """Describe an error in one line: its type, the function and the line number in the file at
+    `path`, and the message."""
+    places, message = places_in(error, path), str(error)
+    if isinstance(error, SyntaxError) and error.filename == str(path):
+        places, message = [f"line {error.lineno}"], error.msg
+    where = f" in {places[-1]}" if places else ""
+    return " ".join(f"{type(error).__name__}{where}: {message}".split())
+
+
+def places_in(error: BaseException, path: str | os.PathLike) -> list[str]:
+    """Return the places in the file at `path` that the traceback of an error passes, such as
+    "displacement, line 9"."""
     from traceback import extract_tb  # late, since its import takes a while
 
-    frames = (f for f in extract_tb(error.__traceback__) if f.filename == str(path))
-    lines, message = [frame.lineno for frame in frames], str(error)
-    if isinstance(error, SyntaxError) and error.filename == str(path):
-        lines, message = [error.lineno], error.msg
-    where = f" in line {lines[-1]}" if lines else ""
-    return " ".join(f"{type(error).__name__}{where}: {message}".split())
+    frames = (one for one in extract_tb(error.__traceback__) if one.filename == str(path))
+    return [f"{one.name}, line {one.lineno}".removeprefix("<module>, ") for one in frames]

@@ -29,7 +29,7 @@ from typing import TYPE_CHECKING, Any, Generic, TypeVar
 
 from microslip.foundation import spec
 from microslip.foundation.csv_table import check_format
-from microslip.foundation.errors import InputError, described
+from microslip.foundation.errors import InputError, described, places_in
 from microslip.foundation.files import MOST_BYTES, content_of
 
 if TYPE_CHECKING:
@@ -201,6 +201,14 @@ def remember(names: Iterable[str]) -> None:
             PLACES[file.digest] = Path(file.path)
 
 
+def problem_in_code(error: BaseException) -> str:
+    """Describe an error in one line if its traceback passes a user's Python file; "" otherwise."""
+    for path in PLACES.values():
+        if path.suffix == ".py" and places_in(error, path):
+            return f"{path}: {described(error, path)}"
+    return ""
+
+
 def base_name(name: str) -> str:
     """Return the base name of a file for messages, or "" if this process has not stored the
     path."""
@@ -363,7 +371,7 @@ class Family(Generic[T]):
             return _shared_object(cls, *sorted(numbers.items()))
         except InputError as error:  # its text omits default values
             raise InputError(self.argument, text, error.allowed) from None
-        except Exception as error:  # in a user's file
+        except (Exception, SystemExit) as error:  # in a user's file
             raise InputError(self.argument, text, f"{path}: {described(error, path)}") from error
 
 

@@ -38,7 +38,7 @@ from microslip.foundation.named_files import DECIMALS, GRID, NamedFile
 from microslip.foundation.units import read
 from microslip.scene.grid import READINGS
 from microslip.scene.pressure import Measured, Units
-from microslip.scene.samples import NORMAL, PLANE, Sampled, uneven_row
+from microslip.scene.samples import NORMAL, PLANE, UNUSUAL, Sampled, uneven_row, unusual_rows
 
 COLUMNS = (*PLANE, *NORMAL)
 UNITS = {"forward": "m", "lateral": "m", "angle": "rad", "load": "N", "indentation": "m"}
@@ -50,17 +50,21 @@ EVEN_TIMES = 1e-2
 changes the values of a sine with N samples by at most 2 pi EVEN_TIMES / N times its amplitude."""
 
 
-def columns_of(table: Table) -> dict[str, np.ndarray]:
+def columns_of(table: Table, is_record: bool = False) -> dict[str, np.ndarray]:
     """Return the columns of a table of samples as arrays, in the units of the file.
 
-    Raises ValueError if a value is not a number, if there are no samples, or if no column is a
-    displacement or a load.
+    is_record: True for many periods.  Raises ValueError if a value is not a number or far outside
+    of the others, if there are no samples, or if no column is a displacement or a load.
     """
     columns = {name: np.array(one) for name, one in table.numbers().items()}
     if not columns.keys() & set(COLUMNS):
         raise ValueError(f"no displacement and no load; allowed: some of {', '.join(COLUMNS)}")
     if not table.lines:
         raise ValueError("no line follows the heading; allowed: one for each sample")
+    for name in columns.keys() - {"time"}:
+        for row in unusual_rows(columns[name], is_record)[:1]:
+            value = columns[name][row]
+            raise ValueError(f"line {table.lines[row]}: {name} is {value:.9g}, {UNUSUAL}")
     return columns
 
 
@@ -111,6 +115,7 @@ MATRIX = (
     "allowed: a header without numbers in columns, then one row of the matrix in each line up to "
     "the end of the file, with decimal=comma after the path for decimal commas"
 )
+ALONE = "allowed: pressures alone, or columns forward,lateral,pressure without pitch"
 NUMBER = re.compile(r"[+-]?(\d+[.,]?\d*|[.,]\d+)([eE][+-]?\d+)?|nan|inf|B", re.I | re.A)
 """Pattern of a cell of a matrix.  In Tekscan files, B marks a cell outside the sensor."""
 END = "@@"
@@ -228,18 +233,21 @@ def _matrix(file: NamedFile, content: bytes) -> Values:
     )
     for k, (line, row) in enumerate(zip(lines, rows, strict=True)):
         numbers, cells = sum(map(bool, map(NUMBER.fullmatch, row))), row[:width]
-        problem = ""
+        problem, allowed = "", MATRIX
         counts = numbers > 1 or numbers and len(row) == len(rows[start])
-        if k < start and counts and marks[k] == marks[start]:
+        counts = counts and marks[k] == marks[start]
+        if k <= start and counts and not NUMBER.fullmatch(row[0]) and numbers == len(cells) - 1:
+            problem, allowed = f"{line[:40]!r} looks like coordinates", ALONE
+        elif k < start and counts:
             problem = f"{line[:40]!r} has numbers"
         elif k >= start and (not any(row) or line.startswith("#")):
             problem = "no row of the matrix"
         elif k >= start and "" in cells:
-            problem = f"cell {cells.index('') + 1} is empty; allowed: 0 where nothing presses"
+            problem = f"cell {cells.index('') + 1} is empty, where 0 stands for no pressure"
         elif k >= start and len(cells) < width:
             problem = f"{len(cells)} cells, but {width} in another line"
         if problem:
-            raise ValueError(f"line {k + 1}: {problem}; {MATRIX}")
+            raise ValueError(f"line {k + 1}: {problem}; {allowed}")
     flat = ["0" if cell == "B" else cell for row in rows[start:] for cell in row[:width]]
     _refuse_many(len(flat))
     mark = "," if marks[start] == "," and file.decimal == "point" else ";"
@@ -259,8 +267,7 @@ def _matrix(file: NamedFile, content: bytes) -> Values:
         steps = np.diff(edge[1:])
         is_even = len(steps) + 1 >= LEAST_COORDINATES and np.ptp(steps) <= EVEN * abs(steps[0])
         if is_even and steps[0] != 0.0:
-            allowed = "allowed: pressures alone, or columns forward,lateral,pressure without pitch"
-            raise ValueError(f"the numbers of the first {side} look like coordinates; {allowed}")
+            raise ValueError(f"the numbers of the first {side} look like coordinates; {ALONE}")
     return (np.arange(n) * forward, np.arange(m) * lateral, values), unit
 
 

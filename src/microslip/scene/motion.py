@@ -18,7 +18,7 @@ import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from functools import cached_property
-from typing import ClassVar, NamedTuple
+from typing import ClassVar, NamedTuple, NoReturn
 
 import numpy as np
 
@@ -33,6 +33,8 @@ carries almost no load."""
 
 LOOP = np.linspace(0.0, 2.0 * np.pi, 721)
 """Phases at which the extremes of an oscillation over one period are evaluated."""
+ENDS = np.array([0.0, 2.0 * np.pi])
+"""Phases of the start and the end of a period."""
 HALF_PERIOD = (-np.pi / 2, np.pi / 2)
 """Phases of two consecutive turning points of a sine."""
 MOST_CYCLES = 20
@@ -124,6 +126,9 @@ class Motion(spec.Named):
     def __post_init__(self) -> None:
         spec.refuse_strange(self, "motion")
         shares = {name: wave.share for name, wave in self.waves.items()}
+        for name in shares.keys() - {*PLANE, *NORMAL}:
+            allowed = f"waves: {name!r}; allowed are {', '.join(PLANE + NORMAL)}"
+            raise InputError("motion", self.name, allowed)
         for name, share in shares.items():
             spec.refuse_outside(self.name, "motion", name, share, (0.0, 1.0), kind="a share")
         for name, wave in self.waves.items():
@@ -145,17 +150,14 @@ class Motion(spec.Named):
     def _refuse_displacement(self) -> None:
         """Raise InputError if `displacement` is of the wrong kind at the start or the end of a
         period."""
-        ends = np.array([0.0, 2.0 * np.pi])
-        still, moving = (np.array(self.displacement(ends, v, 1.0, 0.0)) for v in (0.0, 1.0))
-        allowed = ""
-        if still.shape != (3, 2) or still.dtype.kind not in "if":
-            allowed = "three arrays of real numbers, with the shape of the phase"
-        elif not np.allclose(still[:, 0], still[:, 1], rtol=0.0, atol=ROUNDING):
-            allowed = "one that is equal after a period of 2 pi at velocity 0"
-        elif not moving[0, 1] > moving[0, 0]:
-            allowed = "one that advances at velocity 1"
-        if allowed:
-            raise InputError("motion", self.name, f"displacement: allowed is {allowed}")
+        still, moving = (self.moved(ENDS, velocity, 1.0, 0.0) for velocity in (0.0, 1.0))
+        if not np.allclose(still[:, 0], still[:, 1], rtol=0.0, atol=ROUNDING):
+            self._refuse("allowed is one that is equal after a period of 2 pi at velocity 0")
+        if not moving[0, 1] > moving[0, 0]:
+            self._refuse("allowed is one that advances at velocity 1")
+
+    def _refuse(self, problem: str) -> NoReturn:
+        raise InputError("motion", self.name, f"displacement: {problem}")
 
     @property
     def readings(self) -> tuple[Motion, ...]:
@@ -272,25 +274,42 @@ class Motion(spec.Named):
                 velocity = velocity * unit * amplitude
         return velocity * phase + forward, lateral, turn
 
+    def moved(
+        self, phase: np.ndarray, velocity: float, amplitude: float, poisson: float
+    ) -> np.ndarray:
+        """Return the three arrays of `displacement` as one array.
+
+        Raises InputError unless they are finite real numbers with the shape of `phase`.
+        """
+        parts = self.displacement(phase, velocity, amplitude, poisson)
+        try:
+            values = np.array(parts)
+        except ValueError:  # arrays of different shapes
+            values = np.array(None)
+        if values.shape != (3, *np.shape(phase)) or values.dtype.kind not in "if":
+            self._refuse("allowed is three arrays of real numbers, with the shape of the phase")
+        if not np.isfinite(values).all():
+            where = np.broadcast_to(phase, values.shape)[~np.isfinite(values)][0]
+            problem = f"returns a number that is not finite at the phase {where:.6g}"
+            self._refuse(f"{problem}; allowed are finite numbers")
+        return values
+
     def drift(self, velocity: float, amplitude: float, poisson: float) -> float:
         """Compute the mean forward displacement per radian of phase, in u_lim.
 
         The drift is proportional to the velocity.  The drift is computed at velocity 1 and scaled,
         because at small velocities the rounding error of the oscillation would exceed the drift.
         """
-        ends = np.array([0.0, 2.0 * np.pi])
-        fast, _, _ = self.displacement(ends, 1.0, amplitude, poisson)
-        still, _, _ = self.displacement(ends, 0.0, amplitude, poisson)
-        advance = (fast[1] - still[1]) - (fast[0] - still[0])
-        return float(advance) / (2.0 * np.pi) * velocity
+        fast, still = (self.moved(ENDS, one, amplitude, poisson)[0] for one in (1.0, 0.0))
+        return float(np.diff(fast - still)[0]) / (2.0 * np.pi) * velocity
 
     def stroke(self, amplitude: float, poisson: float) -> float:
         """Compute half the peak-to-peak displacement of the contact edge, in u_lim; 0 for steady
         motions."""
         if not self.periodic:
             return 0.0
-        ends = self.displacement(np.array(HALF_PERIOD), 0.0, amplitude, poisson)
-        return 0.5 * max(float(abs(part[1] - part[0])) for part in ends)
+        ends = self.moved(np.array(HALF_PERIOD), 0.0, amplitude, poisson)
+        return 0.5 * float(np.ptp(ends, axis=1).max())
 
     @cached_property
     def reach(self) -> float:

@@ -120,6 +120,9 @@ class Pressure(spec.Named):
 
     def __post_init__(self) -> None:
         spec.refuse_strange(self, "pressure")
+        for name in ("G_star", "torque", "largest", "cell_loads"):
+            if getattr(type(self), name) is None:
+                raise InputError("pressure", self.name, f"allowed is a class that defines {name}")
 
     @staticmethod
     def from_array(
@@ -150,7 +153,7 @@ class Pressure(spec.Named):
         if grid not in READINGS:
             raise InputError("grid", grid, f"allowed is one of {', '.join(READINGS)}")
         x, y, values = (
-            _numbers(name, one)
+            numbers(name, one)
             for name, one in (("forward", forward), ("lateral", lateral), ("pressure", pressure))
         )
         if values.shape != (x.size, y.size):
@@ -230,11 +233,11 @@ class RoundPressure(Pressure):
         return round_loads(cells, self.ring_loads, self.inner)
 
 
-def _numbers(name: str, values: Any) -> np.ndarray:
+def numbers(name: str, values: Any) -> np.ndarray:
     """Convert an argument to an array of floats.  Raise an InputError that names the argument if
     this is impossible."""
     try:
-        return np.ascontiguousarray(values, float)
+        return np.array(values, float, order="C")
     except (TypeError, ValueError):
         raise InputError(name, values, "allowed is an array of numbers") from None
 

@@ -220,9 +220,9 @@ class Problem:
         """
         motion, sign = self.motion, self._sign
         velocity = sign * (self.velocity if velocity is None else velocity)
-        forward, lateral, angle = motion.displacement(phase, velocity, self.size, self.poisson)
+        forward, lateral, angle = motion.moved(phase, velocity, self.size, self.poisson)
         if self.follows:
-            forward = forward - motion.displacement(phase, 0.0, self.size, self.poisson)[0]
+            forward = forward - motion.moved(phase, 0.0, self.size, self.poisson)[0]
         return sign * forward, lateral, sign * angle
 
     def oscillation(self, phase: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:

@@ -8,6 +8,7 @@ rows.  A period is interpolated by periodic cubic splines through equally spaced
 from __future__ import annotations
 
 import hashlib
+import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
@@ -19,7 +20,7 @@ from microslip.foundation import spec
 from microslip.foundation.arguments import LARGEST
 from microslip.foundation.errors import InputError
 from microslip.scene.motion import LOOP, NORMAL, PLANE, ROUNDING, Motion, stick_focus, within_rings
-from microslip.scene.pressure import Pressure
+from microslip.scene.pressure import Pressure, numbers
 
 if TYPE_CHECKING:
     from scipy.interpolate import CubicSpline
@@ -153,7 +154,7 @@ class Sampled(spec.NamedByText, _Samples):
         ------
         InputError
             In the same cases as `SampledPath.of_columns`, and if there are fewer than
-            FEWEST_SAMPLES rows or if nothing changes.
+            FEWEST_SAMPLES rows, if nothing changes, or if the last row is the end of the period.
         """
         rows, height, by_load = _rows_of(columns, FEWEST_SAMPLES)
         if not (np.ptp(rows, axis=0).any() or height is not None and np.ptp(height)):
@@ -161,6 +162,10 @@ class Sampled(spec.NamedByText, _Samples):
             allowed = "equal in all rows; allowed is a motion, in this or in another column"
             raise InputError(name, float(columns[name][0]), allowed)
         parts = [rows] if height is None else [rows, height]
+        if _ends_with_first(np.column_stack(parts)):
+            name, last = next((name, one[-1]) for name, one in columns.items() if one is not None)
+            allowed = "the last row repeats the first; leave it out: it begins the next period"
+            raise InputError(name, float(last), allowed)
         digest = hashlib.sha256(b"".join(one.tobytes() for one in parts)).hexdigest()[:16]
         kind = "" if height is None else ",load" if by_load else ",indentation"
         return cls(rows, height, by_load, f"array:sha256={digest}{kind}")
@@ -281,6 +286,58 @@ class Sampled(spec.NamedByText, _Samples):
 
 FEWEST_SAMPLES = 4
 """Smallest number of rows in a period, also for the motion through every second row."""
+ROUGHER = 2.0
+"""Ratio of the roughness with and without a last row that equals the first, above which this row is
+the end of the period.  The ratio is below 1.9 for waves without an end point, such as cosines and
+pulses of 4 to 64 rows, and 3 to 1e6 for a sine with its end point."""
+FEWEST_LEVELS = 4
+"""Smallest number of different values in a column with a value that marks missing samples.  Of n
+equally spaced values, the first is one step away from the second, and the values between both ends
+extend over n - 3 steps.  So with fewer than 4 equally spaced values, the ends would count as
+marks."""
+ABSURD = 100.0
+"""Distance of a single value from all others, divided by their range, above which it is refused.
+In a motion of 1000 rows, neighbours of the top of a sharp pulse are at a hundredth of its
+height."""
+NINES = re.compile(r"-?99(9+|9*\.9+)")
+"""Pattern of a number of nines, such as -9999 or -99.99."""
+UNUSUAL = (
+    "far outside of all others; allowed are measured values; such a value often marks a missing "
+    "sample"
+)
+
+
+def unusual_rows(values: np.ndarray, is_record: bool = False) -> np.ndarray:
+    """Return the rows of values that probably mark missing samples.
+
+    The distance of these values from all others exceeds the range of the others.  In addition,
+    they consist of nines, with noise or without, or they are equal and repeated in a record.
+    Values without a neighbour in time are also returned if their distance is ABSURD times the
+    range.
+    """
+    levels = np.unique(values)
+    if len(levels) < FEWEST_LEVELS:
+        return np.array([], int)
+    gaps = np.diff(levels)
+    far = values <= levels[np.argmax(gaps)]
+    far = ~far if far.mean() > 0.5 else far
+    nines = all(NINES.fullmatch(f"{value:.4g}") for value in values[far])
+    repeated = is_record and far.sum() > 1 and np.ptp(values[far]) == 0.0
+    alone = not (far & np.roll(far, 1)).any()
+    least = 1.0 if nines or repeated else ABSURD if alone else np.inf
+    return np.flatnonzero(far & (gaps.max() > least * np.ptp(values[~far])))
+
+
+def _ends_with_first(values: np.ndarray) -> bool:
+    """Return whether the last row is the end of the period: it equals the first row, and without
+    it the motion is smoother.  values: array of shape (rows, columns)."""
+    values = values / np.maximum(np.ptp(values, axis=0), np.finfo(float).tiny)
+    longer, shorter = (
+        np.sum(np.diff(np.concatenate([rows, rows[:4]]), n=4, axis=0) ** 2)
+        for rows in (values, values[:-1])
+    )
+    same = np.abs(values[-1] - values[0]).max() <= ROUNDING * np.abs(values).max()
+    return bool(same and longer > ROUGHER * shorter)
 
 
 def uneven_row(time: np.ndarray, most: float) -> int | None:
@@ -303,43 +360,50 @@ def _spline(values: np.ndarray) -> CubicSpline:
     return CubicSpline(phase, np.concatenate([values, values[:1]]), bc_type="periodic")
 
 
-def _rows_of(columns: Mapping[str, Any], fewest: int) -> tuple[np.ndarray, np.ndarray | None, bool]:
-    """Convert columns to three values: the displacements as an array of shape (rows, 3), the load
-    or indentation as an array of shape (rows,) or None, and whether the latter is a load."""
-    for name in columns:
-        if name not in (*PLANE, *NORMAL):
-            raise InputError("columns", name, f"unknown; allowed are {', '.join(PLANE + NORMAL)}")
-    arrays = {name: _column(name, one) for name, one in columns.items() if one is not None}
+def checked_columns(
+    columns: Mapping[str, Any], names: Sequence[str], fewest: int, most: float
+) -> dict[str, np.ndarray]:
+    """Convert columns to arrays of one length.
+
+    names, fewest, most: names of the allowed columns, smallest number of rows and largest absolute
+    value.  A column can be None, except the first.  Raises InputError if a column is invalid, or if
+    both a load and an indentation are given.
+    """
+    arrays: dict[str, np.ndarray] = {}
+    for name, values in columns.items():
+        if name not in names:
+            raise InputError("columns", name, f"unknown; allowed are {', '.join(names)}")
+        if values is None:
+            continue
+        out = arrays[name] = numbers(name, values)
+        if out.ndim != 1:
+            raise InputError(name, out.shape, "allowed is an array of one dimension")
+        first, length = next((name, len(one)) for name, one in arrays.items())
+        if length < fewest:
+            raise InputError(first, length, f"allowed are at least {fewest} rows")
+        if len(out) != length:
+            raise InputError(name, len(out), f"allowed are as many rows as {first}: {length}")
+        if (unusual := ~(np.abs(out) <= most)).any():
+            row = int(np.argmax(unusual))
+            allowed = f"allowed are numbers from -{most:g} to {most:g}; this is row {row}"
+            raise InputError(name, float(out[row]), allowed)
     if not arrays:
         raise InputError("forward", None, "allowed is a displacement for every row")
-    first, length = next((name, len(one)) for name, one in arrays.items())
-    if length < fewest:
-        raise InputError(first, length, f"allowed are at least {fewest} rows")
-    for name, one in arrays.items():
-        if len(one) != length:
-            raise InputError(name, len(one), f"allowed are as many rows as {first}: {length}")
-    heights = [name for name in NORMAL if name in arrays]
-    if len(heights) > 1:
+    if set(NORMAL) <= arrays.keys():
         raise InputError("indentation", "with a load", "allowed is one of the two")
+    return arrays
+
+
+def _rows_of(columns: Mapping[str, Any], fewest: int) -> tuple[np.ndarray, np.ndarray | None, bool]:
+    """Convert columns to three values: the displacements as an array of shape (rows, 3), the load
+    or indentation as an array of shape (rows,) or None, and whether it is a load."""
+    arrays = checked_columns(columns, PLANE + NORMAL, fewest, LARGEST["amplitude"])
+    heights = [name for name in NORMAL if name in arrays]
     for name in heights:
         if arrays[name].min() < 0.0:
             raise InputError(name, float(arrays[name].min()), "allowed are numbers >= 0")
         if arrays[name].max() == 0.0:
             raise InputError(name, 0.0, "allowed is a path that touches the flat")
-    rows = np.stack([arrays.get(name, np.zeros(length)) for name in PLANE], axis=1)
+    zeros = np.zeros(len(next(iter(arrays.values()))))
+    rows = np.stack([arrays.get(name, zeros) for name in PLANE], axis=1)
     return rows, arrays[heights[0]] if heights else None, "indentation" not in arrays
-
-
-def _column(name: str, values: Any) -> np.ndarray:
-    try:
-        out = np.array(values, float)
-    except (TypeError, ValueError):
-        raise InputError(name, values, "allowed is an array of numbers") from None
-    if out.ndim != 1:
-        raise InputError(name, out.shape, "allowed is an array of one dimension")
-    usual = np.abs(out) <= LARGEST["amplitude"]
-    if not usual.all():
-        row, most = int(np.argmin(usual)), LARGEST["amplitude"]
-        allowed = f"allowed are numbers from -{most:g} to {most:g}; this is row {row}"
-        raise InputError(name, float(out[row]), allowed)
-    return out

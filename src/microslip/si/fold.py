@@ -24,7 +24,7 @@ import numpy as np
 from microslip.foundation.arguments import count, real
 from microslip.foundation.errors import InputError
 from microslip.scene.files import COLUMNS, EVEN
-from microslip.scene.samples import FEWEST_SAMPLES, NORMAL
+from microslip.scene.samples import FEWEST_SAMPLES, NORMAL, UNUSUAL, checked_columns, unusual_rows
 
 FEWEST_PERIODS, FEWEST_PER_PERIOD = 4, 4
 """Smallest number of periods in a record, and smallest number of samples in a period.  At each end
@@ -35,16 +35,15 @@ noise."""
 REFINEMENTS = 3
 """Number of corrections of the frequency.  The error that remains after a correction is due to the
 errors of the phases."""
-PARTS, STEADY = FEWEST_PERIODS, 0.5
-"""Number of parts into which a record is divided, and smallest amplitude of a part divided by the
-mean amplitude.  A part has about one period or more.  If its amplitude is below one half of the
-mean, it is nearer to 0 than to the mean, so that a state of rest describes the part better than the
-mean period does."""
-FEWEST_LEVELS = 4
-"""Smallest number of different values in a record with a value that marks missing samples.  Of n
-equally spaced values, the first is one step away from the second, and the values between both ends
-extend over n - 3 steps.  So with fewer than 4 equally spaced values, both ends would count as marks
-of missing samples."""
+PARTS, MOST_PARTS, PERIODS_OF_PART = FEWEST_PERIODS, 20, 10
+"""Smallest and largest number of parts into which a record is divided, and number of periods in a
+part.  The median amplitude of 10 noisy periods is rarely below one half of the mean."""
+STEADY = 0.5
+"""Smallest amplitude of a part divided by the mean amplitude.  If the amplitude is below one half
+of the mean, it is nearer to 0 than to the mean, so that a state of rest describes the part better
+than the mean period does."""
+LARGEST_CHANGE = 0.1
+"""Largest difference between the amplitudes of the quarters of a record, divided by the mean."""
 MOST_DECIMALS = 12
 """Largest number of decimals of times that count as rounded.  Times with more decimals need no
 allowance for rounding."""
@@ -84,7 +83,7 @@ class Fold:
         The mean period, without its end point.  Displacements are relative to their mean.
     errors : dict of str to np.ndarray, shape (rows,)
         Standard error of each sample of `columns`, from the scatter between the periods, plus the
-        loss of amplitude due to a drift of the frequency.
+        loss of amplitude due to a drift of the frequency, and half of a change of the amplitude.
     drift : dict of str to float
         Mean rate of the slow drift of each column, per second.
     """
@@ -171,12 +170,14 @@ def fold(
     periods = np.fft.irfft(parts, rows, axis=1) * rows
     mean, scatter = periods.mean(axis=0), periods.std(axis=0, ddof=1) / math.sqrt(len(periods))
     power = np.abs(parts) ** 2
-    share = power[:, order] / np.maximum(power.mean(axis=(0, 1)), 1e-300)
-    sizes = [float(np.median(one)) for one in np.array_split(np.sqrt(share.sum(axis=-1)), PARTS)]
-    steady = min(sizes) / np.mean(sizes)
-    problem = f"not periodic throughout: in part {np.argmin(sizes) + 1} of {PARTS}, the "
-    problem += f"oscillation is only {100.0 * steady:.2g} % of its mean; allowed is a steady one; "
-    problem += "cut off the rest"
+    # amplitude of the strongest harmonic in each period, the columns together
+    sizes = np.sqrt((power[:, order] / np.maximum(power.mean(axis=(0, 1)), 1e-300)).sum(axis=-1))
+    cuts = np.array_split(sizes, min(max(len(sizes) // PERIODS_OF_PART, PARTS), MOST_PARTS))
+    medians = [float(np.median(one)) for one in cuts if len(one)]
+    steady = min(medians) / np.mean(medians)
+    problem = f"not periodic throughout: at rest or weak in part {np.argmin(medians) + 1} of "
+    problem += f"{len(medians)}, where the oscillation is only {100.0 * steady:.2g} % of its mean"
+    problem += "; allowed is a steady one; cut off this part"
     _refuse(steady < STEADY, "time", longest, problem)
     peaks = np.array([_peak_to_peak(one) for one in mean.T])
     ratios = peaks / np.maximum(2.0 * scatter.max(axis=0), 1e-300)
@@ -187,23 +188,33 @@ def fold(
     # checked before the drift, since the phases of noise look like a drift
     _refuse(ratios[best] <= SIGNIFICANT, names[best], peaks[best], problem, 3)
     _check_repeats(hz, parts, order, column)
+    change = _change(sizes)
+    problem = f"the amplitude changes by {100.0 * change:.2g} % between parts of the record; "
+    problem += f"allowed are {100.0 * LARGEST_CHANGE:g} %; cut the record into shorter ones"
+    _refuse(change > LARGEST_CHANGE, "time", longest, problem)
     loss = 0.5 * (2.0 * np.pi * np.arange(parts.shape[1])) ** 2 * variance
-    change = math.sqrt(variance) / (PHASE_OF_A_DRIFT * longest)
-    most = change * math.sqrt(LARGEST_LOSS / max(loss[order], 1e-300))
-    problem = f"the frequency changes by about {change:.2g} Hz during the record of "
+    drifted = math.sqrt(variance) / (PHASE_OF_A_DRIFT * longest)
+    most = drifted * math.sqrt(LARGEST_LOSS / max(loss[order], 1e-300))
+    problem = f"the frequency changes by about {drifted:.2g} Hz during the record of "
     problem += f"{longest:.6g} s; allowed are {most:.2g} Hz at this length; cut the record into "
     problem += "shorter ones"
     _refuse(loss[order] > LARGEST_LOSS, "time", longest, problem)
     lost = np.fft.irfft(-np.expm1(-loss)[:, None] * parts.mean(axis=0), rows, axis=0) * rows
-    mean += values.mean(axis=0) * [name in NORMAL for name in names]
+    errors = scatter + np.abs(lost) + 0.5 * change * np.abs(mean)
+    is_normal = np.array([name in NORMAL for name in names])
+    mean += values.mean(axis=0) * is_normal
+    below = np.maximum(-mean, 0.0) * is_normal
+    for index in np.flatnonzero(below.max(axis=0) > LARGEST_LOSS * peaks)[:1]:
+        allowed = "the smallest of the mean period; allowed are numbers >= 0"
+        raise InputError(names[index], float(mean[:, index].min()), allowed)
     first, last = drift(np.array([0.5 / hz, longest - 0.5 / hz]))
     rates = (last - first) / (longest - 1.0 / hz)
     return Fold(
         frequency=float(hz),
         frequency_error=float(hz * math.hypot(error, rounding / longest)),
         periods=len(periods),
-        columns=dict(zip(names, mean.T, strict=True)),
-        errors=dict(zip(names, (scatter + np.abs(lost)).T, strict=True)),
+        columns=dict(zip(names, (mean + below).T, strict=True)),
+        errors=dict(zip(names, (errors + below).T, strict=True)),
         drift=dict(zip(names, map(float, rates), strict=True)),
     )
 
@@ -242,6 +253,15 @@ def _check_repeats(frequency: float, parts: np.ndarray, order: int, column: int)
     _refuse(order > 1 and alike, "frequency", frequency, problem)
 
 
+def _change(sizes: np.ndarray) -> float:
+    """Return the largest difference between the mean amplitudes of the quarters of a record,
+    divided by their mean; 0 within the noise."""
+    means = [float(one.mean()) for one in np.array_split(sizes, PARTS) if len(one)]
+    noise = np.diff(sizes).std() / math.sqrt(2.0 * len(sizes) / PARTS)
+    change = float(np.ptp(means))
+    return change / float(np.mean(means)) if change > SIGNIFICANT * noise else 0.0
+
+
 def _phases(parts: np.ndarray) -> tuple[float, float, float, int, int]:
     """Return the relative correction of the frequency, the standard error of this correction, the
     variance of the slow phase drift (in periods squared), and the order and the column of the
@@ -260,45 +280,22 @@ def _phases(parts: np.ndarray) -> tuple[float, float, float, int, int]:
 
 
 def _checked(time: Any, columns: Mapping[str, Any]) -> tuple[float, float, list[str], np.ndarray]:
-    """Check the arguments of `fold`.  Returns the time step, the standard error of the record's
-    length, the names of the columns, and an array of shape (samples, columns) with the values."""
-    known, fewest = ", ".join(COLUMNS), FEWEST_PER_PERIOD * FEWEST_PERIODS
+    """Return the time step, the rounding of the times, the names of the columns, and their values,
+    an array of shape (samples, columns)."""
+    known = ", ".join(COLUMNS)
     _refuse(not hasattr(columns, "keys"), "columns", columns, f"allowed is a mapping with {known}")
-    unknown = next((name for name in columns if name not in COLUMNS), None)
-    _refuse(unknown is not None, "columns", unknown, f"unknown; allowed are {known}")
-    _refuse(not len(columns), "columns", None, f"allowed is one column or more of {known}")
-    both = set(NORMAL) <= set(columns)
-    _refuse(both, "indentation", "with a load", "allowed is one of the two")
-    arrays: dict[str, np.ndarray] = {}
-    for name, value in {"time": time, **columns}.items():
-        try:
-            array = arrays[name] = np.array(value, float)
-        except (TypeError, ValueError):
-            raise InputError(name, value, "allowed is an array of numbers") from None
-        _refuse(array.ndim != 1, name, value, "allowed is an array of one dimension")
-        length = len(arrays["time"])
-        allowed = f"allowed are as many numbers as times: {length}"
-        _refuse(len(array) != length, name, array.shape, allowed)
-        short = f"the record is too short; allowed are at least {fewest} samples"
-        _refuse(length < fewest, "time", array.shape, short)
-        _refuse(not np.isfinite(array).all(), name, math.nan, "allowed are finite numbers")
+    _refuse("time" in columns, "columns", "time", f"unknown; allowed are {known}")
+    given = {"time": () if time is None else time, **columns}
+    fewest = FEWEST_PER_PERIOD * FEWEST_PERIODS
+    arrays = checked_columns(given, ("time", *COLUMNS), fewest, float(np.finfo(float).max))
+    times = arrays.pop("time")
+    _refuse(not arrays, "columns", None, f"allowed is one column or more of {known}")
+    for name, array in arrays.items():
+        for row in unusual_rows(array, is_record=True)[:1]:
+            raise InputError(name, float(array[row]), f"this is row {row}, {UNUSUAL}")
         negative = name in NORMAL and array.mean() <= 0.0
         _refuse(negative, name, array.mean(), "the mean; allowed is a mean above 0")
-    time = arrays.pop("time")
-    for name, array in arrays.items():
-        _check_marks(name, array)
-    return *_step(time), list(arrays), np.stack(list(arrays.values()), axis=1)
-
-
-def _check_marks(name: str, values: np.ndarray) -> None:
-    """Raise InputError for an extreme value that is repeated exactly, if the distance to the next
-    value exceeds the range of the values between both extremes."""
-    levels, counts = np.unique(values, return_counts=True)
-    for end, other in ((0, 1), (-1, -2)) if len(levels) >= FEWEST_LEVELS else ():
-        far = abs(levels[end] - levels[other]) > levels[-2] - levels[1]
-        problem = f"stands in {counts[end]} rows, far outside of all others, from "
-        problem += f"{levels[other]:.6g} on; allowed are measured values; such a value often marks "
-        _refuse(far and counts[end] > 1, name, levels[end], f"{problem}a missing sample", 17)
+    return *_step(times), list(arrays), np.stack(list(arrays.values()), axis=1)
 
 
 def _step(time: np.ndarray) -> tuple[float, float]:

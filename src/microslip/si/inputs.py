@@ -225,7 +225,7 @@ def kind_of(motion: Any) -> Kind:
     record, allowed = motion_named(motion), ""
     if not (record.loads or record.periodic):
         return Kind(motion, f"is {record.summary}", needed=("rotation",))
-    ahead, aside, angle = record.displacement(LOOP, 0.0, 1.0, 0.0)
+    ahead, aside, angle = record.moved(LOOP, 0.0, 1.0, 0.0)
     turn = float(np.abs(angle).max()) / float(hertz.bore_angle(1.0))
     if record.loads:
         allowed = "allowed is normal with a load_amplitude for an oscillating load"
@@ -420,7 +420,10 @@ def _check(motion: Any, kind: Kind, given: Mapping[str, Any]) -> str | None:
     without, only_with = "allowed only without ", "allowed only with a "
     sizes, drive = names & {"contact_radius", "pressure"}, names & {"force", "drive_stiffness"}
     no_map, no_drive = "force drive_stiffness wear_coefficient", "drive_stiffness mass damping"
-    refuse(" ".join(others), True, f"{motion or 'a contact without a motion'} has none")
+    needs = [f"{n} in {kind.unit}" if n == "amplitude" and kind.unit else n for n in kind.needed]
+    has_none = f"{motion or 'a contact without a motion'} has none"
+    has_none += f"; it needs {', '.join(needs)}" if needs else ""
+    refuse(" ".join(others), True, has_none)
     refuse("frequency", file and file.frequency, f"{without}a column time, which contains it")
     refuse("map", file, f"{without}a motion from a file: no map has its unit of the amplitude")
     refuse("radius counter_radius radius_across", sizes, without + size)

@@ -138,7 +138,7 @@ def read_record(path: str, **form: str) -> tuple[np.ndarray, dict[str, np.ndarra
     """
     table = table_of("record", path, FORM, need_units=True, **form)
     try:
-        columns = columns_of(table)
+        columns = columns_of(table, is_record=True)
         if "time" not in columns:
             raise ValueError("no column time; allowed is one, as in time [s]")
         time = columns.pop("time") * factors(table.units)["time"]
