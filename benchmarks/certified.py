@@ -10,7 +10,7 @@ tolerance than the motion's most accurate map. A point is covered if the map's e
 error estimate plus the reference's error estimate. The output file stores the references, so that
 the next run can reuse them.
 
-The error estimate of a uniform grid is computed by microslip.at. The grid's nodes are taken from
+The error estimate of a uniform grid is computed by dataset.microslip.at. The grid's nodes are taken from
 the certified map and count as exact. To measure the cost of a point, some points of the grid and of
 the map are solved to the map's tolerance.
 """
@@ -49,7 +49,7 @@ reference. The last column is the smallest fraction of the surplus that would st
 cover all points."""
 GRIDS = """\
 The second table compares the maps with uniform grids whose nodes are as accurate as the points of
-the map. Between the nodes, the error estimate is that of `microslip.at`."""
+the map. Between the nodes, the error estimate is that of `dataset.microslip.at`."""
 
 
 def random_points(dataset, number, seed):

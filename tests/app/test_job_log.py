@@ -2,6 +2,8 @@
 
 import errno
 import logging
+import subprocess
+import sys
 from pathlib import Path
 
 import pytest
@@ -53,11 +55,19 @@ def test_an_error_that_the_user_can_mend_is_one_line_and_any_other_a_traceback(
     assert (message.startswith("Error: ") and message.count("\n") == 1) == (line != "Traceback")
 
 
-def test_an_interrupted_job_fails_without_a_traceback(tmp_path, capsys):
-    compiled = SystemError("returned a result with an exception set")
-    compiled.__cause__ = KeyboardInterrupt()
-    for error in (KeyboardInterrupt(), compiled):
-        with pytest.raises(SystemExit), job_log(tmp_path / "log"):
-            raise error
-        assert (tmp_path / "log").read_text() == "Interrupted\n"
-    assert capsys.readouterr().err == ""
+INTERRUPTED = """
+import pathlib, signal, sys
+from microslip.app import job_log
+from microslip.foundation.files import writing_beside
+signal.signal(signal.SIGINT, job_log.end_job)
+with writing_beside(pathlib.Path(sys.argv[1])) as part:
+    part.write_text("incomplete")
+    signal.raise_signal(signal.SIGINT)
+"""
+
+
+def test_an_interrupt_ends_a_job_without_a_message_or_a_partial_file(tmp_path):
+    command = [sys.executable, "-c", INTERRUPTED, str(tmp_path / "batch")]
+    process = subprocess.run(command, capture_output=True, text=True)
+    assert (process.returncode, process.stdout + process.stderr) == (130, "")
+    assert not any(tmp_path.iterdir())

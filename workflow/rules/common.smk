@@ -37,7 +37,7 @@ if hasattr(signal, "SIGHUP") and signal.getsignal(signal.SIGHUP) == signal.SIG_D
 from microslip.app.plan import Plan, Results
 from microslip.config import load
 from microslip.foundation import files
-from microslip.foundation.errors import CacheError
+from microslip.foundation.errors import CacheError, InputError
 
 
 @contextmanager
@@ -50,6 +50,8 @@ def refused_in_one_line():
         sys.exit(f"Error in {error}")
     except CacheError as error:
         sys.exit(f"Error in {ORIGIN}: results: {error}")
+    except InputError as error:  # in a user's file
+        sys.exit(f"Error in {ORIGIN}: {error}")
 
 
 # A file given with --configfile replaces the default configuration.  The default is

@@ -6,11 +6,13 @@ quantities are dimensionless, except the seconds and bytes of studies.
 """
 
 import logging
+import signal
 from pathlib import Path
 
-from microslip.app.job_log import job_log
+from microslip.app.job_log import end_job, job_log
 from microslip.app.products import make_products
 
+signal.signal(signal.SIGINT, end_job)
 with job_log(snakemake.log[0], shown=logging.INFO):
     make_products(snakemake)
     if snakemake.output[0].endswith(".made"):

@@ -5,9 +5,11 @@ numbers are dimensionless, except times (s) and memory (byte) of trials and scal
 """
 
 import json
+import signal
 
-from microslip.app.job_log import job_log
+from microslip.app.job_log import end_job, job_log
 
+signal.signal(signal.SIGINT, end_job)
 if __name__ == "__main__":  # False in the processes that solve points of a map
     with job_log(snakemake.log[0]) as log:
         from microslip.app import solving

@@ -1,14 +1,16 @@
-"""The log of a workflow job, and the message if the job fails."""
+"""The log of a workflow job, the message if the job fails, and the end of a job by Ctrl-C."""
 
 import gc
 import logging
+import os
 import sys
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
+from typing import NoReturn
 
 from microslip.foundation.errors import NO_WRITING, CacheError, SolverError
-from microslip.foundation.files import advice
+from microslip.foundation.files import advice, remove_partial
 from microslip.foundation.named_files import problem_in_code
 
 
@@ -18,8 +20,7 @@ def job_log(path: str | Path, shown: int = logging.WARNING) -> Iterator[logging.
 
     Messages of at least the level `shown` are also printed on standard error.  An error ends the
     process with exit code 1.  The log then contains the traceback.  For a CacheError, a
-    SolverError, an error in a user's Python file, a full disk or an interrupt, the log contains
-    only one line.
+    SolverError, an error in a user's Python file or a full disk, the log contains only one line.
     """
     try:
         file = logging.FileHandler(path, "w", "utf-8")
@@ -38,12 +39,8 @@ def job_log(path: str | Path, shown: int = logging.WARNING) -> Iterator[logging.
         code = 0
     except (CacheError, SolverError) as error:
         log.error("Error: %s", error)
-    except KeyboardInterrupt:
-        log.info("Interrupted")
     except Exception as error:
-        if isinstance(error.__cause__, KeyboardInterrupt):  # at the end of a compiled function
-            log.info("Interrupted")
-        elif getattr(error, "errno", None) in NO_WRITING:
+        if getattr(error, "errno", None) in NO_WRITING:
             name = getattr(error, "filename", None) or "a file"
             log.error("Error: %s", advice("write", name, error))
         elif problem := problem_in_code(error):
@@ -61,3 +58,12 @@ def job_log(path: str | Path, shown: int = logging.WARNING) -> Iterator[logging.
         gc.freeze()
     if code:
         sys.exit(code)
+
+
+def end_job(number: int, frame: object) -> NoReturn:
+    """Signal handler that removes partial files and ends this process without a message.
+
+    A KeyboardInterrupt would print a long traceback, and a pool would first finish its points.
+    """
+    remove_partial()
+    os._exit(128 + number)

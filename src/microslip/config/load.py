@@ -10,7 +10,7 @@ from typing import Any, TypeVar
 import yaml
 from pydantic import ValidationError
 
-from microslip.config.settings import Configuration, Refusal, Sweep
+from microslip.config.settings import Configuration, Refusal, Sweep, problem_of
 from microslip.foundation import named_files, spec
 from microslip.foundation.errors import InputError, shown
 from microslip.foundation.files import content_of
@@ -296,4 +296,4 @@ def _line(error: ValidationError) -> str:
     if isinstance(refusal, Refusal):
         return f"{where}{refusal.key}: {refusal}".removeprefix(".")
     allowed = "allowed: a mapping of names"
-    return f"{where}: {shown(first['input'])} is not allowed; {allowed}".removeprefix(".")
+    return f"{where}: {problem_of(first['input'])}; {allowed}".removeprefix(".")

@@ -20,7 +20,7 @@ from microslip.contact.registry import MODELS
 from microslip.foundation.arguments import LARGEST
 from microslip.foundation.canonical import number
 from microslip.foundation.errors import InputError, shown
-from microslip.foundation.spec import near_miss
+from microslip.foundation.spec import NUMBER, near_miss
 from microslip.periodic.methods import names as method_names
 from microslip.periodic.methods import split as split_method
 
@@ -44,8 +44,6 @@ STUDIES = ("accuracy", "stability", "claims")
 SOLVING = ("all", "solve_batch", "solve_map")
 MAKING = ("make_products", "make_dataset", "draw_figure", "make_page", "link_file")
 """Names of the workflow's rules. Datasets and figures must have other names."""
-EXPONENT = re.compile(r"[-+]?[0-9]+(\.[0-9]*)?[eE][-+]?[0-9]+")
-"""Numbers that YAML 1.1 reads as strings, such as 1e-3."""
 
 
 class Refusal(ValueError):
@@ -73,6 +71,12 @@ def refuse_unknown(name: Any, names: Collection[str], problem: str, key: str = "
     if name not in names:
         allowed = ", ".join(names) or "none"
         raise Refusal(f"{problem}; {near_miss(name, names)}allowed: {allowed}", key)
+
+
+def problem_of(value: Any) -> str:
+    """Return the problem of a value that is not allowed: it is missing, empty or wrong."""
+    wrong = "is empty" if value in ("", [], {}) else f"{shown(value)} is not allowed"
+    return "has no value" if value is None else wrong
 
 
 def _refuse_crowd(points: int, most: int, key: str = "") -> None:
@@ -106,7 +110,7 @@ class Allowed:
         except InputError as error:
             raise Refusal(f"{shown(error.value)}: {error.allowed}") from None
         except (ValueError, TypeError, OverflowError):
-            raise Refusal(f"{shown(value)} is not allowed; allowed: {self.text}") from None
+            raise Refusal(f"{problem_of(value)}; allowed: {self.text}") from None
 
     def __get_pydantic_core_schema__(self, source: Any, handler: Any) -> CoreSchema:
         return core_schema.no_info_plain_validator_function(self)
@@ -118,18 +122,20 @@ def _number(low: float, high: float, step: int = 0, above: bool = False) -> Allo
     step: 1 for whole numbers, 2 for even numbers.  above: if True, `low` itself is not allowed.
     """
     word = ("a number", "a whole number", "an even number")[step]
+    text = f"{word} {'>' if above else '>='} {low:g} and <= {high:g}"
 
     def convert(value: Any) -> float:
         if isinstance(value, str):
-            problem = f"{shown(value)} is text; allowed: a number without quotes"
-            refuse(not EXPONENT.fullmatch(value), problem)
+            refuse(not NUMBER.fullmatch(value), f"{shown(value)} is not a number; allowed: {text}")
+            is_quoted = "e" not in value.lower()  # YAML 1.1 reads 1e-3 as a string
+            refuse(is_quoted, f"{shown(value)} is text; allowed: a number without quotes")
             value = float(value)
         is_inside = low <= value <= high and not (above and value == low)
         if isinstance(value, bool) or not is_inside or (step and value % step):
             raise ValueError
         return int(value) if step else float(number(value))
 
-    return Allowed(f"{word} {'>' if above else '>='} {low:g} and <= {high:g}", convert)
+    return Allowed(text, convert)
 
 
 def _or_null(kind: Allowed) -> Allowed:
@@ -212,7 +218,7 @@ def _spaced(item: dict) -> list[float]:
         example = "{log: [first, last, count]} or {linear: [first, last, count]}"
         hint = near_miss(spacing, ("log", "linear"))
         raise Refusal(f"{shown(item)} is not allowed; {hint}allowed: {example}")
-    problem = f"{shown(ends)} is not allowed; allowed:"
+    problem = f"{problem_of(ends)}; allowed:"
     is_triple = isinstance(ends, list | tuple) and len(ends) == 3
     refuse(not is_triple, f"{problem} [first, last, count]", key)
     end = _number(0.0, LARGEST["velocity"], above=is_log)
@@ -270,7 +276,7 @@ class Settings(BaseModel):
         names = cls.model_fields
         if not isinstance(values, dict):
             allowed = f"a mapping with the keys {', '.join(names)}"
-            raise Refusal(f"{shown(values)} is not allowed; allowed: {allowed}")
+            raise Refusal(f"{problem_of(values)}; allowed: {allowed}")
         for name in values:
             refuse_unknown(name, names, "unknown key", f".{name}")
         required = [name for name, field in names.items() if field.is_required()]

@@ -77,10 +77,10 @@ def open_map(
         if path.suffix != ".nc":
             path = Path(results, f"{name}.nc")
             if not path.is_file() and str(name) not in PAPER:
-                others = [*sorted(file.stem for file in Path(results).glob("*.nc")), *PAPER]
-                names = ", ".join(dict.fromkeys(others))
-                allowed = f"allowed is {names}, or a path that ends in .nc"
-                raise InputError("name", name, f"{near_miss(name, others)}{allowed}")
+                names = sorted(file.stem for file in Path(results).glob("*.nc"))
+                there = ", ".join(names) or f"nothing in {results} yet"
+                allowed = f"allowed is {there}, or a path that ends in .nc"
+                raise InputError("name", name, f"{near_miss(name, names)}{allowed}")
         if not path.is_file():
             advice = "run the workflow first, or name its results folder"
             raise CacheError(f"{path} is not there: {advice}")

@@ -352,7 +352,8 @@ class Family(Generic[T]):
         named, path = parse(text, self.argument), ""
         if named is not None and not named.is_code:
             return read_object(named, self.argument, self.create)
-        names = [*self.classes, "file:NAME", "NAME.py"]
+        file_name = f"file:{text}" if "." in str(text).partition(":")[0] else "file:NAME"
+        names = [*self.classes, file_name, "NAME.py"]
         if not isinstance(text, str) or text == "file":
             raise InputError(self.argument, text, f"allowed is one of {', '.join(names)}")
         if named is None:
