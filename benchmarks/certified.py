@@ -11,8 +11,8 @@ error estimate plus the reference's error estimate. The output file stores the r
 the next run can reuse them.
 
 The error estimate of a uniform grid is computed by dataset.microslip.at. The grid's nodes are
-taken from the certified map and count as exact. To measure the cost of a point, some points of the grid and of
-the map are solved to the map's tolerance.
+taken from the certified map and count as exact. To measure the cost of a point, some points of the
+grid and of the map are solved to the map's tolerance.
 """
 
 from __future__ import annotations
