@@ -157,15 +157,15 @@ class Sampled(spec.NamedByText, _Samples):
             FEWEST_SAMPLES rows, if nothing changes, or if the last row is the end of the period.
         """
         rows, height, by_load = _rows_of(columns, FEWEST_SAMPLES)
-        if not (np.ptp(rows, axis=0).any() or height is not None and np.ptp(height)):
-            name = next(name for name, one in columns.items() if one is not None)
-            allowed = "equal in all rows; allowed is a motion, in this or in another column"
-            raise InputError(name, float(columns[name][0]), allowed)
         parts = [rows] if height is None else [rows, height]
-        if _ends_with_first(np.column_stack(parts)):
-            name, last = next((name, one[-1]) for name, one in columns.items() if one is not None)
-            allowed = "the last row repeats the first; leave it out: it begins the next period"
-            raise InputError(name, float(last), allowed)
+        values, problem = np.column_stack(parts), ""
+        if not np.ptp(values, axis=0).any():
+            problem = "equal in all rows; allowed is a motion, in this or in another column"
+        elif _ends_with_first(values):
+            problem = "the last row repeats the first; leave it out: it begins the next period"
+        if problem:
+            name = next(name for name, one in columns.items() if one is not None)
+            raise InputError(name, float(np.array(columns[name], float)[-1]), problem)
         digest = hashlib.sha256(b"".join(one.tobytes() for one in parts)).hexdigest()[:16]
         kind = "" if height is None else ",load" if by_load else ",indentation"
         return cls(rows, height, by_load, f"array:sha256={digest}{kind}")
