@@ -116,12 +116,20 @@ def test_numbers_sequences_arrays_and_chunks():
         lazy.compute()
 
 
-def test_next_to_a_point_that_did_not_converge_the_bound_is_infinite():
+def test_beside_points_that_did_not_converge_the_bound_is_infinite_and_near_them_it_holds():
     dataset = made_up()
     dataset["converged"][6, 6] = False
-    near = dataset.microslip.at(VELOCITY[6] * 1.1, AMPLITUDE[6] * 1.05)
-    assert np.isnan(near.mu_macro) and np.isinf(near.mu_macro_error)
-    assert np.isfinite(dataset.microslip.at(VELOCITY[2], AMPLITUDE[2]).mu_macro)
+    beside = dataset.microslip.at(VELOCITY[6] * 1.1, AMPLITUDE[6] * 1.05)
+    assert np.isnan(beside.mu_macro) and np.isinf(beside.mu_macro_error)
+    assert "reason of the map" in beside.comment
+    node = dataset.microslip.at(VELOCITY[6], AMPLITUDE[5])
+    assert (node.mu_macro, node.mu_macro_error) == (dataset.mu_macro[5, 6], 0.0)
+    dataset["converged"].values[np.random.default_rng(1).random((13, 13)) < 0.08] = False
+    v, a = places(2000)
+    near = dataset.microslip.at(v, a)
+    miss = np.abs(near.mu_macro - friction(v, a)).values[near.mu_macro.notnull()]
+    assert len(miss) > 1300
+    assert (miss <= near.mu_macro_error.values[near.mu_macro.notnull()] + 1e-12).mean() >= 0.99
 
 
 def test_a_static_limit_is_not_interpolated():

@@ -16,6 +16,7 @@ from microslip.datasets.variables import ANCILLARY, described
 from microslip.foundation.errors import InputError
 
 ALLOWED = "allowed is a finite number, or several"
+UNKNOWN = "NaN beside points without a value; converged and reason of the map give the cause"
 BLOCK = 2**14
 """Number of points that are interpolated at once, which limits the memory use."""
 
@@ -39,7 +40,9 @@ class Map:
 
         On a regular map, the bound is the sum of the interpolation error and the errors of the
         points (see datasets/interpolation.py).  In a certified map, each cell has its own bound.
-        Next to a point that did not converge, mu_macro is NaN and the bound is infinite.
+        Near a point that did not converge, the interpolation is linear, with a larger bound.  In a
+        cell beside such a point, mu_macro is NaN and the bound is infinite.  The attribute
+        `comment` of the result then says where to find the cause.
 
         Parameters
         ----------
@@ -94,6 +97,8 @@ class Map:
         scalars = [n for n in numbers if n not in value.coords]
         coords = {n: described({"long_name": n}, numbers[n], ()) for n in scalars}
         attributes = {key: data.attrs[key] for key in ("motion", "pressure") if key in data.attrs}
+        if value.chunks is None and value.isnull().any():
+            attributes["comment"] = UNKNOWN
         return xr.Dataset({name: value, f"{name}_error": error}, coords, attributes)
 
 

@@ -49,20 +49,22 @@ def build(
     record_of = lookup(records := list(records))
     answers, cells = map_refinement.refine(sweep, lambda requests: map(record_of, requests))
     coordinates = map_refinement.coordinates_of(sweep)
-    degrees, points = coordinates.degrees, sorted(answers)
-    index = {node: i for i, node in enumerate(points)}
-    places = [coordinates.place(node) for node in points]
-    values, errors = np.array([answers[node] for node in points]).T
+    degrees, place = coordinates.degrees, coordinates.place
+    # a point between slow and fast cells is a node of both
+    at = {place(node): answer for node, answer in answers.items()}
+    points = sorted(at)
+    index = {point: i for i, point in enumerate(points)}
+    values, errors = np.array([at[point] for point in points]).T
     variables: dict[str, ArrayLike] = {"mu_macro": values, "mu_macro_error": errors}
     # If Poisson's ratio or the velocity is constant in the map, it is a scalar coordinate.
     axes: dict = {"velocity": ((), 0.0), "poisson": ((), sweep.poisson[0])}
     ends = np.array(cells.cells)  # (cell, lower or upper, direction)
     for k, direction in enumerate(coordinates.directions):
-        axes[direction] = "point", np.array(places)[:, k]
+        axes[direction] = "point", np.array(points)[:, k]
         variables |= zip(BORDERS[direction], ends[:, :, k].T, strict=True)
     nodes = [map_refinement.nodes_of(cell, degrees) for cell in cells.cells]
     variables["cell_error"] = cells.errors
-    variables["cell_node"] = [[index[node] for node in own] for own in nodes]
+    variables["cell_node"] = [[index[place(node)] for node in own] for own in nodes]
     counts = len(nodes), len(nodes[0]), len(points)
     variables |= zip(NUMBERS, map(np.arange, counts), strict=True)
     dims = {name: TABLE[name]["dims"].split() or "point" for name in variables}
@@ -78,7 +80,7 @@ def build(
         pressure=pressure,
         tolerance=sweep.tolerance,
         error=sweep.error,
-        points=len(set(places)),  # a point between slow and fast cells can occur twice
+        points=len(points),
         directions=" ".join(coordinates.directions),
         degrees=np.array(degrees, np.int32),
     )

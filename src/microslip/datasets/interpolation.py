@@ -4,7 +4,9 @@ On a regular grid, values are interpolated along each axis by the cubic through 
 nodes.  To estimate the error, the value at each node is also predicted from the neighbouring nodes,
 by a cubic with twice the spacing.  The error bound of a cell is the largest difference between
 prediction and value at the nodes of its cubic.  For a smooth function, the true error is a
-sixteenth of this bound.  At a kink, the true error and the bound are about equal.
+sixteenth of this bound.  At a kink, the true error and the bound are about equal.  Near an
+unknown value, the interpolation is linear, and the difference between the two nodes serves as the
+error.
 
 In a certified map, each cell has its own polynomial and its own error bound.
 """
@@ -42,9 +44,9 @@ PARTS = (*NUMBERS, "mu_macro", "cell_error", "cell_node", *sum(BORDERS.values(),
 """Variables of a certified map that have a checksum."""
 SAME = 1e-12
 """Difference below which two coordinates count as equal."""
-LOST = "microslip.at needs it, and the dataset has lost it: keep it"
+LOST = "dataset.microslip.at needs it, and the dataset has lost it: keep it"
 NOT_WHOLE = (
-    "in the dataset, so the certified map is not whole: select from the result of microslip.at, "
+    "in the dataset, so the certified map is not whole: select from the result of `at`, "
     "and open the map again with open_map (or make it again if its file is of another version)"
 )
 ANY = "microslip.solve computes any"
@@ -89,13 +91,15 @@ class Axis:
         """Return the points, or their logarithms if the axis is logarithmic."""
         return np.log(points) if self.logarithmic else np.asarray(points, float)
 
-    def cubics(self, points: np.ndarray) -> tuple[np.ndarray, ...]:
+    def cubics(self, points: np.ndarray, width: int = NODES) -> tuple[np.ndarray, ...]:
         """Return the weights of the local cubics at points.
 
         Parameters
         ----------
         points : numpy.ndarray, shape (n,)
             Points between the ends of the axis, or at the static limit.
+        width : int
+            Number of nodes, if there are so many; 2 for linear interpolation.
 
         Returns
         -------
@@ -104,11 +108,11 @@ class Axis:
         share : numpy.ndarray, shape (n,)
             Position of each point in its cell, from 0 to 1.
         index, weights : numpy.ndarray, shape (n, k)
-            Indices and weights of the k nodes of the cubic, with k at most 4.
+            Indices and weights of the k nodes of the cubic, with k at most `width`.
         """
         x, q = self.nodes, self.scaled(np.maximum(points, self.values[self.static]))
         count = len(x)
-        width = min(NODES, count)
+        width = min(width, count)
         cell = np.clip(np.searchsorted(x, q, side="right") - 1, 0, max(count - 2, 0))
         share = (q - x[cell]) / (x[cell + 1] - x[cell]) if count > 1 else np.zeros(len(q))
         first = np.clip(cell - (width // 2 - 1), 0, count - width)
@@ -118,6 +122,8 @@ class Axis:
             rests = points == 0.0
             cell, index, share = cell + 1, index + 1, np.where(rests, 0.0, share)
             index[rests], weights[rests] = 0, np.arange(width) == 0
+        if width == 2:  # at a node, its neighbour may be unknown
+            index = np.where(weights == 0.0, index[:, ::-1], index)
         return cell, share, index, weights
 
     def misses(self, table: np.ndarray) -> np.ndarray:
@@ -213,7 +219,8 @@ class Grid:
         Along an axis, the interpolation error is assumed proportional to the product of the
         distances to the two neighbouring nodes.  The bound is the sum of these errors over all
         axes, plus the largest error of the nodes.  If a value at one of the nodes is unknown, the
-        result is NaN and the bound is infinite.
+        interpolation between the neighbouring nodes is linear, with a larger bound.  If one of them
+        is unknown as well, the result is NaN and the bound is infinite.
 
         Raises InputError for a velocity between the static limit and the smallest velocity.
         """
@@ -222,17 +229,32 @@ class Grid:
             if axis.static and (between := own[(own > 0.0) & (own < slowest)]).size:
                 allowed = f"allowed is 0, or {slowest:g} to {axis.values[-1]:g}; {ANY}"
                 raise InputError(name, float(between[0]), allowed)
-        stencils = [axis.cubics(points[name]) for name, axis in self.axes.items()]
+        value, error = self._interpolated(points, NODES)
+        if (gap := np.isnan(value + error)).any():
+            beside = {name: own[gap] for name, own in points.items()}
+            value[gap], error[gap] = self._interpolated(beside, 2)
+        return value, np.where(np.isnan(value + error), np.inf, error)
+
+    def _interpolated(self, points: Points, width: int) -> tuple[np.ndarray, np.ndarray]:
+        """Interpolate between `width` nodes along each axis.  If a value or an error is unknown,
+        the result is NaN.
+
+        For linear interpolation, the error halfway between two nodes is at most the difference
+        between their values, unless an extremum lies between them.
+        """
+        stencils = [axis.cubics(points[name], width) for name, axis in self.axes.items()]
         around = tuple(range(len(stencils)))
         near = tuple(  # indices of the nodes, shape (k, l, ..., n)
             np.expand_dims(index.T, [other for other in around if other != k])
             for k, (_, _, index, _) in enumerate(stencils)
         )
-        value = polynomial(self.values[near], [weights for *_, weights in stencils])
+        values = self.values[near]
+        value = polynomial(values, [weights for *_, weights in stencils])
         error = self.errors[near].max(axis=around)
-        for (_, share, *_), misses in zip(stencils, self._misses, strict=True):
-            error = error + 4.0 * share * (1.0 - share) * misses[near].max(axis=around)
-        return value, np.where(np.isnan(value) | np.isnan(error), np.inf, error)
+        for k, (_, share, *_) in enumerate(stencils):
+            missed = self._misses[k][near] if width > 2 else np.ptp(values, axis=k, keepdims=True)
+            error = error + 4.0 * share * (1.0 - share) * missed.max(axis=around)
+        return value, error
 
 
 @dataclass(frozen=True, eq=False)
@@ -345,7 +367,7 @@ def grid_of(dataset: xr.Dataset, name: str) -> Grid:
             )
     # between points, the numbers of solves are not integers
     if "work" in dataset and ((dataset["work"] % 1.0) > 0.0).any():
-        allowed = "allowed are computed points, with microslip.at in place of other interpolations"
+        allowed = "allowed are computed points: use dataset.microslip.at on the map itself"
         raise InputError(name, "interpolated", f"in the dataset; {allowed}")
     if "converged" in dataset:
         nodes = nodes.where(dataset["converged"] == 1)  # a join fills gaps with NaN
