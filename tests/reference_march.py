@@ -77,18 +77,3 @@ def march(matrix, bound, displacement, phases, q, stages=2):
         q = solved_stage(matrix, before + displacement(end) - carried, bound, q)
         result.append(q)
     return np.array(result)
-
-
-def periodic(matrix, bound, displacement, phases, q, mirrored):
-    """Tractions over half a period of the periodic state, as from `march`.
-
-    mirrored(q): mirror image of q, the start of the next half period. It marches until the state
-    repeats, which takes few periods unless the forward motion is slow.
-    """
-    for _ in range(1000):
-        result = march(matrix, bound, displacement, phases, q)
-        change = np.abs(mirrored(result[-1]) - q).max()
-        q = mirrored(result[-1])
-        if change < 1e-12:
-            return result
-    raise AssertionError("the reference did not become periodic")

@@ -6,20 +6,13 @@ Complex notation: q = lateral + i forward.
 import numpy as np
 import pytest
 from contact.test_models import fitted_order
-from scipy.special import ellipe, ellipkm1
 
-from microslip.contact.contact import forces
 from microslip.contact.influence import (
-    coupling_kernels,
-    modes_for,
     ring_influence,
-    toroidal_kernels,
 )
 from microslip.contact.modes import PolarContact
 from microslip.contact.rings import make_rings
 from microslip.theory import hertz
-
-RADII = [(0.3, 0.9), (0.9, 0.3), (0.5, 0.52), (0.52, 0.5), (0.7, 0.7001), (0.999, 1e-3), (0.4, 0.5)]
 
 
 def unit_gauss(count):
@@ -59,36 +52,6 @@ def coupling_mean(m, r, s):
     return angular_mean(kernel, r, s)
 
 
-def both_kernels(r, s, count=33):
-    """Compiled kernels (G_0 .., C_1 ..), with enough terms for the downward recurrence."""
-    torus, pair = np.empty(modes_for(r, s, count)), np.empty(count)
-    toroidal_kernels(r, s, integrals(r, s), len(torus), torus)
-    coupling_kernels(r, s, torus, count, pair)
-    return torus, pair
-
-
-def integrals(r, s):
-    """K and E for the complementary modulus |r - s| / (r + s)."""
-    square = (abs(r - s) / (r + s)) ** 2
-    return ellipkm1(square), ellipe(1 - square)
-
-
-@pytest.mark.parametrize(("r", "s"), RADII)
-def test_toroidal_kernels_are_angular_means(r, s):
-    for count in (1, 2, 5, 40):  # the recurrence depends on the count
-        kernels = np.empty(count)
-        toroidal_kernels(r, s, integrals(r, s), count, kernels)
-        expected = [toroidal_mean(m, r, s) for m in range(count)]
-        assert kernels == pytest.approx(expected, rel=1e-9, abs=1e-13)
-
-
-@pytest.mark.parametrize(("r", "s"), RADII)
-def test_coupling_kernels_are_angular_means(r, s):
-    _, pair = both_kernels(r, s)
-    expected = [coupling_mean(m, r, s) for m in range(1, len(pair) + 1)]
-    assert pair == pytest.approx(expected, rel=1e-9, abs=1e-12)
-
-
 # Ring averages
 
 RING_EDGES = np.array([0.0, 0.45, 0.7, 1.2, np.pi / 2])
@@ -124,7 +87,7 @@ def ring_average(kernel, i, j):
 @pytest.mark.slow
 @pytest.mark.parametrize(("i", "j"), [(0, 0), (2, 2), (3, 3), (1, 2), (3, 2), (0, 3), (3, 0)])
 def test_ring_influence_is_the_average_over_both_rings(i, j):
-    near, far = ring_influence(RING_EDGES, 6, True)
+    near, far = ring_influence(RING_EDGES, 17, True)
     for m in (0, 1, 5):
         direct = ring_average(lambda r, s, m=m: toroidal_mean(m, r, s), i, j)
         assert near[m, i, j] == pytest.approx(direct, rel=5e-5)
@@ -207,21 +170,3 @@ def test_polar_operator_is_the_half_space_integral(rotates, nu, rng):
 
 
 # Tractions whose displacement is known
-
-
-@pytest.mark.parametrize("nu", [0.0, 0.3, 0.5])
-def test_flat_punch_traction_displaces_the_disc_uniformly(nu):
-    """q = F / (2 pi sqrt(1 - r^2)) moves the whole disc by F / (2 G* a) at any nu."""
-    cells, errors = [12, 24, 48], []
-    for n in cells:
-        contact = PolarContact(n, 4, False, nu)
-        depth = np.cos(contact.rings.psi)
-        mean = -np.diff(depth) / contact.rings.area  # mean traction of each ring for F = 1
-        state = np.stack([np.tile(mean, (4, 1)), np.zeros((4, n))])
-        assert forces(contact, state) == pytest.approx([1.0, 0.0, 0.0], abs=1e-12)
-        displacement = contact.displacement(state)
-        inside = contact.rings.radius < 0.8
-        errors.append(np.abs(displacement[0, :, inside] * 2 * hertz.G_STAR - 1).max())
-        assert np.abs(displacement[1, :, inside]).max() < errors[-1]
-    assert errors[-1] < 1e-3
-    assert fitted_order(cells, errors) == pytest.approx(2.0, abs=0.5)

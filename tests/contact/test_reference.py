@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from reference_march import march, periodic
+from reference_march import march
 from reference_pull import pulled_march
 
 from microslip.contact.contact import Body, forward_slip
@@ -10,7 +10,6 @@ from microslip.contact.modes import PolarContact
 from microslip.contact.path import EULER, SDIRK2, make_path, phases_between
 from microslip.contact.ring_contact import RadialContact
 from microslip.contact.squares import CartesianContact
-from microslip.periodic.search import Goal, PeriodMap, find_periodic_state
 from microslip.scene.by_name import motion_named
 from microslip.scene.motion import HALF_PERIOD
 
@@ -77,20 +76,6 @@ def test_a_march_is_the_plain_one(name, integrator):
     assert result.forces[:, rows] == pytest.approx(sums[:, rows], abs=1e-9)
 
 
-@pytest.mark.slow
-def test_the_periodic_state_is_the_one_that_the_plain_march_ends_in():
-    case, phases = Case("rings"), phases_between(HALF_PERIOD, 8)
-    contact, start = case.contact, forward_slip(case.contact)
-    place = contact.bound, case.of_points, phases, start, contact.mirrored
-    expected = periodic(case.matrix, *place)
-    cycle = PeriodMap(contact, make_path(case.displacement, phases))
-    result = find_periodic_state(cycle, start, Goal(1e-10, 1e-13))
-    assert result.converged
-    assert result.start == pytest.approx(expected[0], abs=1e-9)
-    forces = (contact.weight * expected[:, 0]).sum(axis=(1, 2))
-    assert result.march.forces[:, 0] == pytest.approx(forces, abs=1e-9)
-
-
 @integrators
 @pytest.mark.parametrize("body", BODIES)
 @names
@@ -117,27 +102,6 @@ def test_the_error_of_a_driven_march_is_proportional_to_the_tolerance_of_its_ste
     errors = np.array([np.abs(other - exact).max() for other in others])
     assert (errors < 200.0 * np.array([1e-9, 1e-7, 1e-5])).all()
     assert (errors[:-1] < 0.1 * errors[1:]).all()
-
-
-@names
-def test_the_work_of_the_drive_is_stored_or_dissipated(name):
-    """Energy is balanced exactly in a backward Euler step: work is done by the tractions at its
-    end, and each point dissipates its bound times its slip."""
-    case, phases, force = Case(name), phases_between(HALF_PERIOD, 1), 0.7
-    contact, weight = case.contact, case.contact.weight
-    result = case.march(phases, 1e-12, EULER, body=Body(0.0, 0.0, 0.0, force), start=START)
-    assert result.forces[1:, 0] == pytest.approx(force, abs=1e-10)
-    q, travel = result.state, case.of_points(phases[1]) - case.of_points(phases[0])
-    strained = contact.displacement(q - case.start)
-    slip = travel - strained
-    slip[0] += result.body[1, 0]
-    ahead = np.diff(case.displacement(phases)[0])[0]
-    turned = travel - np.array([ahead, 0.0])[:, None, None]
-    work = force * (ahead + result.body[1, 0]) + np.sum(weight * q * turned)
-    stored = np.sum(weight * q * strained)
-    dissipated = np.sum(weight * contact.bound * np.hypot(*slip))
-    assert dissipated > 0.01
-    assert work == pytest.approx(stored + dissipated, abs=1e-9)
 
 
 @integrators

@@ -4,13 +4,10 @@ import numpy as np
 import pytest
 
 from microslip.contact.contact import energy_norm, forward_slip
-from microslip.contact.path import make_path, phases_between
-from microslip.contact.registry import MODELS
-from microslip.periodic import discretise
-from microslip.periodic.discretise import Resolution, contact_of
+from microslip.contact.path import make_path
+from microslip.periodic.discretise import Resolution, contact_of, path_of
 from microslip.periodic.search import Goal, PeriodMap, find_periodic_state
 from microslip.periodic.simulate import simulate
-from microslip.scene.motion import HALF_PERIOD
 from microslip.scene.named import Bore, Transverse
 from microslip.scene.problem import Force, Problem, Spring
 from microslip.theory import paper
@@ -37,23 +34,12 @@ POINTS = {
 }
 
 
-def contact_at(name, velocity, amplitude):
-    model, motion, nu, cells, angles = CASES[name]
+def case(name, velocity, amplitude):
+    """The problem of a case, its contact, and its path over half a period."""
+    model, motion, nu, *sizes = CASES[name]
     problem = Problem(motion, velocity, amplitude, nu)
-    return MODELS[model].build(problem, cells, angles, problem.focus)
-
-
-def path_of(name, velocity, amplitude, whole=False):
-    """Path over half a period, or over a whole period with the same steps."""
-    _, motion, nu, _, _ = CASES[name]
-    phase = phases_between(HALF_PERIOD, STEPS)
-    if whole:
-        phase = np.concatenate([phase, phase[1:] + np.pi])
-
-    def displacement(t):
-        return motion.displacement(t, velocity, amplitude, nu)
-
-    return make_path(displacement, phase)
+    contact = contact_of(problem, model, Resolution(*sizes, STEPS))
+    return problem, contact, path_of(problem, contact, STEPS)
 
 
 def plain_march(contact, path, state, change, most=20_000):
@@ -73,13 +59,10 @@ def plain_march(contact, path, state, change, most=20_000):
 )
 def test_found_state_is_that_of_the_plain_march(name, velocity, amplitude):
     """The plain march starts from the stress-free contact."""
-    model, label, nu, cells, angles = CASES[name]
-    resolution = Resolution(cells, angles, STEPS)
-    motion = Problem(label, velocity, amplitude, nu)
-    run = simulate(motion, model, resolution, TOLERANCE)
+    problem, contact, path = case(name, velocity, amplitude)
+    model, _, _, *sizes = CASES[name]
+    run = simulate(problem, model, Resolution(*sizes, STEPS), TOLERANCE)
     assert run.converged and run.distance <= TOLERANCE
-    contact = contact_of(motion, model, resolution)
-    path = discretise.path_of(motion, contact, STEPS)
     stands_still = 1e-7 if model == "cartesian" else 1e-9  # its steps are solved less accurately
     state, forces = plain_march(contact, path, 0.0 * forward_slip(contact), stands_still)
     assert run.mu == pytest.approx(path.mean(forces[:, 0]), abs=2 * TOLERANCE)
@@ -89,16 +72,17 @@ def test_found_state_is_that_of_the_plain_march(name, velocity, amplitude):
 @pytest.mark.parametrize("name", CASES)
 def test_second_half_of_the_period_mirrors_the_first(name):
     """A march over the whole period makes no use of the symmetry."""
-    motion, contact, path = CASES[name][1], contact_at(name, *SLOW), path_of(name, *SLOW)
+    problem, contact, path = case(name, *SLOW)
     cycle = PeriodMap(contact, path)
     result = find_periodic_state(cycle, forward_slip(contact), Goal(TOLERANCE, STEP_TOLERANCE))
     assert result.converged
-    whole = path_of(name, *SLOW, whole=True)
+    phase = np.concatenate([path.phase, path.phase[1:] + np.pi])
+    whole = make_path(problem.displacement, phase)
     march = contact.march(whole, result.start, STEP_TOLERANCE)
     assert energy_norm(contact, march.state - result.start) < 3 * TOLERANCE
-    first, second = march.forces[: STEPS + 1], march.forces[STEPS:]
+    first, second = np.split(march.forces[1:], 2)
     assert second[:, 0] == pytest.approx(first[:, 0], abs=3 * TOLERANCE)
-    turning = 2 if motion.rotates else 1  # the force or torque along the oscillation
+    turning = 2 if problem.motion.rotates else 1  # the force or torque along the oscillation
     assert second[:, turning] == pytest.approx(-first[:, turning], abs=3 * TOLERANCE)
     assert np.abs(first[:, turning]).max() > 0.1
     mean = path.mean(result.march.forces)[0]
@@ -107,7 +91,7 @@ def test_second_half_of_the_period_mirrors_the_first(name):
 
 @pytest.mark.parametrize("name", CASES)
 def test_verdict_is_that_of_the_plain_map(name):
-    contact, path = contact_at(name, *SLOW), path_of(name, *SLOW)
+    _, contact, path = case(name, *SLOW)
     start = forward_slip(contact)
     enough = find_periodic_state(PeriodMap(contact, path), start, Goal(TOLERANCE, STEP_TOLERANCE))
     assert enough.converged and enough.residual <= enough.distance <= TOLERANCE

@@ -16,6 +16,7 @@ NARROW = "elliptic:forward=0.5,phase=30"
 EIGHT = "elliptic:forward=0.5,phase=0,forward_cycles=2"
 ACROSS = "normal:lateral=1,normal_cycles=2"
 RINGS = "radial", Resolution(32, 1, 128), (8e-3, 1e-3)
+TURNING = "polar", Resolution(16, 4, 64), (2e-2, 2.5e-3)
 
 
 def within(result, expected, slack=0.0):
@@ -76,8 +77,12 @@ def test_where_all_slides_the_mean_of_the_directions_is_left():
 @pytest.mark.parametrize(
     ("motion", "model", "resolution", "velocities"),
     [
-        *((motion, *RINGS) for motion in (NARROW, EIGHT, ACROSS, "normal:forward=1,phase=90")),
-        ("normal:angle=1", "polar", Resolution(16, 4, 64), (2e-2, 2.5e-3)),
+        *((motion, *RINGS) for motion in ("transverse", NARROW, EIGHT, ACROSS)),
+        ("normal:forward=1,phase=90", *RINGS),
+        *(
+            (one, "polar", Resolution(16, 4, 64), (2e-2, 2.5e-3))
+            for one in ("bore", "normal:angle=1")
+        ),
     ],
 )
 def test_slow_marches_end_there(motion, model, resolution, velocities):

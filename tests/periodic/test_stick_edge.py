@@ -16,7 +16,6 @@ from microslip.periodic.static_limit import (
     stick_edges,
 )
 from microslip.scene.by_name import motion_named, pressure_named
-from microslip.scene.hertz import HERTZ
 from microslip.scene.problem import Problem
 from microslip.theory import hertz, indenters
 
@@ -29,13 +28,6 @@ def focus_of(motion, velocity, amplitude, model, pressure="hertz"):
     )
 
 
-def test_a_circle_sticks_less_than_a_line_that_is_as_long():
-    motion = motion_named("elliptic")
-    for amplitude in (0.1, 0.375, 0.7):
-        (radius,) = focus_of("elliptic", 1e-3, amplitude, "radial").radii
-        assert 0.2 < radius < motion.focus(1e-3, amplitude, HERTZ)
-
-
 @pytest.mark.parametrize("name", ["power:exponent=1", "power:exponent=8", "punch"])
 @pytest.mark.parametrize("amplitude", [0.3, 1.0])
 def test_a_bore_sticks_inside_the_radius_of_its_closed_form(name, amplitude):
@@ -44,14 +36,6 @@ def test_a_bore_sticks_inside_the_radius_of_its_closed_form(name, amplitude):
     assert radius == pytest.approx(
         indenters.torsion_stick_radius(pressure_named(name), angle), abs=0.01
     )
-
-
-@pytest.mark.parametrize(("motion", "model"), [("transverse", "radial"), ("bore", "polar")])
-def test_a_contact_with_a_hole_sticks_on_a_ring_that_gets_narrower(motion, model):
-    result = [focus_of(motion, 0.0, amplitude, model, RING).radii for amplitude in (0.1, 0.7)]
-    inner, outer = np.transpose(result)
-    assert np.all(np.diff(inner) > 0.0) and np.all(np.diff(outer) < 0.0)
-    assert 0.5 < inner[0] < 0.52 and 0.97 < outer[0] < 1.0
 
 
 @pytest.mark.slow

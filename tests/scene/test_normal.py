@@ -106,14 +106,6 @@ def test_a_contact_that_grows_keeps_load_and_stiffness(build):
     assert stuck == pytest.approx(1.3 * HERTZ.stiffness, rel=0.03)
 
 
-def test_in_step_with_the_load_an_oscillation_drives_the_contact():
-    """If the load is larger during the forward motion than during the backward motion, friction
-    decreases or propels."""
-    motion = "normal:forward=1,phase={}"
-    ahead, back = (microslip.solve(motion.format(p), 0.02, 0.8).mu_macro for p in (180, 0))
-    assert ahead < -0.3 and back > 0.5
-
-
 @pytest.mark.parametrize(
     ("motion", "settings", "message"),
     [

@@ -119,25 +119,6 @@ def test_the_error_covers_the_resolution_of_a_file(
     assert result.converged == (result.mu_macro_error <= tolerance)
 
 
-@pytest.mark.slow
-def test_a_file_too_coarse_for_the_tolerance_is_not_converged(tmp_path):
-    axis = np.linspace(-0.75, 0.75, 4)
-    file = csv(tmp_path / "p.csv", axis, axis, sphere(axis[:, None], axis[None, :]))
-    result = microslip.solve("transverse", 0.1, 0.5, pressure=file, tolerance=1e-2)
-    assert not result.converged and result.mu_macro_error > 1e-2
-    assert f"resolution leaves {result.friction.by_source['model']:.1e} open" in result.reason
-
-
-@pytest.mark.long
-def test_a_pressure_that_is_not_symmetric_is_marched_over_the_whole_period(tmp_path):
-    """The mirror image of the motion is the motion half a period later."""
-    values = HERTZIAN * (1.0 + 0.5 * AXIS)
-    names = [csv(tmp_path / f"{k}.csv", values=values[:, ::k]) for k in (1, -1)]
-    one, other = (microslip.solve("bore", 0.3, 1.0, pressure=n, tolerance=4e-2) for n in names)
-    assert one.converged
-    assert one.mu_macro == pytest.approx(other.mu_macro, abs=1e-3)
-
-
 # Formats of files
 
 PLAIN = HEAD + "0,0,1\n0,1,2\n1,0,3\n1,1,4\n"

@@ -32,6 +32,7 @@ def test_what_oscillates_sideways_alone_is_the_transverse_motion(motion):
         ("transverse-bore", 0.1, 0.8, COARSE),
         ("transverse-bore:angle=0.4,phase=50", 0.3, 2.0, COARSE | {"poisson": 0.5}),
         ("transverse-bore:phase=90", 0.2, 0.5, COARSE | {"pressure": "power:exponent=1"}),
+        *(("transverse", 0.1, 0.6, {"pressure": name}) for name in ("punch", "ring")),
     ],
 )
 def test_rings_and_squares_agree(motion, velocity, amplitude, settings):
@@ -50,19 +51,6 @@ def test_a_large_ellipse_is_that_of_a_rigid_block(forward, phase):
     assert answer.mu_macro == pytest.approx(exact, abs=0.01)
     rigid = microslip.solve(motion, 0.3 * 200, 200.0, model="rigid")
     assert rigid.mu_macro == pytest.approx(exact, abs=1e-3)
-
-
-def test_a_figure_of_eight_may_drive_the_contact_forward():
-    """The mean force can be negative, and agrees with a plain march."""
-    motion, place = "elliptic:forward_cycles=2,phase=45", (0.02, 1.0)
-    answer = microslip.solve(motion, *place)
-    plain = microslip.history(motion, *place, cells=24, steps=256, periods=40)
-    last = plain.phase >= plain.phase[-1] - 2 * np.pi - 1e-9
-    mean = np.trapezoid(plain.force_forward[last], plain.phase[last]) / (2 * np.pi)
-    assert answer.converged
-    assert answer.mu_macro == pytest.approx(mean, abs=5e-3)
-    opposite = microslip.solve("elliptic:forward_cycles=2,phase=225", *place)
-    assert min(answer.mu_macro, opposite.mu_macro) < -0.02
 
 
 def test_an_ellipse_without_a_lateral_part_is_the_longitudinal_motion():

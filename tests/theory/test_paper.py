@@ -45,22 +45,6 @@ def test_stick_zone_of_any_pressure():
 # Continuous bore
 
 
-@pytest.mark.parametrize("velocity", [0.05, 0.5, 0.8, 1.0, 1.3, 10.0])
-def test_bore_forces_are_the_disc_integrals_of_the_steady_traction(velocity):
-    # Polar midpoint rule about the contact centre; r = sin(beta) makes the edge smooth.
-    n, m = 600, 800
-    beta = (np.arange(n) + 0.5) * np.pi / (2 * n)
-    angle = (np.arange(m) + 0.5) * 2 * np.pi / m
-    r = np.sin(beta)[:, None]
-    area = (np.cos(beta) * np.pi / (2 * n))[:, None] * r * 2 * np.pi / m
-    x, y = r * np.cos(angle), r * np.sin(angle)
-    lateral, forward = theory.steady_bore_traction(x, y, velocity)
-    assert np.sum(lateral * area) == pytest.approx(0, abs=1e-12)  # Eq 16
-    assert -np.sum(forward * area) == pytest.approx(theory.bore_forward(velocity), abs=1e-5)
-    torque = -np.sum((forward * x - lateral * y) * area) / hertz.TORQUE_FULL_SLIP
-    assert torque == pytest.approx(theory.bore_torque(velocity), abs=1e-5)
-
-
 @pytest.mark.parametrize("ratio", [0, 1e-8, 0.3, 0.99, 1 - 1e-9, 1, 1 + 1e-9, 1.5, 10, 1e5, 1e8])
 def test_kernels_are_eqs_19_and_20(ratio):
     def distance(t):
@@ -113,53 +97,6 @@ def test_static_bore_and_its_misprint():
 
 
 # The exact limits for v -> 0
-
-
-def best_forward_traction(bound, oscillation, direction):
-    """Largest forward part of a constant traction R with |R +- oscillation| <= bound.
-
-    `direction` is the angle of the oscillating traction from the forward axis. The search is a
-    brute force over the boundary of the two discs of possible R.
-    """
-    theta = np.linspace(-np.pi, np.pi, 20001)
-    own = oscillation * np.exp(1j * direction)
-    best = -np.inf
-    for centre in (own, -own):
-        edge = centre + bound * np.exp(1j * theta)
-        best = max(best, np.max(edge.real[np.abs(edge + centre) <= bound * (1 + 1e-9)]))
-    return best
-
-
-@pytest.mark.parametrize("amplitude", [0.1, 0.5, 0.9])
-def test_static_translations_are_the_best_constant_traction_point_by_point(amplitude):
-    c = np.sqrt(1 - amplitude)
-    nodes, weights = np.polynomial.legendre.leggauss(60)
-    beta = np.pi / 4 * (nodes + 1)
-    area = np.pi / 4 * weights * np.cos(beta) * c * 2 * np.pi * c * np.sin(beta)
-    total = {0.0: 0.0, np.pi / 2: 0.0}
-    for r, ring in zip(c * np.sin(beta), area, strict=True):
-        own = hertz.mindlin_traction(r, amplitude)
-        for direction in total:
-            total[direction] += ring * best_forward_traction(
-                hertz.friction_bound(r), own, direction
-            )
-    assert theory.static_limit_longitudinal(amplitude) == pytest.approx(total[0.0], abs=1e-4)
-    assert theory.static_limit_transverse(amplitude) == pytest.approx(total[np.pi / 2], abs=1e-4)
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize("amplitude", [0.3, 1.0, 2.0])
-def test_static_bore_limit_is_the_best_constant_traction_point_by_point(amplitude):
-    c = theory.bore_stick_radius(amplitude)
-    nodes, weights = np.polynomial.legendre.leggauss(12)
-    beta = np.pi / 4 * (nodes + 1)
-    area = np.pi / 4 * weights * np.cos(beta) * c * 2 * np.pi * c * np.sin(beta)
-    angles = (np.arange(12) + 0.5) * np.pi / 24  # a quarter of the circle is enough
-    total = 0.0
-    for r, ring in zip(c * np.sin(beta), area, strict=True):
-        bound, own = hertz.friction_bound(r), hertz.lubkin_traction(r, c)
-        total += ring * np.mean([best_forward_traction(bound, own, t) for t in angles])
-    assert theory.static_limit_bore(amplitude) == pytest.approx(total, abs=3e-4)
 
 
 BAD = {
