@@ -1,6 +1,8 @@
-"""Imports between packages: only from those to the left in RULE."""
+"""Imports between packages: only from those to the left in RULE.  Rules of Snakemake, which ruff
+cannot read: only public names."""
 
 import ast
+import re
 from functools import cache
 from pathlib import Path
 
@@ -75,11 +77,17 @@ def test_physics_knows_no_files_workflow_or_plots():
     assert not names
 
 
-def test_nothing_else_in_the_physics_knows_where_files_are():
-    named = ("foundation", "named_files")
-    users = {path for path in MODULES if any(name[:2] == named for name in imported(path)[0])}
-    readers = {"scene/by_name.py", "scene/files.py"}
-    assert {path.as_posix() for path in users if path.parts[0] in PHYSICS} == readers
+TOP = Path(__file__).parents[1]
+RULES = [TOP / "Snakefile", TOP / "workflow" / "Snakefile", *(TOP / "workflow").rglob("*.smk")]
+WORKFLOW = {"source_path", "basedir", "current_basedir", "cores", "configfiles"}
+"""Attributes of the object `workflow` that rules may use: paths, cores, configuration files."""
+
+
+def test_rules_use_public_names_of_snakemake():
+    text = "".join(re.sub("#.*", "", path.read_text("utf-8")) for path in RULES)
+    assert set(re.findall(r"(?<![/\w])workflow\.(\w+)", text)) <= WORKFLOW
+    assert not re.findall(r"\._(?!asdict)\w+", text)
+    assert set(re.findall(r"\b(?:from|import) (snakemake[.\w]*)", text)) == {"snakemake.utils"}
 
 
 def test_type_checkers_find_the_type_hints():

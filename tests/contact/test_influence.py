@@ -100,6 +100,10 @@ def test_ring_influence_is_the_average_over_both_rings(i, j):
 def test_ring_influence_is_reciprocal_and_positive_definite(focus):
     rings = make_rings(12, focus)
     near, far = ring_influence(rings.psi, 17, True)
+    for count in (2, 3, 6):  # the recurrences depend on it
+        fewer, others = ring_influence(rings.psi, count, True)
+        assert fewer == pytest.approx(near[:count], rel=1e-9, abs=1e-13)
+        assert others == pytest.approx(far[: len(others)], rel=1e-9, abs=1e-12)
     area = rings.area[:, None]
     symmetric = near * area
     assert symmetric == pytest.approx(symmetric.transpose(0, 2, 1), rel=1e-12)

@@ -18,7 +18,6 @@ import math
 import os
 import re
 import shutil
-import stat
 import subprocess
 import sys
 import sysconfig
@@ -28,8 +27,7 @@ from pathlib import Path
 
 import pytest
 import yaml
-from stubs import certified_stub, job_server
-from stubs.workflow_project import ENVIRONMENT
+from stubs import certified_stub
 
 import microslip
 from microslip.config import load
@@ -141,29 +139,12 @@ def make_place(page, folder, results):
         shutil.copytree(ROOT / "src", folder / "src")
     else:
         (folder / "src").symlink_to(ROOT / "src")
-    scripts = folder / ".venv" / "bin"
-    if changes_sources:
-        (folder / ".venv").symlink_to(Path(sysconfig.get_path("scripts")).parent)
-    else:
-        make_scripts(scripts)
+    (folder / ".venv").symlink_to(Path(sysconfig.get_path("scripts")).parent)
     (folder / "path" / "to").mkdir(parents=True)
     (folder / "path" / "to" / "microslip").symlink_to(ROOT)
     shutil.copytree(results, folder / "results")
-    path = f"{scripts}:/usr/local/bin:/usr/bin:/bin"
+    path = f"{folder}/.venv/bin:/usr/local/bin:/usr/bin:/bin"
     return os.environ | {"PATH": path} | ({"PYTHONPATH": "src"} if changes_sources else {})
-
-
-def make_scripts(folder):
-    """Write the commands of this environment; those of Python fork a process with all libraries."""
-    own = Path(sysconfig.get_path("scripts"))
-    python = job_server.python(tuple(sorted(ENVIRONMENT.items())))
-    folder.mkdir(parents=True)
-    for path in own.iterdir():
-        (folder / path.name).symlink_to(python if path.name.startswith("python") else path)
-    for name in ("microslip", "snakemake"):
-        (folder / name).unlink()
-        (folder / name).write_text(f'#!/bin/sh\nexec {python} {own / name} "$@"\n')
-        (folder / name).chmod(stat.S_IRWXU)
 
 
 # Running a block

@@ -4,11 +4,11 @@ import json
 import os
 import re
 import shutil
+import subprocess
 import sys
 from pathlib import Path
 
 import yaml
-from stubs import job_server
 
 from microslip.foundation import compiled
 
@@ -50,6 +50,22 @@ TINY = {
 ALL_JOBS = {"solve_batch": 5, "make_products": 1, "all": 1}
 
 
+def snakemake(arguments, folder, environment=ENVIRONMENT):
+    """Result of Snakemake with these arguments in a folder, as from subprocess.run.
+
+    The virtual environment is not activated: only the path of the executable is used.
+    """
+    return subprocess.run(
+        [SNAKEMAKE, *arguments],
+        cwd=folder,
+        env=environment,
+        stdin=subprocess.DEVNULL,
+        capture_output=True,
+        text=True,
+        timeout=900,
+    )
+
+
 def jobs_in(message):
     """Number of jobs by rule, from Snakemake's table before a run; {} if there is nothing to do."""
     table = re.search(r"^-+  -+\n(.*?)^total", message, re.MULTILINE | re.DOTALL)
@@ -83,8 +99,7 @@ class Project:
         (self.folder / "tiny.yaml").write_text(yaml.safe_dump(configuration))
 
     def snakemake(self, *arguments):
-        # The virtual environment is not activated: only the path of the executable is used.
-        return job_server.snakemake(arguments, self.folder, ENVIRONMENT)
+        return snakemake(arguments, self.folder)
 
     def run(self, *targets):
         done = self.snakemake(*targets, *RUN)

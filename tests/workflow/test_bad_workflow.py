@@ -5,8 +5,7 @@ from pathlib import Path
 
 import pytest
 from bad_input_tables.bad_configurations import FILES, GOOD, changed
-from stubs import job_server
-from stubs.workflow_project import ENVIRONMENT
+from stubs.workflow_project import snakemake
 
 ROOT = Path(__file__).parents[2]
 pytestmark = pytest.mark.slow
@@ -43,7 +42,7 @@ def ended(folder, text, files, arguments):
         if content is not FOLDER:
             path.write_bytes(content)
     options = ["--configfile", "given.yaml"] if text else []
-    return job_server.snakemake([*arguments.split(), *options], folder, ENVIRONMENT, timeout=120)
+    return snakemake([*arguments.split(), *options], folder)
 
 
 @pytest.mark.parametrize("case", CASES)

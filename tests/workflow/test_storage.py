@@ -12,8 +12,7 @@ import time
 
 import pytest
 import yaml
-from stubs import job_server
-from stubs.workflow_project import ENVIRONMENT, RUN, TINY
+from stubs.workflow_project import ENVIRONMENT, RUN, TINY, snakemake
 
 pytest.importorskip("moto.server")
 pytest.importorskip("snakemake_storage_plugin_s3")
@@ -63,7 +62,7 @@ def run(folder, address, *arguments):
         "SNAKEMAKE_STORAGE_S3_SECRET_KEY": "b",
     }
     environment = {**ENVIRONMENT, **KEYS, **plugin}
-    process = job_server.snakemake([*arguments, *RUN, *STORAGE], folder, environment, timeout=600)
+    process = snakemake([*arguments, *RUN, *STORAGE], folder, environment)
     assert process.returncode == 0, process.stderr
     return process.stdout + process.stderr
 
