@@ -27,20 +27,6 @@ def test_every_requirement_has_a_lower_bound(name):
             assert ">=" in operators and operators <= {">=", "<"}, requirement
 
 
-@pytest.mark.parametrize(
-    ("name", "version"),
-    [
-        ("matplotlib", "3.9.4"),
-        ("xarray", "2024.11.0"),  # interp of a dataset along two axes fails
-        ("netCDF4", "1.7.0"),  # withdrawn
-        ("snakemake", "9.3.5"),  # prints "Waiting for more resources" for every job
-        ("snakemake", "10.0.0"),  # changes the interfaces of plug-ins
-    ],
-)
-def test_releases_that_fail_are_excluded(name, version):
-    assert not DEPENDENCIES[name].contains(version)
-
-
 def test_the_conda_recipe_requires_the_same_versions():
     names = {"netCDF4": "netcdf4", "PyYAML": "pyyaml", "dask": "dask-core"}
     names |= {"matplotlib": "matplotlib-base", "snakemake": "snakemake-minimal"}

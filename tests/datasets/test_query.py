@@ -9,7 +9,6 @@ import pytest
 import xarray as xr
 from stubs.eq6_map import map_of, places
 
-import microslip
 from microslip.datasets.interpolation import Axis, Grid
 from microslip.foundation.errors import InputError
 from microslip.theory import paper
@@ -195,18 +194,3 @@ def test_bad_points_and_datasets_are_refused_by_name(data, place, argument):
     with pytest.raises(InputError) as caught:
         data.microslip.at(**place)
     assert caught.value.argument == argument
-
-
-def test_the_bound_covers_the_solver_between_the_points_of_a_small_sweep():
-    velocity, amplitude = np.geomspace(0.1, 1.0, 5), np.linspace(0.5, 1.5, 5)
-    results = [
-        [microslip.solve("transverse", v, a, tolerance=1e-3) for v in velocity.tolist()]
-        for a in amplitude.tolist()
-    ]
-    data = map_of(
-        np.array([[one.mu_macro for one in row] for row in results]), velocity, amplitude, 1e-3
-    )
-    for v, a in ((0.13, 0.6), (0.4, 1.1), (0.8, 1.45)):
-        answer, truth = data.microslip.at(v, a), microslip.solve("transverse", v, a, tolerance=1e-4)
-        miss = abs(float(answer.mu_macro) - truth.mu_macro)
-        assert miss <= float(answer.mu_macro_error) + truth.mu_macro_error

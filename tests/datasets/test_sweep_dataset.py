@@ -104,13 +104,6 @@ def test_errors_convergence_and_effort_are_there(tmp_path, monkeypatch):
         assert kinds <= {"int8", "int16", "int32", "float32", "float64"}
 
 
-def test_a_point_that_the_solver_failed_at_is_a_gap(tmp_path, monkeypatch, solver):
-    monkeypatch.setattr("microslip.solve", Mock(side_effect=SolverError("stalled")))
-    data = built("continuous_bore", tmp_path)
-    assert np.isnan(data.mu_macro).all()
-    assert not data.converged.any() and (data.cells == 0).all()
-
-
 LIMITS = {
     "transverse": {
         "mu_large_amplitude": paper.large_amplitude_transverse,

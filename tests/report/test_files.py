@@ -2,13 +2,11 @@
 
 import json
 import os
-import runpy
 import subprocess
 import sys
 from pathlib import Path
 
 import matplotlib
-import numpy as np
 import pytest
 from PIL import Image
 from stubs import figures_stub as stub
@@ -74,20 +72,3 @@ def test_a_figure_can_be_drawn_with_any_backend_in_the_environment(backend, tmp_
     if backend != "Qt4Agg":
         assert done.stdout.strip() == backend
     assert (tmp_path / "a.png").read_bytes().startswith(b"\x89PNG")
-
-
-def test_images_of_the_pages_are_made_from_figures_and_are_smaller(tmp_path, monkeypatch):
-    root = Path(__file__).parents[2]
-    make = runpy.run_path(str(root / "docs" / "make_images.py"))
-    figure = drawing.draw("map", {"transverse": stub.fake_transverse()})
-    path = drawing.save(figure, tmp_path / "figures" / "fig2.png")
-    monkeypatch.setitem(make["main"].__globals__, "IMAGES", tmp_path)
-    make["main"](tmp_path, "fig2")
-    with Image.open(tmp_path / "fig2.png") as image, Image.open(path) as full:
-        assert [round(1.5 * side) for side in image.size] == pytest.approx(full.size, abs=1)
-        plain = full.convert("RGB").resize(image.size, Image.Resampling.LANCZOS)
-        away = np.abs(np.asarray(image.convert("RGB"), int) - np.asarray(plain, int))
-        assert np.percentile(away, 99) < 20  # neighbouring bands of the map differ by 12
-    assert (tmp_path / "fig2.png").stat().st_size < 0.3 * path.stat().st_size
-    with pytest.raises(SystemExit, match="does not exist"):
-        make["main"](tmp_path, "fig9")

@@ -1,7 +1,6 @@
 """Numbers of the claims against quadrature, other models and the solver."""
 
 import math
-from unittest.mock import Mock
 
 import numpy as np
 import pytest
@@ -10,9 +9,8 @@ from stubs import studies_stub
 from stubs.claims_stub import configured, result
 
 import microslip
-from microslip.answer.period import NoPeriodicState, patches
-from microslip.contact.contact import StepFailure
-from microslip.studies import evidence, registry, static_limits
+from microslip.answer.period import patches
+from microslip.studies import static_limits
 from microslip.sweeps import batch
 from microslip.theory import hertz
 from microslip.theory import paper as theory
@@ -45,18 +43,6 @@ def test_what_is_left_of_the_bound_adds_up_to_the_limit_on_rings(motion, amplitu
     model = "radial" if motion == "transverse" else "polar"
     rings = microslip.solve(motion, 0.0, amplitude, model=model)
     assert left == pytest.approx(rings.mu_macro, abs=rings.mu_macro_error)
-
-
-@pytest.mark.parametrize("motion", ["transverse", "bore"])
-def test_all_is_used_in_the_slip_ring_and_less_inside(motion):
-    radius = np.linspace(0, 1, 101)
-    used = static_limits.used_share(motion, radius, 0.5)
-    left = static_limits.left_share(motion, radius, 0.5)
-    stick = {"transverse": math.sqrt(0.5), "bore": float(theory.bore_stick_radius(0.5))}[motion]
-    assert used[radius > stick] == pytest.approx(1.0)
-    assert left[radius > stick] == pytest.approx(0.0, abs=1e-6)
-    assert (np.diff(used) >= -1e-12).all()
-    assert (used[radius < stick] < 1).all()
 
 
 @pytest.mark.parametrize("amplitude", [4.0, 6.0, 9.0])
@@ -102,17 +88,6 @@ def test_a_single_run_is_what_the_command_line_has_and_is_timed_by_nobody():
     assert batch.computed(request)[0] == record
 
 
-@pytest.mark.parametrize("error", [NoPeriodicState, StepFailure])
-def test_a_period_that_is_not_found_is_a_gap(error, monkeypatch):
-    fails = Mock(side_effect=error("no periodic state"))
-    monkeypatch.setattr("microslip.answer.period.period", fails)
-    place = {"motion": "bore", "velocity": "0.1", "amplitude": "1", "poisson": "0"}
-    request = {"kind": "patches", "cells": 8, "angles": 8, "steps": 16} | place
-    record, _ = batch.computed(request)
-    assert record["result"]["converged"] is False
-    assert "no periodic state" in record["result"]["reason"]
-
-
 @pytest.mark.parametrize("motion", ["bore", "transverse"])
 def test_patches_are_shares_of_a_period(motion):
     sizes = {"cells": 12, "angles": 8, "steps": 32}
@@ -145,13 +120,3 @@ def test_patches_of_the_slow_bore_lie_where_theory_has_them():
         sticks = result["moment_share"][moment] < 1.0
         wrong = (inside != sticks) * result["area"]
         assert wrong.sum() < 0.15 * (inside * result["area"]).sum()
-
-
-def test_the_study_asks_for_the_papers_run_as_the_paper_made_it():
-    from microslip.periodic.methods import paper
-
-    request = registry.pieces("claims", configured().claims)[0][0]  # the slowest job
-    assert request in [evidence.paper_run("transverse", a) for a in (0.5, 2.0)]
-    assert (request["cells"], request["steps"]) == (paper.CELLS, paper.STEPS_PER_PERIOD)
-    assert float(request["tolerance"]) == paper.STRESS_TOLERANCE
-    assert request["method"] == "paper"

@@ -14,16 +14,13 @@ from stubs import claims_stub, studies_stub
 from stubs.studies_stub import configured
 from stubs.sweep_stub import Solver
 
-import microslip
 from microslip.answer import point
 from microslip.answer.limits import choose_model
-from microslip.config.settings import Sweep
 from microslip.contact.contact import StepFailure
 from microslip.contact.registry import MODELS
 from microslip.datasets import netcdf
 from microslip.foundation.canonical import canonical_json, sha256
 from microslip.foundation.errors import SolverError
-from microslip.periodic.methods import paper
 from microslip.scene.by_name import MOTIONS, motion_named
 from microslip.scene.problem import Problem
 from microslip.studies import accuracy, registry, requests, stability
@@ -63,13 +60,6 @@ def test_resolutions_increase_in_all_directions_at_once(model):
     assert ((np.diff(levels, axis=0) > 0) | (levels[1:] == 1)).all()
     assert (levels[:, 2] % 2 == 0).all()
     assert (np.diff([tolerance for *_, tolerance in rungs]) < 0).all()
-
-
-def test_a_reference_is_the_request_of_a_sweep():
-    point = {"velocity": [0.1], "amplitude": [0.5], "tolerance": 1e-6}
-    (one,) = request.points_of(Sweep(motion="transverse", **point)).requests
-    assert requests.reference(MID) == one
-    assert requests.reference(MID._replace(poisson=0.5))["tolerance"] == "3e-5"
 
 
 @pytest.mark.parametrize("study", ["accuracy", "stability"])
@@ -275,47 +265,6 @@ def test_methods_are_compared_with_the_shipped_one_where_both_were_run():
     assert result["searches", "shipped"].item() == pytest.approx(2.0)
     assert result["solvers of a step", "full-newton"].item() == pytest.approx(1.5)
     assert result["models", "paper"].item() == pytest.approx(500.0)
-
-
-# Under a pressure
-
-CONE = "power:exponent=1"
-
-
-def test_a_trial_and_patches_use_the_pressure_of_the_request():
-    """A cone has a higher pressure in the middle than a sphere, so its friction differs."""
-    place = {"motion": "transverse", "velocity": "0.1", "amplitude": "0.8", "poisson": "0"}
-    how = {"model": "radial", "method": "shipped", "cells": 8, "angles": 4, "steps": 16}
-    run = place | how | {"kind": "run", "tolerance": "1e-4"}
-    sphere, cone = evaluate.computed(run), evaluate.computed(run | {"pressure": CONE})
-    settings_of = {"cells": 8, "steps": 16, "tolerance": None, "pressure": CONE}
-    certified = microslip.solve("transverse", 0.1, 0.8, **settings_of)
-    assert cone["mu_macro"] == pytest.approx(certified.mu_macro, abs=1e-4)
-    assert abs(cone["mu_macro"] - sphere["mu_macro"]) > 1e-3
-    sizes = {"kind": "patches", "cells": 8, "angles": 4, "steps": 16}
-    sphere, cone = (evaluate.computed(place | sizes | more) for more in ({}, {"pressure": CONE}))
-    assert cone["converged"] and cone["moment_share"] != sphere["moment_share"]
-
-
-def test_the_papers_run_uses_the_pressure_of_the_request(monkeypatch):
-    """The friction bounds of the squares are the loads of the pressure."""
-    from microslip.scene.by_name import pressure_named
-
-    class Seen(Exception):
-        pass
-
-    def march(contact, path, state, tolerance):
-        raise Seen(contact.bound * contact.widths.prod())
-
-    monkeypatch.setattr("microslip.contact.squares.CartesianContact.march", march)
-    for name in ("hertz", CONE):
-        with pytest.raises(Seen) as caught:
-            point.run_trial(
-                "transverse", 0.1, 0.8, poisson=0.0, model="cartesian", method="paper",
-                cells=32, angles=1, steps=100, tolerance=1e-3, pressure=name,
-            )  # fmt: skip
-        loads = pressure_named(name).cell_loads(paper.CELLS)
-        assert np.array_equal(caught.value.args[0], loads)
 
 
 # Datasets of all studies

@@ -8,7 +8,8 @@ from stubs.unpacked_period import unpacked
 
 import microslip
 from microslip.answer.period import NoPeriodicState
-from microslip.sweeps import batch, evaluate, period_codec
+from microslip.contact.contact import StepFailure
+from microslip.sweeps import batch, period_codec
 
 POINTS = [("transverse", "0.1", "0.6", "0"), ("transverse", "0.1", "0.6", "0.3")]
 POINTS += [("bore", "0.05", "0.7", "0.3"), ("zigzag", "0.2", "1", "0")]
@@ -40,8 +41,12 @@ def test_a_stored_period_is_the_computed_one_within_half_a_step(point, tmp_path)
     assert (result["mu_macro"], result["converged"]) == (truth.mu_macro, truth.converged)
 
 
-def test_where_there_is_no_state_a_result_says_so(monkeypatch):
-    none = Mock(side_effect=NoPeriodicState("velocity = 0.1: no periodic state"))
-    monkeypatch.setattr("microslip.period", none, raising=False)
-    result = evaluate.computed(asked(POINTS[0]))
-    assert result == {"converged": False, "reason": "velocity = 0.1: no periodic state"}
+@pytest.mark.parametrize(
+    ("kind", "function"),
+    [("period", "microslip.period"), ("patches", "microslip.answer.period.period")],
+)
+@pytest.mark.parametrize("error", [NoPeriodicState, StepFailure])
+def test_where_there_is_no_state_a_result_says_so(kind, function, error, monkeypatch):
+    monkeypatch.setattr(function, Mock(side_effect=error("no periodic state")), raising=False)
+    result = batch.computed(asked(POINTS[0]) | {"kind": kind})[0]["result"]
+    assert result["converged"] is False and "no periodic state" in result["reason"]

@@ -9,14 +9,11 @@ from stubs import certified_stub
 from microslip.sweeps import batch, map_refinement
 from microslip.sweeps.map_coordinates import MapCoordinates
 from microslip.sweeps.map_refinement import (
-    LOWER_ORDER,
     RESOLVED,
     SHARE,
     SMALLEST,
-    halves_of,
     nodes_of,
     refine_cells,
-    surpluses_of,
 )
 from microslip.theory.exact import Kinks, kink_velocity, kinks_of
 
@@ -80,16 +77,6 @@ def test_kinks_are_borders_of_patches():
         assert velocity == pytest.approx(float(kink), rel=1e-8)
 
 
-def test_nodes_are_evenly_spaced_in_the_scales():
-    # slow: in the cube root of the velocity; fast: in log(velocity) and log(1 + 2 A)
-    slow = np.cbrt([BORE.place((x, 0.5))[0] for x in (0.0, 0.25, 0.5, 0.75, 1.0)])
-    assert np.diff(slow) == pytest.approx(np.full(4, (1.0 - 0.1) / 4), rel=1e-7)
-    fast = [BORE.place((x, 0.5))[0] for x in (2.0, 2.25, 2.5, 2.75, 3.0)]
-    assert fast == pytest.approx(np.geomspace(1.0, 10.0, 5))
-    amplitudes = [BORE.place((2.5, y))[1] for y in (0.0, 0.5, 1.0)]
-    assert amplitudes == pytest.approx([0.0, (np.sqrt(11.0) - 1.0) / 2.0, 5.0])
-
-
 def test_kinks_outside_the_range_divide_nothing_and_others_stay_clear_of_its_ends():
     assert MapCoordinates((2.0, 10.0), (0.0, 5.0), kinks_of("bore")).patches == PLAIN.patches
     assert MapCoordinates((0.1, 10.0), (1.0, 3.0), Kinks((1.0,))).patches == PLAIN.patches
@@ -99,25 +86,6 @@ def test_kinks_outside_the_range_divide_nothing_and_others_stay_clear_of_its_end
 
 
 # Cells
-
-
-def test_a_smooth_function_needs_one_cell():
-    # a linear function of the scaled coordinates
-    result, answers = played(PLAIN, lambda v, a: np.log(v) + np.log(1 + 2 * a), 1e-6)
-    assert list(result.cells) == PLAIN.patches
-    assert len(answers) == 25
-    assert result.errors == pytest.approx([0.0], abs=1e-8)
-
-
-def test_surpluses_are_differences_of_the_highest_order():
-    x = np.arange(5.0)
-    # the fourth difference of x^4 is 4! = 24, and its third differences are at most 60
-    assert surpluses_of(np.outer(x**4, np.ones(5))) == pytest.approx((24.0, 0.0))
-    # a cubic has no fourth differences; its third differences are 3! = 6
-    assert surpluses_of(np.outer(np.ones(5), x**3)) == pytest.approx((0.0, 6 * LOWER_ORDER))
-    # with three nodes, twice the second differences; those of x^2 are 2
-    three = np.multiply.outer(np.ones((5, 5)), [0.0, 1.0, 4.0])
-    assert surpluses_of(three) == pytest.approx((0.0, 0.0, 4.0))
 
 
 def test_cells_are_halved_along_the_worst_direction():
@@ -175,13 +143,6 @@ def test_a_jump_ends_at_the_smallest_cells():
     assert min(widths(result, 0)) == SMALLEST
     # the fourth differences of a jump of 1 are at most 3
     assert max(result.errors) == pytest.approx(3 * SHARE)
-
-
-def test_halves_have_the_nodes_of_the_whole():
-    cell, degrees = ((0.0, 1.0, 0.0), (1.0, 1.5, 1.0)), (4, 4, 2)
-    for direction in range(3):
-        nodes = [nodes_of(half, degrees) for half in halves_of(cell, direction)]
-        assert set(nodes_of(cell, degrees)) <= {*nodes[0], *nodes[1]}
 
 
 # Points of a sweep

@@ -101,8 +101,3 @@ def test_everything_in_a_request_counts_for_the_name_of_its_result(monkeypatch):
     monkeypatch.setattr(source_digest, "of_request", lambda request: "of other sources")
     assert keys[0] == keys[1]
     assert len({*keys, sweep.key_of(REQUEST)}) == len(keys)
-
-
-def test_a_row_has_all_velocities_of_equal_other_settings():
-    rows = [sweep.row_of(request) for request in requests_of()]
-    assert [rows.count(row) for row in rows] == [2] * 6

@@ -68,7 +68,7 @@ def test_the_default_configuration_is_found_from_another_folder_unless_that_has_
 
 @pytest.mark.long
 def test_files_that_a_configuration_names_lie_beside_it(ordinary):
-    """Files of a configuration are found from any folder; errors list the paths that were tried."""
+    """Files of a configuration are found from any folder."""
     place, far = beside(ordinary, "pads"), ordinary.folder.parent / "far"
     far.mkdir()
     pad = {"motion": "transverse", "pressure": "file:pad.csv", "tolerance": 0.1}
@@ -78,11 +78,6 @@ def test_files_that_a_configuration_names_lie_beside_it(ordinary):
     (far / "stroke.csv").write_text("lateral\n0\n1\n0\n-1\n")
     (far / "mine.yaml").write_text(yaml.safe_dump({"sweeps": {"pad": pad, "stroke": stroke}}))
     there = ("-s", "../microslip/Snakefile", "--configfile", "../far/mine.yaml")
-    refused = place.snakemake("results/pad.nc", *there, "-j1")
-    assert refused.returncode == 1
-    assert "'file:pad.csv': pad.csv cannot be read: No such file; looked for" in refused.stderr
-    assert f"{far / 'pad.csv'}, {place.folder / 'pad.csv'}" in refused.stderr
-    assert "Traceback" not in refused.stderr
     (far / "pad.csv").write_text("forward,lateral,pressure\n0,0,1\n0,1,1\n1,0,1\n1,1,1\n")
     process = place.snakemake("results/pad.nc", "results/stroke.nc", *there, "-j1")
     assert process.returncode == 0, process.stderr
@@ -193,14 +188,6 @@ def test_an_installed_copy_gives_the_same_dataset_and_finds_what_a_tree_made(ord
     shutil.copytree(ordinary.folder / ".snakemake", copy.folder / ".snakemake")
     process = installed(copy, "sweep", "--configfile", "tiny.yaml")
     assert "Nothing to be done" in process.stdout + process.stderr, process.stderr
-
-
-@pytest.mark.long
-def test_an_installed_copy_hands_on_arguments_and_exit_codes(ordinary, installed):
-    place = beside(ordinary, "refused")
-    process = installed(place, "sweep", "results/sideways.nc", *RUN)
-    assert process.returncode == 1
-    assert "sideways" in process.stderr
     # Without arguments: the sweeps of the paper, whose configuration is in the package.
     plan = installed(place, "sweep", "--dry-run", "--quiet", "host")
     assert re.search(r"make_products +1\n", plan.stdout)

@@ -1,6 +1,5 @@
 """Certified maps, other motions and the studies, run by Snakemake in a copy of the project."""
 
-import os
 import re
 
 import pytest
@@ -30,22 +29,9 @@ AXES = {"velocity": [0.1, 10], "amplitude": [0.5, 3], "model": "rigid", "toleran
 MAP = {"motion": "transverse", **AXES, "error": 0.03}
 
 
-def of_map(**changed):
+def test_one_command_makes_a_map_whose_error_holds_everywhere(tmp_path):
     figures = {"look": {"kind": "map", "sweep": "transverse"}}
-    return {"sweeps": {"transverse": MAP | changed}, "figures": figures}
-
-
-@pytest.fixture(scope="module")
-def certified(tmp_path_factory):
-    """A project with a certified map. Tests must not change it."""
-    return made(tmp_path_factory.mktemp("certified"), of_map())
-
-
-def map_bytes(project):
-    return (project.folder / "results" / "transverse.nc").read_bytes()
-
-
-def test_one_command_makes_a_map_whose_error_holds_everywhere(certified):
+    certified = made(tmp_path, {"sweeps": {"transverse": MAP}, "figures": figures})
     results = certified.folder / "results"
     data = microslip.open_map("transverse", results).load()
     assert float(data.cell_error.max()) <= data.error == 0.03
@@ -58,31 +44,6 @@ def test_one_command_makes_a_map_whose_error_holds_everywhere(certified):
     assert abs(float(answer.mu_macro) - rigid.mu_macro) <= float(answer.mu_macro_error)
     assert re.search(r"point/s", certified.said)  # progress
     assert "Nothing to be done" in certified.run()
-
-
-def test_a_map_that_was_killed_goes_on_from_its_journal_to_the_same_bytes(certified, tmp_path):
-    project = certified.copied(tmp_path / "killed")
-    (project.folder / "results" / "transverse.nc").resolve().unlink()
-    (batch,) = project.folder.glob("results/batches/*/*.jsonl")
-    lines = batch.read_bytes().splitlines(keepends=True)
-    journal = [line for line in lines if b'"result"' in line][:-7]
-    batch.with_suffix(".0.journal").write_bytes(b"".join(journal))
-    os.truncate(batch, 1000)
-    project.run()
-    assert map_bytes(project) == map_bytes(certified)
-    (log,) = project.folder.glob("results/logs/*/*-1.log")
-    assert ", 7 computed" in log.read_text()
-
-
-def test_a_looser_error_computes_nothing_anew(certified, tmp_path):
-    project = certified.copied(tmp_path / "looser")
-    before = project.records().keys()
-    project.configure(of_map(error=0.1))
-    project.run("transverse")
-    data = microslip.open_map("transverse", project.folder / "results").load()
-    assert data.error == 0.1
-    assert data.points <= len(before)
-    assert project.records().keys() == before
 
 
 # Other motions
@@ -180,27 +141,17 @@ METHOD = Method("my own way", integrator=EULER)
 '''
 
 
-def write_method(project, stem):
-    (project.folder / f"src/microslip/periodic/methods/{stem}.py").write_text(METHOD)
-
-
-@pytest.fixture(scope="module")
-def studies(tmp_path_factory):
-    """A project with a user's method, after both studies. Tests must not change it."""
-    project = Project(tmp_path_factory.mktemp("studies"))
-    project.configure(METHODS)
-    write_method(project, "my_method")
-    project.said = project.run()
-    return project
-
-
 def texts(name, path):
     """All texts of a figure drawn from the dataset at `path`."""
     with netcdf.whole(path) as data:
         return words(drawing.draw(name, {"study": data}))
 
 
-def test_a_method_in_one_new_file_is_in_the_datasets_and_in_the_figures(studies):
+def test_a_method_in_one_new_file_is_in_the_datasets_and_in_the_figures(tmp_path):
+    studies = Project(tmp_path)
+    studies.configure(METHODS)
+    (tmp_path / "src/microslip/periodic/methods/my_method.py").write_text(METHOD)
+    said = studies.run()
     results = studies.folder / "results"
     with netcdf.whole(results / "accuracy.nc") as data:
         own = data.isel(trial=data.trial_method.values == "my-method")
@@ -214,21 +165,5 @@ def test_a_method_in_one_new_file_is_in_the_datasets_and_in_the_figures(studies)
         assert (data.outcome.values > 0).all()
     assert "my-method" in texts("accuracy_profile", results / "accuracy.nc")
     assert "my-method" in texts("stability_atlas", results / "stability.nc")
-    assert "fast: " in studies.said and "my-method: " in studies.said
+    assert "fast: " in said and "my-method: " in said
     assert "Nothing to be done" in studies.run()
-
-
-def test_editing_a_method_computes_its_trials_again_but_a_comment_does_not(studies, tmp_path):
-    project = studies.copied(tmp_path / "copy")
-    project.append("src/microslip/periodic/methods/my_method.py", "\n# More to read.\n")
-    assert project.planned() == {}
-    project.append("src/microslip/periodic/methods/my_method.py", "\nSPARE = 1\n")
-    assert project.planned("accuracy", "stability")["solve_batch"] == 2
-
-
-def test_a_second_method_computes_its_own_trials_only(studies, tmp_path):
-    project = studies.copied(tmp_path / "copy")
-    write_method(project, "second_way")
-    methods = ["shipped", "second-way", "my-method"]
-    project.configure({**METHODS, "accuracy": {**METHODS["accuracy"], "methods": methods}})
-    assert project.planned("accuracy") == {"solve_batch": 1, "make_dataset": 1, "accuracy": 1}
