@@ -31,13 +31,6 @@ def cosine_kernel(r, s):
 # Pressure and rings
 
 
-def test_friction_bound_carries_the_load_and_the_full_slip_torque():
-    assert integral(lambda r: 2 * np.pi * r * hertz.friction_bound(r), 0, 1) == pytest.approx(1)
-    torque = integral(lambda r: 2 * np.pi * r**2 * hertz.friction_bound(r), 0, 1)
-    assert pytest.approx(torque, rel=1e-12) == hertz.TORQUE_FULL_SLIP
-    assert np.array_equal(hertz.friction_bound([1.0, 1.5]), [0.0, 0.0])
-
-
 @pytest.mark.parametrize("r", [1e-6, 0.3, 0.8, 1.0])
 def test_load_inside_is_the_integral_of_the_bound(r):
     load = integral(lambda s: 2 * np.pi * s * hertz.friction_bound(s), 0, r)
