@@ -49,4 +49,5 @@ def test_a_stored_period_is_the_computed_one_within_half_a_step(point, tmp_path)
 def test_where_there_is_no_state_a_result_says_so(kind, function, error, monkeypatch):
     monkeypatch.setattr(function, Mock(side_effect=error("no periodic state")), raising=False)
     result = batch.computed(asked(POINTS[0]) | {"kind": kind})[0]["result"]
-    assert result["converged"] is False and "no periodic state" in result["reason"]
+    assert result["converged"] is False and result["reason"].endswith("no periodic state")
+    assert ("crashed" in result) == (error is StepFailure)

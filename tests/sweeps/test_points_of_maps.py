@@ -180,7 +180,8 @@ def test_without_known_kinks_a_map_is_one_patch():
 
 def test_a_point_that_did_not_converge_is_unknown():
     sweep = configured().sweeps["map"]
-    answers, _ = map_refinement.refine(sweep, lambda requests: [{"result": {}} for _ in requests])
+    result = {"mu_macro": 0.5, "mu_macro_error": 1e-3, "converged": False}
+    answers, _ = map_refinement.refine(sweep, lambda asked: [{"result": result}] * len(asked))
     assert all(np.isnan(value) and np.isinf(error) for value, error in answers.values())
 
 
