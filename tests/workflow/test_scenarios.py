@@ -86,7 +86,9 @@ def test_again_there_is_nothing_to_do_whatever_the_triggers(finished):
 )
 def test_a_grown_axis_solves_its_new_points_alone(axis, values, batches, new, project):
     project.configure(configured(**{axis: values}))
-    assert jobs_in(project.run(DATASET))["solve_batch"] >= batches
+    output = project.run(DATASET)
+    assert jobs_in(output)["solve_batch"] >= batches
+    assert f"New points and runs: {new}\n" in output
     assert len(project.solved()) == 9 + new
     assert project.values(axis) == values
     assert project.planned(DATASET) == {}

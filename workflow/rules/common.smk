@@ -110,6 +110,9 @@ def look(place):
             load.refuse_unsolvable(CONFIGURATION, state.missing, source=ORIGIN)
         if HERE:
             state.link()
+    if HERE and state.missing and not IS_JOB:
+        maps = " and certified maps" if state.batches(certified=True) else ""
+        print(f"New points and runs: {state.new_points()}{maps}", file=sys.stderr)
     return state
 
 

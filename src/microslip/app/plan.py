@@ -13,7 +13,7 @@ Snakemake process parses the workflow.
 from __future__ import annotations
 
 import os
-from functools import cache
+from functools import cache, cached_property
 from itertools import count
 from pathlib import Path
 from typing import NamedTuple
@@ -25,7 +25,7 @@ from microslip.report.explorer import explorer
 from microslip.report.figures import drawing
 from microslip.studies import registry
 from microslip.sweeps import content, request
-from microslip.sweeps.batch import SourcesEdited
+from microslip.sweeps.batch import Job, SourcesEdited
 from microslip.sweeps.request import Batch
 
 BUILDERS = {
@@ -203,17 +203,29 @@ class Results:
         """Return the names, without extension, of the missing files that a rule makes."""
         return [self.stems[n] for n in self.missing if self.plan.products[n].rule == rule]
 
+    @cached_property
+    def _needed(self) -> dict[Path, Batch | None]:
+        """Return the batches that are needed for missing products and have no file, keyed by the
+        path of the file."""
+        needed: dict[Path, Batch | None] = {}
+        for name in self.missing:
+            paths = (self.folder / path for path in self.batch_files(name))
+            needed |= zip(paths, self.plan.batches(name).values(), strict=True)
+        return {path: batch for path, batch in needed.items() if not path.exists()}
+
     def batches(self, certified: bool) -> list[str]:
         """Return the names, without extension, of the batch files that are needed for missing
         products and do not exist.  If `certified` is true, return the batches of certified maps,
         otherwise all other batches."""
-        names = {}
-        for name in self.missing:
-            batches = self.plan.batches(name).values()
-            for path, batch in zip(self.batch_files(name), batches, strict=True):
-                if (batch is None) == certified and not (self.folder / path).exists():
-                    names[Path(path).stem] = batch
-        return list(names)
+        return [path.stem for path, b in self._needed.items() if (b is None) == certified]
+
+    def new_points(self) -> int:
+        """Count the points and runs that jobs will compute, except those of certified maps, which
+        depend on the results."""
+        requests: dict[Path, list[dict]] = {}
+        for path, block in self._needed.items():
+            requests.setdefault(path.parent, []).extend(block.requests if block else [])
+        return sum(len(Job(folder / "new").missing(own)) for folder, own in requests.items())
 
     def order_of_batch(self, folder: str, name: str) -> str:
         """Return the JSON text of a batch for its job.  For a certified map, the text contains only

@@ -352,11 +352,12 @@ class Family(Generic[T]):
         named, path = parse(text, self.argument), ""
         if named is not None and not named.is_code:
             return read_object(named, self.argument, self.create)
-        file_name = f"file:{text}" if "." in str(text).partition(":")[0] else "file:NAME"
-        names = [*self.classes, file_name, "NAME.py"]
+        names = [*self.classes, "file:NAME", "NAME.py"]
         if not isinstance(text, str) or text == "file":
             raise InputError(self.argument, text, f"allowed is one of {', '.join(names)}")
         if named is None:
+            if "." in text.partition(":")[0]:  # to suggest the prefix
+                names[-2] = f"file:{text}"
             name, words = spec.split(text, self.argument, names)
             cls: Any = self.classes[name]
         else:

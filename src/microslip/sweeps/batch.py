@@ -129,11 +129,9 @@ class Job(ExitStack):
     """
 
     def __init__(self, path: str | Path):
-        """path: path of the batch file.  Raises CacheError if the folder of this file cannot be
-        written."""
+        """path: path of the batch file."""
         super().__init__()
         self.path = Path(path)
-        files.refuse_unwritable(self.path.parent)
         self.records: dict[str, dict] = {}
         self.seconds: list[float] = []
         self._read: set[Path] = set()
@@ -146,18 +144,22 @@ class Job(ExitStack):
         """Return the records in the order of the requests.  Only missing records are computed.
 
         compute: function that yields (record, CPU time) for each request, in any order.  The
-        default calls `computed` for the requests one by one.
+        default calls `computed` for the requests one by one.  Raises CacheError if the folder of
+        the batch file cannot be written.
         """
-        self._find(requests)
-        keys = [key_of(request) for request in requests]
-        missing = dict(zip(keys, requests, strict=True))  # two requests can be equal
-        missing = {key: request for key, request in missing.items() if key not in self.records}
-        for record, took in (compute or partial(map, computed))(list(missing.values())):
+        files.refuse_unwritable(self.path.parent)
+        for record, took in (compute or partial(map, computed))(self.missing(requests)):
             self.records[record["key"]] = record
             self.seconds.append(took)
             if is_settled(record["result"]):
                 self._append(record)
-        return [self.records[key] for key in keys]
+        return [self.records[key_of(request)] for request in requests]
+
+    def missing(self, requests: Sequence[dict]) -> list[dict]:
+        """Return the requests without a record in the folder.  Each request is listed once."""
+        self._find(requests)
+        by_key = {key_of(request): request for request in requests}
+        return [request for key, request in by_key.items() if key not in self.records]
 
     def finish(self, records: Sequence[dict]) -> dict:
         """Write the given records to the batch file, and remove the journals that this file
