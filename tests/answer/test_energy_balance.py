@@ -25,7 +25,7 @@ QUARTER = 256
 
 def energy_of_slip(contact, path, march):
     """Friction bound times slip in a period, summed over all points and steps."""
-    stages = path.stages.shape[1]
+    stages = len(path.carry)
     bounds = contact.bound[None] if path.depth is None else contact.bounds_along(path)[:, None]
     bounds = bounds if len(bounds) == 1 else bounds[::stages]
     tractions = np.moveaxis(project(np.moveaxis(march.fields[::stages], 1, 0), bounds), 1, 0)

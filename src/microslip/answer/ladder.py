@@ -13,6 +13,7 @@ steps increases with the square root of the stroke and with the natural frequenc
 from __future__ import annotations
 
 import math
+from bisect import bisect_left
 from dataclasses import dataclass, replace
 from typing import NamedTuple
 
@@ -109,8 +110,7 @@ class Ladder:
         """Return the index in LEVELS of the first level at a tolerance."""
         least = self.start * RATIO ** math.log10(LOOSEST / min(tolerance, LOOSEST))
         # rounding of the power must not skip a level
-        enough = (k for k, n in enumerate(LEVELS) if n > least or math.isclose(n, least))
-        return next(enough, len(LEVELS) - 1)
+        return min(bisect_left(LEVELS, (1.0 - 1e-9) * least), len(LEVELS) - 1)
 
 
 class Kind(NamedTuple):

@@ -323,15 +323,17 @@ def refuse(problem: Problem, model: str, method: str = SHIPPED) -> None:
         Name of the method.
     """
     motion, drive, periodic = problem.motion, problem.drive, problem.motion.periodic
-    shipped, lack = method == SHIPPED, missing(method)
-    if lack:
-        raise InputError("method", method, lack)
-    refusal = method_refusal(problem, model, method)
-    if not (refusal or shipped) and method_named(method).run is not None:
-        refusal = "it is one run, which cannot be refined"
-    if refusal:
-        where = f"does not apply to {motion.name}, model {model}"
-        raise InputError("method", method, f"{where}: {refusal}")
+    shipped = method == SHIPPED
+    if not shipped:
+        lack = missing(method)
+        if lack:
+            raise InputError("method", method, lack)
+        refusal = method_refusal(problem, model, method)
+        if not refusal and method_named(method).run is not None:
+            refusal = "it is one run, which cannot be refined"
+        if refusal:
+            where = f"does not apply to {motion.name}, model {model}"
+            raise InputError("method", method, f"{where}: {refusal}")
     if drive is None:
         return
     force, pulls = drive.force, "stiffness" if drive.force is None else "force"

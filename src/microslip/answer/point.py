@@ -120,6 +120,8 @@ def solve(
         answer = answer.changed(mean_velocity=-answer.mean_velocity, friction=-answer.friction)
     else:
         answer = answer_of(request)
+    if answer.problem is problem:
+        return answer
     return replace(answer.changed(**about(problem)), problem=problem)
 
 

@@ -32,7 +32,7 @@ already been computed.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Sequence
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -97,7 +97,8 @@ def extrapolate(values: Sequence[Any] | np.ndarray) -> Extrapolation:
     correction = 1.0 / (2**ORDER - 1)
     share = np.minimum(np.maximum(beyond - correction, correction), 1.0)
     error = SAFETY * share * np.maximum(last, least)
-    return Extrapolation(np.tensordot(WEIGHTS, values, 1), error, order)
+    value = WEIGHTS[0] * coarse + WEIGHTS[1] * middle + WEIGHTS[2] * fine
+    return Extrapolation(value, error, order)
 
 
 def refine(
@@ -144,26 +145,34 @@ def refine(
     """
     runs: dict[tuple[int, int], Run] = {}
     goal, answer, order = tolerance, None, math.nan
+    guess, effort, periods, reason, largest = None, Effort(), 0.0, "", 0
     try:
         for level in ladder.levels(tolerance):
             if level < ladder.levels(goal)[0] or order < 0.0 and (0, level // 2) not in runs:
                 continue
             places = [(0, level // 4), (0, level // 2), *((k, level) for k in range(len(problems)))]
-            for number, at in places:
-                if (number, at) not in runs:
-                    known = max((place for place in runs if place[0] == 0), default=None)
-                    guess = None if known is None else runs[known]
-                    runs[number, at] = run(problems[number], ladder.resolution(at), guess)
+            for place in places:
+                if place in runs:
+                    continue
+                number, at = place
+                runs[place] = one = run(problems[number], ladder.resolution(at), guess)
+                effort, periods = effort + one.effort, max(periods, one.periods)
+                reason = reason or one.reason
+                if number == 0 and at > largest:
+                    guess, largest = one, at
             estimates, order = _estimates(
                 [runs[place] for place in places], ladder, goal, name, energy_unit, drive_work
             )
-            reason = next((one.reason for one in runs.values() if one.reason), "")
             finest = ladder.resolution(level)
-            values = _values(ladder, finest) | {
+            values = {
                 "finest": runs[0, level],
+                "imposed": ladder.imposed > 0.0,
+                "cells": finest.cells,
+                "angles": finest.angles,
+                "steps_per_period": 2 * finest.steps if ladder.steps else 0,
                 "observed_order": order if math.isfinite(order) else None,
-                "periods": max(one.periods for one in runs.values()),
-                "effort": sum((one.effort for one in runs.values()), Effort()),
+                "periods": periods,
+                "effort": effort,
                 "periodic": not reason,
             }
             answer = Answer(problems[0], values, estimates, reason)
@@ -175,22 +184,12 @@ def refine(
     except Spent as spent:
         if answer is None:
             unknown = dict.fromkeys(NAMES, UNKNOWN)
-            values = _values(ladder, Resolution(0, 0, 0)) | {"periodic": False}
+            values = {"imposed": ladder.imposed > 0.0, "periodic": False, "cells": 0}
             reason = f"{spent}: there is no error estimate yet"
             return Answer(problems[0], values, unknown, reason)
         return answer.changed(reason=f"{spent}: the error is still {error:.1e}")
     assert answer is not None  # every ladder has a level
     return answer.changed(reason=f"the error is still {error:.1e} with {finest.cells} cells")
-
-
-def _values(ladder: Ladder, finest: Resolution) -> dict[str, Any]:
-    """Return the values of an Answer that follow from the finest resolution."""
-    return {
-        "cells": finest.cells,
-        "angles": finest.angles,
-        "steps_per_period": 2 * finest.steps if ladder.steps else 0,
-        "imposed": ladder.imposed > 0.0,
-    }
 
 
 def _estimates(
@@ -208,13 +207,13 @@ def _estimates(
     the same meaning as for `refine`.
     """
     three, others, imposed = runs[:3], runs[3:], ladder.imposed > 0.0
-    base = (0.0, 0.0, 1.0) if imposed else np.abs(WEIGHTS)
-    # a run that did not converge has a weight of at least 1, since levels can agree by chance
-    weights = [max(w, 1.0) if one.reason else w for w, one in zip(base, three, strict=True)]
-    common = {
-        "periodicity": _weighted(weights, [one.distance for one in three]),
-        "solver": _weighted(weights, [one.residual for one in three]),
-    }
+    common = {"periodicity": 0.0, "solver": 0.0}
+    for weight, run in zip((0.0, 0.0, 1.0) if imposed else WEIGHTS, three, strict=True):
+        # a run that did not converge has a weight of at least 1, since levels can agree by chance
+        weight = max(abs(weight), 1.0) if run.reason else abs(weight)
+        if weight:  # the errors of the other runs can be infinite
+            common["periodicity"] += float(weight * run.distance)
+            common["solver"] += float(weight * run.residual)
     accuracy = ladder.accuracy if imposed else min(goal, LOOSEST)
     names = [name, *(other for other in three[-1].values if other != name)]
     values = np.array([[one.values.get(other, np.nan) for other in names] for one in three])
@@ -239,9 +238,3 @@ def _estimates(
             errors["model"] = READING_SAFETY * apart
         estimates[one] = Estimate(value, errors)
     return estimates, float(limits.order[0])
-
-
-def _weighted(weights: Iterable[float], errors: Iterable[float]) -> float:
-    """Return a weighted sum of errors.  Terms of weight 0 are omitted, because their error can be
-    infinite."""
-    return float(sum(w * e for w, e in zip(weights, errors, strict=True) if w))

@@ -109,9 +109,12 @@ class Request:
 def request_of(
     problem: Problem,
     *,
+    model: str = "auto",
+    method: str = SHIPPED,
+    progress: Callable | None = None,
     most_work: float | None = None,
     time_limit: float | None = None,
-    **settings: Any,
+    **numbers: Any,
 ) -> Request:
     """Create the `Request` for a problem.  The time `solve_time_s` of the result is measured from
     this call on.
@@ -120,8 +123,8 @@ def request_of(
     ----------
     problem : problem.Problem
         The problem, already checked.
-    most_work, time_limit, **settings
-        See `microslip.solve`: model, tolerance, cells, steps, method and progress.
+    model, method, progress, most_work, time_limit, **numbers
+        See `microslip.solve`; the numbers are `tolerance`, `cells` and `steps`.
 
     Raises
     ------
@@ -129,22 +132,21 @@ def request_of(
         If an argument is out of range, or a model or a method does not apply.  The message names
         the argument.
     """
-    request = Request(problem=problem, **settings)
-    numbers = {name: getattr(request, name) for name in ("cells", "steps", "tolerance")}
-    numbers = {n: None if v is None else limits.within(n, v) for n, v in numbers.items()}
+    for name, value in numbers.items():
+        numbers[name] = None if value is None else limits.within(name, value)
     budget = {"most_work": without_array(most_work), "time_limit": without_array(time_limit)}
     for name, value in budget.items():
         if value is not None and not (is_real(value) and value > 0.0):
             raise InputError(name, value, "allowed is a number above 0")
-    if request.progress is not None and not callable(request.progress):
-        raise InputError("progress", request.progress, "allowed is a function of one argument")
-    model = limits.choose_model(problem, request.model)
-    limits.refuse(problem, model, request.method)
+    if progress is not None and not callable(progress):
+        raise InputError("progress", progress, "allowed is a function of one argument")
+    own = limits.choose_model(problem, model)
+    limits.refuse(problem, own, method)
     work, seconds = budget.values()
-    work = MOST_WORK.get(model, MOST_WORK_OF_OTHERS) if work is None else work
-    own = Budget(work, math.inf if seconds is None else seconds)
-    chosen = request.model == "auto"
-    return replace(request, model=model, chosen=chosen, budget=own, **numbers)
+    work = MOST_WORK.get(own, MOST_WORK_OF_OTHERS) if work is None else work
+    numbers["budget"] = Budget(work, math.inf if seconds is None else seconds)
+    how: dict[str, Any] = {"method": method, "progress": progress, "chosen": model == "auto"}
+    return Request(problem=problem, model=own, **how, **numbers)
 
 
 def answer_of(request: Request) -> Result:
@@ -177,13 +179,13 @@ def ladder_of(request: Request, tolerance: float) -> Ladder:
     """
     from microslip.answer.ladder import ladder_for  # imported here because it loads compiled code
 
-    cells, steps = request.cells, request.steps
-    ladder = ladder_for(request.problem, request.model, tolerance, cells, steps)
-    numbers = {"cells": (ladder.cells, cells), "steps": (ladder.steps, steps)}
-    free = [name for name, (refined, imposed) in numbers.items() if refined and imposed is None]
-    if free and request.tolerance is None:
-        allowed = f"allowed is a number, or none where {' and '.join(free)} are imposed"
-        raise InputError("tolerance", None, allowed)
+    ladder = ladder_for(request.problem, request.model, tolerance, request.cells, request.steps)
+    if request.tolerance is None:
+        names = ("cells", "steps")
+        free = [one for one in names if getattr(ladder, one) and getattr(request, one) is None]
+        if free:
+            allowed = f"allowed is a number, or none where {' and '.join(free)} are imposed"
+            raise InputError("tolerance", None, allowed)
     return ladder
 
 
@@ -356,4 +358,4 @@ def within_friction(problem: Problem, friction: Estimate) -> Estimate:
     half = 0.5 * (1.0 - least)
     if friction.error > 2.0 * half:
         return Estimate(1.0 - half, {"model": half})
-    return replace(friction, value=min(max(friction.value, least), 1.0))
+    return Estimate(min(max(friction.value, least), 1.0), friction.by_source)

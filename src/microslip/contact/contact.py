@@ -18,8 +18,8 @@ single steps take long to solve.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, field
-from typing import Any, Protocol
+from dataclasses import dataclass
+from typing import Any, NamedTuple, Protocol
 
 import numpy as np
 
@@ -62,8 +62,7 @@ MIRROR = np.array([1.0, -1.0])[:, None, None]
 shape (2, 1, 1)."""
 
 
-@dataclass(frozen=True, eq=False)
-class March:
+class March(NamedTuple):
     """The result of the time integration of a contact along a path.
 
     Attributes
@@ -91,7 +90,7 @@ class March:
     iterations: int
     solves: int
     fields: np.ndarray | None = None
-    body: np.ndarray = field(default_factory=lambda: np.empty((0, 2)))
+    body: np.ndarray = np.empty((0, 2))
 
 
 @dataclass(frozen=True)

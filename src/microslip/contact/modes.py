@@ -25,7 +25,7 @@ import numpy as np
 
 from microslip.contact.contact import LATERAL, MIRROR, TORQUE
 from microslip.contact.influence import ring_influence
-from microslip.contact.ring_contact import Growth, RingContact, interpolate, load_on_rings
+from microslip.contact.ring_contact import RingContact, interpolate
 from microslip.contact.rings import Focus, Rings, make_rings
 from microslip.scene.hertz import HERTZ
 from microslip.scene.pressure import Pressure
@@ -112,12 +112,6 @@ def _coupled_matrices(
     return out
 
 
-def _modes_to_average(angles: int) -> int:
-    """Return the number of modes for which kernels are averaged.  The number is at least angles +
-    1; see SHARED_MODES."""
-    return next((most for most in SHARED_MODES if angles < most), angles + 1)
-
-
 @lru_cache(maxsize=4)
 def _shared_influence(
     psi: tuple[float, ...], n_modes: int, coupled: bool, modulus: float
@@ -150,9 +144,8 @@ def influence_modes(
         Ring matrix of the mode 0.
     """
     kappa = poisson / (2.0 - poisson)
-    influence = near, _ = _shared_influence(
-        tuple(rings.psi), _modes_to_average(angles), poisson > 0.0, modulus
-    )
+    modes = next((most for most in SHARED_MODES if angles < most), angles + 1)
+    influence = near, _ = _shared_influence(tuple(rings.psi), modes, poisson > 0.0, modulus)
     points = 2 * angles if symmetry == WHOLE else angles
     theta = (np.arange(points) + 0.5) * np.pi / angles
     if kappa == 0.0:
@@ -219,17 +212,8 @@ class PolarContact(RingContact):
         symmetry = WHOLE if whole else ROTATION if rotates else TRANSLATION
         waves, influence = influence_modes(rings, angles, symmetry, poisson, pressure.G_star)
         positions = np.stack([np.sin(theta), np.cos(theta)])[..., None] * rings.radius
-        growth = Growth(pressure, np.sin(rings.psi), load_on_rings, 1, 2)
-        super().__init__(
-            influence,
-            rings.bound,
-            rings.area,
-            positions,
-            stiffness=pressure.stiffness,
-            waves=waves,
-            growth=growth,
-            rings=rings,
-        )
+        place = influence, rings.bound, rings.area, positions
+        super().__init__(*place, stiffness=pressure.stiffness, waves=waves, rings=rings)
         self.mirror_rows = np.roll(np.arange(rows)[::-1], angles if whole else 0)
         self.resultants = np.ones(3)
         if not whole:  # the other half of the disc cancels this force

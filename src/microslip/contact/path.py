@@ -18,8 +18,8 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from functools import cached_property
 from itertools import pairwise
+from typing import NamedTuple
 
 import numpy as np
 
@@ -117,8 +117,7 @@ def turning_point_width(drift: float, stroke: float) -> float:
     return max(1.0, drift, LONG_STROKE**2 / stroke) / stroke
 
 
-@dataclass(frozen=True, eq=False)
-class Path:
+class Path(NamedTuple):
     """A rigid motion over an interval of phase, divided into steps.
 
     Attributes
@@ -127,45 +126,30 @@ class Path:
         Phase omega t at the start of the path and at the end of every step.
     positions : np.ndarray, shape (steps + 1, 3)
         Forward displacement, lateral displacement and angle at every phase.
-    stages : np.ndarray, shape (steps, stages, 3)
-        Forward displacement, lateral displacement and angle at every stage.
+    motion : np.ndarray, shape (1 + steps stages, 3)
+        Forward displacement, lateral displacement and angle at the start and at every stage.
+    weights : np.ndarray, shape (steps + 1,)
+        Weights of the phases in a time average by the trapezoidal rule.
     carry : np.ndarray, shape (stages, stages)
         Factors for the slips of earlier stages; see Integrator.carried.
     end : float
         Time of the last stage divided by the length of the step; see Integrator.
-    depth : np.ndarray or None, shape (1 + steps * stages,)
+    depth : np.ndarray or None, shape (1 + steps stages,)
         Indentation depth divided by the reference depth, at the start and at every stage; None if
         the depth is constant.
     """
 
     phase: np.ndarray
     positions: np.ndarray
-    stages: np.ndarray
+    motion: np.ndarray
+    weights: np.ndarray
     carry: np.ndarray
-    end: float = 1.0
-    depth: np.ndarray | None = None
+    end: float
+    depth: np.ndarray | None
 
     @property
     def steps(self) -> int:
         return len(self.phase) - 1
-
-    @property
-    def solves(self) -> int:
-        """Number of stages along the whole path."""
-        return self.stages.shape[0] * self.stages.shape[1]
-
-    @cached_property
-    def motion(self) -> np.ndarray:
-        """Displacement at the start and at every stage, as an array of shape (1 + steps stages,
-        3)."""
-        return np.concatenate([self.positions[:1], self.stages.reshape(-1, 3)])
-
-    @cached_property
-    def weights(self) -> np.ndarray:
-        """Weights of the phases in a time average by the trapezoidal rule, as an array of shape
-        (steps + 1,)."""
-        halves = 0.5 * np.diff(self.phase) / (self.phase[-1] - self.phase[0])
-        return np.append(halves, 0.0) + np.append(0.0, halves)
 
     def mean(self, values: np.ndarray) -> np.ndarray:
         """Return the time average of values at the phases (first axis)."""
@@ -193,19 +177,24 @@ def make_path(
         is constant.
     """
     phase = np.asarray(phase, dtype=float)
-    times = phase[:-1, None] + np.asarray(integrator.times) * np.diff(phase)[:, None]
-    stages = np.stack(displacement(times), axis=-1)
-    positions = np.stack(displacement(phase), axis=-1)
-    # on the chord of the step, so that the extrapolation leads to the position at the next phase
-    stages[:, -1] = positions[:-1] + integrator.end * np.diff(positions, axis=0)
+    lengths, stages = phase[1:] - phase[:-1], len(integrator.times)
+    times = phase[:-1, None] + np.array(integrator.times) * lengths[:, None]
     if integrator.end == 1.0:
-        stages[:, -1] = positions[1:]
-    depths = None
-    if depth is not None:
-        if integrator.end == 1.0:
-            times[:, -1] = phase[1:]  # exact to the last bit, because the next march starts here
-        depths = depth(np.concatenate([phase[:1], times.ravel()]))
-    return Path(phase, positions, stages, np.array(integrator.carried), integrator.end, depths)
+        times[:, -1] = phase[1:]  # exact to the last bit, because the next march starts here
+    every = np.concatenate([phase[:1], times.ravel()])
+    motion = np.array(displacement(every), dtype=float).T.copy()
+    positions = motion[::stages]
+    if integrator.end < 1.0:
+        # on the chord of the step, so that the extrapolation leads to the position at the next
+        # phase
+        positions = np.array(displacement(phase)).T
+        motion[1:] = positions[:-1] + integrator.end * np.diff(positions, axis=0)
+    weights = np.zeros(len(phase))
+    weights[:-1] = halves = 0.5 * lengths / (phase[-1] - phase[0])
+    weights[1:] += halves
+    depths = None if depth is None else depth(every)
+    carry = np.array(integrator.carried)
+    return Path(phase, positions, motion, weights, carry, integrator.end, depths)
 
 
 def phases_between(

@@ -36,9 +36,10 @@ def interpolate(x: np.ndarray, nodes: np.ndarray, values: np.ndarray) -> np.ndar
 
     Beyond the outermost nodes, the values are constant.
     """
-    after = np.clip(np.searchsorted(nodes, x), 1, len(nodes) - 1)
-    share = np.clip((x - nodes[after - 1]) / np.diff(nodes)[after - 1], 0.0, 1.0)
-    return values[..., after - 1] * (1.0 - share) + values[..., after] * share
+    before = np.searchsorted(nodes[1:-1], x)
+    start, end = nodes[before], nodes[before + 1]
+    share = np.minimum(np.maximum((x - start) / (end - start), 0.0), 1.0)
+    return values[..., before] * (1.0 - share) + values[..., before + 1] * share
 
 
 class Growth(NamedTuple):
@@ -83,9 +84,9 @@ class RingContact(Contact):
         third array has the shape (matrices, columns, columns); in contrast to operators.multiply,
         the matrices are not transposed, and their columns are not padded.
     growth : Growth or None
-        Scaling of the contact with the indentation depth; None if the normal load is constant.
+        Scaling of springs with the indentation depth; None if the normal load is constant.
     rings : Rings or None
-        Mesh of the rings; None for springs.
+        Mesh of the rings, which determines their growth; None for springs.
     """
 
     sticks = True
@@ -115,8 +116,10 @@ class RingContact(Contact):
         self.angles = len(self.forward_position)
         self.shape = positions.shape
         self.weight, self.compliance = area / self.angles, np.diag(influence)
-        if growth is not None:
-            self.edges = growth.edges
+        if rings is not None:
+            self.growth = Growth(rings.pressure, np.sin(rings.psi), load_on_rings, 1, 2)
+        if self.growth is not None:
+            self.edges = self.growth.edges
 
     @cached_property
     def operators(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
@@ -129,7 +132,7 @@ class RingContact(Contact):
         each = each.reshape(*each.shape[:2], -1, cells, columns // cells, cells)
         width = padded(cells)
         out = np.zeros((*each.shape[:2], columns // cells, width, columns // cells, width))
-        out[..., :cells, :, :cells] = np.moveaxis(each, (2, 3, 4, 5), (4, 5, 2, 3))
+        out[..., :cells, :, :cells] = each.transpose(0, 1, 4, 5, 2, 3)
         size = width * columns // cells
         return to_waves, to_points, out.reshape(*each.shape[:2], size, size)
 
@@ -174,11 +177,11 @@ class RingContact(Contact):
         The interpolated quantity is the traction as a fraction of the friction bound.  Returns None
         for springs and for changing loads.
         """
-        if self.rings is None or self._joins is not None:
+        fine = self.rings
+        if fine is None or self._joins is not None:
             return None
-        coarse = self.rings.with_count(state.shape[2])
-        share = state / coarse.bound
-        return interpolate(self.rings.radius, coarse.radius, share) * self.bound
+        coarse = make_rings(state.shape[2], fine.focus, fine.pressure)
+        return interpolate(fine.radius, coarse.radius, state / coarse.bound) * self.bound
 
     def mirrored(self, state: np.ndarray) -> np.ndarray:
         """Return the mirror image of a state under lateral -> -lateral, which negates lateral
@@ -202,7 +205,7 @@ class RingContact(Contact):
         """
         state = np.ascontiguousarray(state, dtype=float)
         drive = NO_DRIVE if body is None else body.along(path, start)
-        motion, bounds = self._loading(path)
+        motion, bounds = path.motion, self._bounds_of(path)
         guess = None if previous is None else previous.fields
         if guess is None or guess.shape != (len(motion), *self.shape):
             guess = np.empty((0, *self.shape))
@@ -221,18 +224,17 @@ class RingContact(Contact):
         """Return twice the elastic energy of tractions, <q, A q>."""
         return strain_energy(self.operators, self.points[0], np.ascontiguousarray(change))
 
-    def _loading(self, path: Path) -> tuple[np.ndarray, np.ndarray]:
-        """Return the motion and the friction bounds of a path for compiled code.
+    def _bounds_of(self, path: Path) -> np.ndarray:
+        """Return the friction bounds along a path for compiled code.
 
-        The values for the most recent path are cached.
+        The values for the most recent depths are cached.
         """
         last = vars(self).get("_last")
-        if last is None or last[0] is not path:
+        if last is None or last[0] is not path.depth:
             bounds = self.bound[None] if path.depth is None else self.bounds_along(path)
             bounds = np.broadcast_to(bounds[:, None], (len(bounds), *self.shape[1:]))
-            last = path, np.ascontiguousarray(path.motion), self.pack(bounds)
-            self._last = last
-        return last[1:]
+            self._last = last = path.depth, self.pack(bounds)
+        return last[1]
 
     def at_indentation(self, deepest: float, start: float) -> RingContact:
         """Return a contact whose rings fill the largest contact area in a period.
@@ -302,7 +304,7 @@ class RingContact(Contact):
         earlier time, to make up for the difference.
         """
         assert path.depth is not None  # otherwise the bounds are constant
-        stages = path.stages.shape[1]
+        stages = len(path.carry)
         ends = self.growth.pressure.radius(path.depth[::stages])
         shift = 0.5 - 1.0 / (1.0 + path.carry[-1].sum())
         radii = ends.copy()
@@ -365,8 +367,7 @@ class RadialContact(RingContact):
         """
         rings = make_rings(cells, focus, pressure)
         near, _ = ring_influence(rings.psi, 1, False, modulus=pressure.G_star)
-        growth = Growth(pressure, np.sin(rings.psi), load_on_rings, 1, 2)
-        return RadialContact(near[0], rings.bound, rings.area, pressure.stiffness, growth, rings)
+        return RadialContact(near[0], rings.bound, rings.area, pressure.stiffness, rings=rings)
 
 
 NO_DRIVE = np.zeros(6), np.zeros(0)

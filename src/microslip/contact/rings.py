@@ -10,6 +10,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import lru_cache
+from itertools import pairwise
 from typing import NamedTuple
 
 import numpy as np
@@ -61,10 +62,6 @@ class Rings:
     focus: Focus | float | None
     pressure: Pressure
 
-    def with_count(self, count: int) -> Rings:
-        """Return a mesh with another number of rings for the same focus and pressure."""
-        return make_rings(count, self.focus, self.pressure)
-
 
 @lru_cache(maxsize=32)
 def make_rings(count: int, focus: Focus | float | None = None, pressure: Pressure = HERTZ) -> Rings:
@@ -93,14 +90,16 @@ def make_rings(count: int, focus: Focus | float | None = None, pressure: Pressur
         raise InputError("cells", count, "allowed is a whole number of at least 2 rings")
     if focus is None:
         return _of_edges(np.linspace(0.0, np.pi / 2, count + 1), focus, pressure)
-    radii, strength = _as_focus(focus)
+    radii, strength = focus if isinstance(focus, Focus) else Focus((focus,))
+    if not (radii and list(radii) == sorted({*radii}) and radii[0] >= 0.0 and radii[-1] <= 1.0):
+        raise InputError("focus", radii, "allowed are radii in 0..1, increasing")
     # the first ring begins at the edge of the hole, if there is one
     hole = pressure.inner**2
     inside = np.sqrt(np.maximum(np.square(radii) - hole, 0.0) / (1.0 - hole))
     if len(radii) > 1 and not 0.0 < inside[0] <= inside[-1] < 1.0:
         allowed = f"allowed are several radii between {pressure.inner:g} and 1, ends not included"
         raise InputError("focus", radii, allowed)
-    places = np.arcsin(np.unique(inside)[: max(count // 2, 1)])
+    places = np.arcsin(inside[: max(count // 2, 1)])
     return _of_edges(_focused(count, places, strength), focus, pressure)
 
 
@@ -114,19 +113,6 @@ def _of_edges(psi: np.ndarray, focus: Focus | float | None, pressure: Pressure) 
         psi = np.arcsin(np.sqrt(hole + (1.0 - hole) * np.sin(psi) ** 2))
     area, (bound, radius) = np.pi * np.diff(np.sin(psi) ** 2), pressure.ring_means(psi)
     return Rings(psi, area, bound, radius, focus, pressure)
-
-
-def _as_focus(focus: Focus | float) -> Focus:
-    """Convert a radius to a Focus, and check the Focus.  Raises InputError if the Focus is
-    invalid."""
-    focus = focus if isinstance(focus, Focus) else Focus((focus,))
-    radii = focus.radii
-    ordered = radii and all(one < other for one, other in zip(radii, radii[1:], strict=False))
-    within = radii and radii[0] >= 0.0 and radii[-1] <= 1.0 and 0.0 <= focus.strength < 1.0
-    if not (ordered and within):
-        allowed = "allowed are radii in 0..1, increasing, and a strength in 0..1"
-        raise InputError("focus", focus, allowed)
-    return focus
 
 
 def _focused(count: int, places: np.ndarray, strength: float) -> np.ndarray:
@@ -146,15 +132,15 @@ def _focused(count: int, places: np.ndarray, strength: float) -> np.ndarray:
     for place in places[1:]:
         ends += [0.5 * (ends[-1] + place), place]
     ends.append(edge)
-    psi, counts = [0.0], np.diff(_shared_out(count, ends))
-    for piece, rings in enumerate(counts):
+    psi, before = np.zeros(count + 1), _shared_out(count, ends)
+    for piece, (first, last) in enumerate(pairwise(before)):
         start, width = ends[piece], ends[piece + 1] - ends[piece]
-        t = np.linspace(0.0, 1.0, rings + 1)
+        t = np.linspace(0.0, 1.0, last - first + 1)[1:]
         # every second piece ends at a place, and the other pieces begin at one
         share = 1.0 - spread(1.0 - t) if piece % 2 == 0 else spread(t)
-        psi += list((start + width * share)[1:])
+        psi[first + 1 : last + 1] = start + width * share
     psi[-1] = edge
-    return np.array(psi)
+    return psi
 
 
 def _shared_out(count: int, ends: Sequence[float]) -> list[int]:

@@ -12,7 +12,6 @@ resolved (see `_images`).
 from __future__ import annotations
 
 import signal
-from dataclasses import replace
 
 import numpy as np
 
@@ -144,7 +143,7 @@ class CartesianContact(Contact):
         """Integrate the contact along a path; see contact.Contact."""
         solver = DescentSolver(self, tolerance)
         march = march_by_steps(self, solver, path, state, previous, body=body, start=start)
-        return replace(march, forces=march.forces * self.resultants)
+        return march._replace(forces=march.forces * self.resultants)
 
 
 class DescentSolver:

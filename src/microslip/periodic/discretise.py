@@ -9,7 +9,6 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from functools import lru_cache
 from typing import Any
 
 import numpy as np
@@ -63,8 +62,8 @@ def focus_strength(drift: float) -> float:
     """
     if drift == 0.0:
         return STATIC_FOCUS
-    layer = 2.0 ** round(np.log2(drift) / 3.0)
-    return float(np.clip(1.0 - layer, WEAKEST_FOCUS, STRONGEST_FOCUS))
+    layer = 2.0 ** round(math.log2(drift) / 3.0)
+    return min(max(1.0 - layer, WEAKEST_FOCUS), STRONGEST_FOCUS)
 
 
 def contact_of(
@@ -116,12 +115,7 @@ def path_of(problem: Problem, contact: Any, steps: int, integrator: Integrator =
     integrator : path.Integrator
         Time integrator; it sets the positions of the stages.
     """
-    return _path(problem, steps, contact.grading, integrator)
-
-
-@lru_cache(maxsize=32)
-def _path(problem: Problem, steps: int, grading: float | None, integrator: Integrator) -> Path:
-    drift, stroke = problem.drift, problem.stroke
+    drift, stroke, grading = problem.drift, problem.stroke, contact.grading
     if grading is None:
         grading = turning_point_grading(drift, stroke)
     # on a loop the slip can reverse at any phase
@@ -143,7 +137,7 @@ def tractions_at_phases(
     assert march.fields is not None  # true for contacts whose points can stick
     bounds = bounds_at_phases(contact, path)
     bounds = bounds if len(bounds) == 1 else bounds[rows]
-    stages = np.moveaxis(march.fields[:: path.stages.shape[1]][rows], 1, 0)
+    stages = np.moveaxis(march.fields[:: len(path.carry)][rows], 1, 0)
     tractions = np.moveaxis(project(stages, bounds), 1, 0)
     if path.end < 1.0:  # extrapolate from the stage of each step
         tractions[0] = march.fields[0]
@@ -159,7 +153,7 @@ def bounds_at_phases(contact: Contact, path: Path) -> np.ndarray:
     """
     if path.depth is None:
         return contact.bound[None]
-    return contact.bounds_along(path)[:: path.stages.shape[1], None]
+    return contact.bounds_along(path)[:: len(path.carry), None]
 
 
 def mean_forces(contact: Contact, problem: Problem, path: Path, forces: np.ndarray) -> np.ndarray:
@@ -193,8 +187,8 @@ def dissipated_energy(contact: Contact, path: Path, march: March) -> float:
     march : March
         March along this path from a periodic state.
     """
-    moves = np.diff(path.positions, axis=0)
+    moves = path.positions[1:] - path.positions[:-1]
     if len(march.body):
-        moves[:, 0] += np.diff(march.body[:, 0])
+        moves[:, 0] += march.body[1:, 0] - march.body[:-1, 0]
     work = 0.5 * np.vdot(march.forces[1:] + march.forces[:-1], moves)
     return float(work) * 2.0 * np.pi / (path.phase[-1] - path.phase[0])

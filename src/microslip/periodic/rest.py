@@ -16,7 +16,7 @@ from microslip.contact.contact import Body, March, StepFailure, forward_slip
 from microslip.contact.path import EULER, Path, make_path
 from microslip.contact.ring_contact import RingContact
 from microslip.periodic.discretise import Resolution, path_of
-from microslip.periodic.run import Effort, Run, Settings, unsolved
+from microslip.periodic.run import Budget, Effort, Run, Settings, unsolved
 from microslip.periodic.search import PeriodMap
 from microslip.scene.motion import HALF_PERIOD
 from microslip.scene.problem import Problem
@@ -70,11 +70,10 @@ def run_to_rest(
         the remaining displacement.  The run has not converged if the contact does not come to rest
         or a step failed.
     """
-    # or a contact wrapped to count its marches
-    contact = cast(RingContact, settings.contact(problem, model, resolution))
+    contact = cast(RingContact, settings.contact(problem, model, resolution))  # or with squares
     assert problem.force is not None
     body = Body(0.0, 0.0, 0.0, problem.force * problem.mean_load)
-    walk = _Walk(contact, body, STEP_SHARE * tolerance)
+    walk = _Walk(contact, body, STEP_SHARE * tolerance, settings.budget)
     cycle = PeriodMap(
         contact, path_of(problem, contact, resolution.steps), mirror=problem.half_period_mirror
     )
@@ -131,8 +130,9 @@ def run_to_rest(
 class _Walk:
     """Successive marches of a contact under a force, with the sums of effort and residuals."""
 
-    def __init__(self, contact: RingContact, body: Body, step_tolerance: float):
+    def __init__(self, contact: RingContact, body: Body, step_tolerance: float, budget: Budget):
         self.contact, self.body, self.step_tolerance = contact, body, step_tolerance
+        self.budget = budget
         self.residual, self.iterations, self.solves = 0.0, 0, 0
 
     def march(self, path: Path, state: np.ndarray, guess: March | None = None) -> float:
@@ -141,6 +141,7 @@ class _Walk:
         Raises StepFailure if the tractions diverge.
         """
         march = self.contact.march(path, state, self.step_tolerance, guess, body=self.body)
+        self.budget.take(Effort.of(march.solves, march.iterations, march.state.size))
         if not np.isfinite(march.state).all():
             raise StepFailure("diverged: tractions are not finite")
         self.residual += march.residual

@@ -19,7 +19,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from microslip.contact.contact import Contact, March
+from microslip.contact.contact import Contact
 from microslip.foundation.errors import SolverError
 from microslip.periodic.discretise import Resolution, contact_of
 from microslip.periodic.method import OWN, Method
@@ -79,7 +79,7 @@ class Budget:
         Limit on the work of all marches together.  The work of a march is its number of step solves
         times its number of unknowns.
     time_limit : float
-        Largest wall-clock time in seconds since the first contact was built, without the time for
+        Largest wall-clock time in seconds since the first call of `take`, without the time for
         compilation.
 
     Attributes
@@ -106,38 +106,14 @@ class Budget:
         if self.taken.work + next_work > self.most_work:
             self.exhausted = "work"
             raise Spent(f"the work that the point may take, {self.most_work:.3g}, is spent")
-        if self.began is not None and _seconds() - self.began > self.time_limit:
-            self.exhausted = "time"
-            raise Spent(f"the time limit of {self.time_limit:g} s is over")
+        if self.time_limit < math.inf:
+            from microslip.foundation.compiled import compile_seconds  # imports Numba
 
-
-def _seconds() -> float:
-    """Return the time in seconds on a clock that stops during compilation."""
-    from microslip.foundation.compiled import compile_seconds  # imports Numba
-
-    return time.monotonic() - compile_seconds()
-
-
-class Metered:
-    """A contact (see contact.Contact) whose marches are counted in a budget.
-
-    The first contact starts the clock of the budget.
-    """
-
-    def __init__(self, contact: Contact, budget: Budget):
-        self._contact: Any = contact  # not every contact has every method
-        self._budget = budget
-        if budget.began is None and budget.time_limit < math.inf:
-            budget.began = _seconds()
-
-    def __getattr__(self, name: str) -> Any:
-        value = vars(self)[name] = getattr(self._contact, name)
-        return value
-
-    def march(self, *path: Any, **settings: Any) -> March:
-        march = self._contact.march(*path, **settings)
-        self._budget.take(Effort.of(march.solves, march.iterations, march.state.size))
-        return march
+            now = time.monotonic() - compile_seconds()
+            self.began = now if self.began is None else self.began
+            if now - self.began > self.time_limit:
+                self.exhausted = "time"
+                raise Spent(f"the time limit of {self.time_limit:g} s is over")
 
 
 STEP_SHARE = 1e-2
@@ -164,8 +140,8 @@ class Settings:
         Method, which contains the step solver and the search for the periodic state.
     tighter : bool
         Whether the steps of slow motions are solved to a smaller tolerance.
-    budget : run.Budget or None
-        Budget of the marches.  None means unlimited.
+    budget : run.Budget
+        Budget of the marches, by default unlimited.
     focus : rings.Focus or None
         Grading of the rings.  By default, they are graded towards the radius at which slip starts.
     slope : float
@@ -175,24 +151,18 @@ class Settings:
 
     method: Method = OWN[SHIPPED]
     tighter: bool = False
-    budget: Budget | None = None
+    budget: Budget = field(default_factory=Budget)
     focus: Focus | None = None
     slope: float = np.inf
 
-    def contact(
-        self, problem: Problem, model: str, resolution: Resolution, focus: Focus | None = None
-    ) -> Contact:
-        """Build a contact with the method's step solver.  The marches of this contact count towards
-        the budget.
+    def contact(self, problem: Problem, model: str, resolution: Resolution) -> Contact:
+        """Build a contact with the method's step solver.
 
         Raises Spent, before the contact is built, if one march would exceed the budget.
         """
-        if self.budget is not None:
-            self.budget.take(Effort(), resolution.steps * resolution.cells * resolution.angles)
-        contact, method = contact_of(problem, model, resolution, focus or self.focus), self.method
-        if method.dress is not None:
-            contact = method.dress(contact, **method.parameters)
-        return contact if self.budget is None else Metered(contact, self.budget)
+        self.budget.take(Effort(), resolution.steps * resolution.cells * resolution.angles)
+        contact, method = contact_of(problem, model, resolution, self.focus), self.method
+        return contact if method.dress is None else method.dress(contact, **method.parameters)
 
 
 AS_SHIPPED = Settings()
@@ -206,9 +176,10 @@ class Run:
     ----------
     values : mapping of str to float
         Values by name.  All runs except runs to rest have `friction`, the mean forward force
-        divided by mu times the mean normal load.  Further values are `torque` (divided by its
-        full-slip value), `dissipation` (energy per period, divided by mu F_z u_lim), `velocity`
-        (mean forward velocity of a driven contact), and, for runs to rest, those listed in rest.py.
+        divided by mu times the mean normal load.  Further values are `torque` (of a steady
+        motion, divided by its full-slip value), `dissipation` (energy per period, divided by mu F_z
+        u_lim), `velocity` (mean forward velocity of a driven contact), and, for runs to rest, those
+        listed in rest.py.
     distance : float
         Estimated distance from the periodic (or steady) state, in the unit of the result.
     residual : float

@@ -19,6 +19,7 @@ displacement.
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from typing import NamedTuple, cast
 
@@ -28,7 +29,7 @@ from microslip.contact.contact import Body, Contact, March, StepFailure, energy_
 from microslip.contact.path import Path
 from microslip.contact.ring_contact import RingContact
 from microslip.periodic.anderson import DEPTH, accelerated, remember
-from microslip.periodic.run import Effort
+from microslip.periodic.run import Budget, Effort
 
 MOST_MARCHES = 200
 """Default limit on the number of marches in a search."""
@@ -52,7 +53,6 @@ CAUTION = 0.3
 ratio, the search would overshoot."""
 AT_REST = np.zeros(2)
 """Position x and rate x' of a contact without a driven body."""
-NO_BODY = Body(0.0, 0.0, 0.0, 0.0)
 
 
 class Goal(NamedTuple):
@@ -139,18 +139,20 @@ class DriftRate:
 
     def error(self, force: float, change: float) -> float:
         """Return the error of a mean force if the plain map changes the state by `change`."""
-        if self.gain == np.inf:
-            return 0.0
         excess = abs(force - self.static_force)
-        if np.isnan(excess):  # the limit can be any force from 0 to full slip
+        if math.isnan(excess):  # the limit can be any force from 0 to full slip
             excess = max(abs(force), abs(self.full - force))
         return excess * change / self.gain
+
+
+NOT_SLOW = DriftRate()
 
 
 class PeriodMap:
     """Map from the state of a contact at the start of a path to its state at the end.
 
-    A state is an array of all tractions, followed by x and x' of a driven body (0 without a body).
+    A state is the array of the tractions.  With a driven body, it is a row of all tractions, x and
+    x'.
 
     Parameters
     ----------
@@ -159,36 +161,40 @@ class PeriodMap:
     path : path.Path
         Path over half a period, from turning point to turning point.  Without `mirror`, the path
         covers a whole period.
-    drift_rate : DriftRate or None
-        Data for slow motions, or None if the motion is not slow.
+    drift_rate : DriftRate
+        Data for slow motions; by default, the motion is not slow.
     mirror : bool
         Whether the other half of the period is the lateral mirror image of the path.
     body : contact.Body or None
         The driven body and its drive; None if the contact follows the path.
     slope : float
         Largest rise of the mean forward force if the body advances by one unit of x per interval.
+    budget : run.Budget or None
+        Budget of the marches.  None means unlimited.
     """
 
     def __init__(
         self,
         contact: Contact,
         path: Path,
-        drift_rate: DriftRate | None = None,
+        drift_rate: DriftRate = NOT_SLOW,
         mirror: bool = True,
         body: Body | None = None,
         slope: float = np.inf,
+        *,
+        budget: Budget | None = None,
     ):
-        self.contact, self.path, self.mirror = contact, path, mirror
-        self.drift_rate, self.driven = drift_rate or DriftRate(), body is not None
-        self.shape, self.body = (2, *contact.forward_position.shape), body or NO_BODY
-        self.factors, self.weights, self.spread = np.ones(2), np.zeros(2), np.zeros(1)
-        if self.driven:
-            self._scale_body(slope)
-        scale = np.sqrt(np.broadcast_to(contact.weight * contact.compliance, self.shape))
-        self.metric = np.append(scale, np.sqrt(self.weights))
+        self.contact, self.path, self.drift_rate, self.mirror = contact, path, drift_rate, mirror
+        self.shape, self.body = (2, *contact.forward_position.shape), body
+        self.budget = budget or Budget()
+        scale = np.broadcast_to(contact.weight * contact.compliance, self.shape)
+        self.metric = np.sqrt(scale).ravel()
+        if body is not None:
+            self._scale_body(body, slope)
+            self.metric = np.append(self.metric, np.sqrt(self.weights))
 
-    def _scale_body(self, slope: float) -> None:
-        contact, body = self.contact, self.body
+    def _scale_body(self, body: Body, slope: float) -> None:
+        contact, self.factors = self.contact, np.ones(2)
         bound = np.broadcast_to(contact.bound, self.shape[1:])
         load = float(np.sum(contact.weight * bound))
         # without contact at the start of a period there are no tractions to correct
@@ -200,16 +206,21 @@ class PeriodMap:
             self.factors[0] = max(1.0, min(CAUTION * stiffness, slope) / body.stiffness * slow)
         if body.mass > 0.0:
             self.factors[1] = max(1.0, body.mass / (mass * slow))
-        self.weights[:] = body.stiffness * min(1.0, body.stiffness / stiffness), mass
+        self.weights = np.array([body.stiffness * min(1.0, body.stiffness / stiffness), mass])
+
+    def tractions(self, state: np.ndarray) -> np.ndarray:
+        """Return the tractions of a state."""
+        return state if self.body is None else state[:-2].reshape(self.shape)
 
     def march(self, state: np.ndarray, tolerance: float, previous: March | None) -> March:
         """March along the path; `previous` is a march from a similar state."""
-        tractions = state[:-2].reshape(self.shape)
-        if not self.driven:
-            return self.contact.march(self.path, tractions, tolerance, previous)
-        contact = cast(RingContact, self.contact)  # or another contact that supports drives
-        body, start = self.body, state[-2:]
-        return contact.march(self.path, tractions, tolerance, previous, body=body, start=start)
+        place, contact = (self.path, self.tractions(state), tolerance, previous), self.contact
+        if self.body is None:
+            march = contact.march(*place)
+        else:  # RingContact, or another contact that supports drives
+            march = cast(RingContact, contact).march(*place, body=self.body, start=state[-2:])
+        self.budget.take(Effort.of(march.solves, march.iterations, march.state.size))
+        return march
 
     def image(self, tractions: np.ndarray) -> np.ndarray:
         """Convert the tractions at the end of an interval to the tractions at the start of the next
@@ -224,14 +235,16 @@ class PeriodMap:
 
         The changes of x and x' are scaled up.
         """
-        tractions, moved = self.image(march.state), AT_REST
-        if self.body.remembers:
+        tractions, body, moved = self.image(march.state), self.body, AT_REST
+        if body is None:
+            return tractions, tractions - state
+        if body.remembers:
             moved = self.factors * (march.body[-1] - march.body[0])
         elif self.factors[0] > 1.0:
             # computed from the motion of the body, which is more accurate than the forces of the
             # steps
             advance = self.factors[0] * (march.body[-1, 0] - march.body[0, 0])
-            force = march.forces[0, 0] - self.body.stiffness * advance
+            force = march.forces[0, 0] - body.stiffness * advance
             tractions = tractions.copy()
             tractions[0] += (force - march.forces[-1, 0]) * self.spread
         image = np.append(tractions, state[-2:] + moved)
@@ -241,8 +254,10 @@ class PeriodMap:
 
     def norm(self, change: np.ndarray) -> float:
         """Return an upper bound on the force due to a change of the state."""
-        tractions, body = change[:-2].reshape(self.shape), self.body
+        tractions, body = self.tractions(change), self.body
         force, held = energy_norm(self.contact, tractions), 0.0
+        if body is None:
+            return force
         if body.remembers:
             held = float(self.weights @ change[-2:] ** 2)
         elif body.stiffness > 0.0:
@@ -252,10 +267,9 @@ class PeriodMap:
 
     def gained(self, march: March, change: np.ndarray, residual: float) -> float:
         """Return the change of the state by the plain map, as a force."""
-        if not self.driven:
+        if self.body is None:
             return residual
-        advance = abs(march.body[-1, 0] - march.body[0, 0])
-        tractions = change[:-2].reshape(self.shape)
+        advance, tractions = abs(march.body[-1, 0] - march.body[0, 0]), self.tractions(change)
         return float(advance * self.contact.stiffness + energy_norm(self.contact, tractions))
 
 
@@ -287,11 +301,13 @@ def find_periodic_state(
     """
     contact, path, rate = period_map.contact, period_map.path, period_map.drift_rate
     loosest, tightest = LOOSEST_NEAR if goal.near else LOOSEST, goal.step_tolerance
-    inner = max(tightest, min(loosest, NOISE * rate.gain / path.solves))
-    state = above = np.append(start, place)
-    pairs, count = np.empty((2, DEPTH + 1, state.size)), 0
+    inner = max(tightest, min(loosest, NOISE * rate.gain / (len(path.motion) - 1)))
+    driven = period_map.body is not None
+    state = above = np.append(start, place) if driven else start
+    pairs, count = np.empty((2, DEPTH + 1, *state.shape)), 0
+    rows = pairs.reshape(2, DEPTH + 1, -1)
     last, forgets, returns, iterations = np.inf, True, 0, 0
-    sticking = rate.static_force if np.isnan(rate.least) else rate.least
+    sticking = rate.static_force if math.isnan(rate.least) else rate.least
     march = None
     best: tuple[float, March, np.ndarray, float] | None = None
     for marches in range(1, goal.most_marches + 1):
@@ -299,14 +315,14 @@ def find_periodic_state(
         iterations += march.iterations
         image, change = period_map.step(state, march)
         residual = period_map.norm(change)
-        if not np.isfinite(residual):
+        if not math.isfinite(residual):
             raise StepFailure("diverged: tractions are not finite")
         solved = inner <= tightest
         inner = max(tightest, min(FORCING * residual, inner))
         forgets, last = forgets and residual <= FORGETFUL * last, residual
         mean = float(path.mean(march.forces[:, 0]))
         stuck = marches > 1 and mean < sticking and residual > DRIFTING * rate.gain
-        back = stuck and not period_map.driven and returns < MOST_RETURNS
+        back = stuck and not driven and returns < MOST_RETURNS
         returns = returns + 1 if back else returns if stuck else 0
         above = above if stuck else state
         if back:  # halfway
@@ -314,10 +330,11 @@ def find_periodic_state(
         else:
             count, following = remember(pairs, count, image, change), image
             if not forgets:
-                accelerated(pairs, count, period_map.metric, following := np.empty_like(image))
+                following = np.empty(image.shape)
+                accelerated(rows, count, period_map.metric, following.ravel())
         if path.end == 1.0:
-            tractions = project(following[:-2].reshape(period_map.shape), contact.bound)
-            following[:-2] = tractions.ravel()
+            tractions = project(period_map.tractions(following), contact.bound)
+            following = np.append(tractions, following[-2:]) if driven else tractions
         distance = max(period_map.norm(following - state), residual)
         distance = max(distance, rate.error(mean, period_map.gained(march, change, residual)))
         near_enough = distance <= goal.tolerance
@@ -331,5 +348,5 @@ def find_periodic_state(
         state = following
     assert best is not None  # there is at least one march
     distance, march, state, residual = best
-    start = state[:-2].reshape(period_map.shape)
+    start = period_map.tractions(state)
     return PeriodicState(march, start, residual, distance, marches, iterations, converged)

@@ -35,6 +35,7 @@ from microslip.periodic.run import (
     SLOW_STEP_SHARE,
     STEP_SHARE,
     TIGHTER,
+    Budget,
     Effort,
     Run,
     Settings,
@@ -45,6 +46,7 @@ from microslip.periodic.run import (
 from microslip.periodic.search import (
     AT_REST,
     MOST_MARCHES,
+    NOT_SLOW,
     DriftRate,
     Goal,
     PeriodicState,
@@ -60,7 +62,9 @@ STEADY_TRAVEL = 0.5
 """Largest rigid displacement of a steady motion in one step, in u_lim."""
 
 
-def steady_state(contact: Contact, problem: Problem, tolerance: float) -> Run:
+def steady_state(
+    contact: Contact, problem: Problem, tolerance: float, budget: Budget | None = None
+) -> Run:
     """Find the steady state of a motion without oscillation.
 
     Parameters
@@ -71,6 +75,8 @@ def steady_state(contact: Contact, problem: Problem, tolerance: float) -> Run:
         The steady motion; its velocity sets the length of a step.
     tolerance : float
         Tolerance of the state, as a force divided by mu F_z.
+    budget : run.Budget or None
+        Budget of the marches.  None means unlimited.
 
     Returns
     -------
@@ -80,9 +86,8 @@ def steady_state(contact: Contact, problem: Problem, tolerance: float) -> Run:
     step = STEADY_TRAVEL / max(1.0, problem.velocity)
     path = make_path(problem.displacement, step * np.arange(STEADY_STRETCH + 1.0), EULER)
     goal = Goal(tolerance, STEP_SHARE * tolerance)
-    steady = find_periodic_state(
-        PeriodMap(contact, path, mirror=False), forward_slip(contact), goal
-    )
+    step_map = PeriodMap(contact, path, mirror=False, budget=budget)
+    steady = find_periodic_state(step_map, forward_slip(contact), goal)
     march = steady.march
     reason = unsolved(march, goal.step_tolerance)
     return Run(
@@ -167,7 +172,7 @@ def simulate(
             return method.run(problem, model, resolution, tolerance * problem.mean_load)
         if not problem.motion.periodic:
             contact = settings.contact(problem, model, resolution)
-            return steady_state(contact, problem, tolerance * problem.mean_load)
+            return steady_state(contact, problem, tolerance * problem.mean_load, settings.budget)
         if problem.velocity == 0.0 and drive is None:
             return static_run(problem, model, resolution, tolerance, settings)
         if problem.velocity == 0.0 and problem.force is not None:
@@ -220,8 +225,9 @@ class _Search:
         self.settings, self.relative, drive = settings, relative, problem.drive
         self.contact = settings.contact(problem, model, resolution)
         self.path = path_of(problem, self.contact, resolution.steps, settings.method.integrator)
-        self.interval = self.path.phase[-1] - self.path.phase[0]
-        self.rate = self.contact.stiffness * problem.drift
+        self.interval = float(self.path.phase[-1] - self.path.phase[0])
+        rate = self.contact.stiffness * problem.drift
+        self.gain = rate * self.interval
         # the accuracy of a static limit is chosen according to the rise of friction above it
         self.rise = problem.drift ** (2.0 / 3.0)
         self.unit, self.most_marches = problem.mean_load, MOST_MARCHES
@@ -236,34 +242,40 @@ class _Search:
             stuck = self.contact.stiffness * self.interval * problem.unit_drift
             self.unit = min(stuck, settings.slope * problem.mean_load)
         floor = TIGHTER * SLOW_STEP_SHARE if settings.tighter else SLOW_STEP_SHARE
-        share = min(max(self.rate * np.pi * STEP_SHARE, floor), STEP_SHARE)
+        share = min(max(rate * np.pi * STEP_SHARE, floor), STEP_SHARE)
         self.tolerance = relative * self.unit
         self.step_tolerance = min(share, MARCH_SHARE / resolution.steps) * self.tolerance
         self.static_force = self.least = np.nan
         self.limit: np.ndarray | None = None
-        self.searches: list[PeriodicState] = []
-        self.earlier: list[Run] = []
+        # of the searches of this run, and of earlier runs from which it starts
+        self.marches, self.earlier_periods, self.effort = 0, 0.0, Effort()
 
     def run(self, guess: Run | None) -> Run:
         """Try one initial state after the other, and return the Run of the last search, with the
         effort of all searches."""
-        problem, find = self.problem, self.settings.method.search or find_periodic_state
+        problem, full = self.problem, self.problem.mean_load
+        find = self.settings.method.search or find_periodic_state
         for start in (self.prescribed if self.body is None else self.driven)(guess):
             most = MARCHES_FROM_COARSER if start.near else self.most_marches
             goal = Goal(self.tolerance, self.step_tolerance, most, start.near)
-            self.searches.append(find(self.map(start), start.state, goal, start.place))
-            if self.searches[-1].converged:
+            drift_rate, slope = NOT_SLOW, np.inf
+            if self.force is None:  # the velocity is known
+                drift_rate = DriftRate(self.static_force, full, self.gain, self.least)
+                if self.body is not None:
+                    # 1 - mu decreases at most as fast as 1 / velocity^2, as at large velocities
+                    slope = 2.0 * (1.0 - start.friction) * full / (problem.drift * self.interval)
+            place = self.contact, self.path, drift_rate, problem.half_period_mirror
+            period_map = PeriodMap(*place, self.body, slope, budget=self.settings.budget)
+            periodic = self.count(find(period_map, start.state, goal, start.place))
+            if periodic.converged:
                 break
-        periodic, march = self.searches[-1], self.searches[-1].march
-        periods = periods_of(sum(one.marches for one in self.searches), problem)
+        march, periods = periodic.march, periods_of(self.marches, problem)
         reason = unsolved(march, self.step_tolerance)
         if not periodic.converged:
             reason = f"no periodic state within {periods:g} periods: {periodic.distance:.1e} left"
-        efforts = [one.effort for one in self.searches] + [one.effort for one in self.earlier]
-        mean = mean_forces(self.contact, problem, self.path, march.forces)
+        mean = mean_forces(self.contact, problem, self.path, march.forces)[FORWARD]
         values = {
-            "friction": float(mean[0]) / problem.mean_load,
-            "torque": float(mean[2]) / problem.pressure.torque,
+            "friction": float(mean) / full,
             "dissipation": dissipated_energy(self.contact, self.path, march),
         }
         if self.body is not None:
@@ -273,8 +285,8 @@ class _Search:
             values,
             distance=periodic.distance / self.unit,
             residual=march.residual / self.unit,
-            periods=periods + sum(one.periods for one in self.earlier),
-            effort=sum(efforts, Effort()),
+            periods=periods + self.earlier_periods,
+            effort=self.effort,
             reason=reason,
             state=periodic.start,
             place=march.body[0] if len(march.body) else AT_REST,
@@ -282,17 +294,10 @@ class _Search:
             limit=self.limit,
         )
 
-    def map(self, start: Start) -> PeriodMap:
-        """Build the period map for a search that begins at `start`."""
-        full, drift_rate, slope = self.problem.mean_load, None, np.inf
-        if self.force is None:  # the velocity is known
-            gain = self.rate * self.interval
-            drift_rate = DriftRate(self.static_force, full, gain, self.least)
-            if self.body is not None:
-                # 1 - mu decreases at most as fast as 1 / velocity^2, the rate at large velocities
-                slope = 2.0 * (1.0 - start.friction) * full / (self.problem.drift * self.interval)
-        mirror = self.problem.half_period_mirror
-        return PeriodMap(self.contact, self.path, drift_rate, mirror, self.body, slope)
+    def count(self, search: PeriodicState) -> PeriodicState:
+        """Add the marches and the effort of a search to those of the run, and return the search."""
+        self.marches, self.effort = self.marches + search.marches, self.effort + search.effort
+        return search
 
     def prescribed(self, guess: Run | None) -> Iterator[Start]:
         """Yield initial states at a prescribed velocity, best first."""
@@ -309,9 +314,11 @@ class _Search:
             # the force of this limit only sets `least`
             rest, tolerance = replace(problem, velocity=0.0), max(self.rise, self.tolerance)
             path = path_of(rest, contact, self.resolution.steps, method.integrator)
-            limit = limit_on_a_loop(contact, rest, path, tolerance, STEP_SHARE * tolerance)
-            assert limit.periodic is not None  # true for a loop
-            self.searches.append(limit.periodic)
+            tolerances = tolerance, STEP_SHARE * tolerance
+            limit, oscillation = limit_on_a_loop(
+                contact, rest, path, *tolerances, self.settings.budget
+            )
+            self.count(oscillation)
             self.least = limit.force
             # a factor of SLOW_EXCESS would prevent convergence at the smallest drifts
             start = limit.oscillating + limit.shift + self.rise * slipping
@@ -324,6 +331,7 @@ class _Search:
         `static_force`."""
         tolerance = STEP_SHARE * max(self.rise, self.tolerance)
         limit = limit_on_a_line(self.contact, self.problem.oscillation, tolerance)
+        self.settings.budget.take(limit.effort)
         if not unsolved(limit.march, tolerance):
             self.static_force = limit.force
         self.limit = limit.shift + limit.oscillating
@@ -378,5 +386,6 @@ class _Search:
 
     def _earlier_run(self, problem: Problem, resolution: Resolution, tolerance: float) -> Run:
         run = simulate(problem, self.model, resolution, tolerance, settings=self.settings)
-        self.earlier.append(run)
+        self.earlier_periods += run.periods
+        self.effort += run.effort
         return run

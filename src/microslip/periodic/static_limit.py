@@ -40,7 +40,6 @@ from microslip.contact.contact import (
     Contact,
     March,
     StepFailure,
-    forces,
     full_slip,
     rigid_displacement,
 )
@@ -113,15 +112,17 @@ class StaticLimit(NamedTuple):
         Mean forward force, divided by mu F_z.
     march : March
         Last march.
-    periodic : search.PeriodicState or None
-        The periodic state of the oscillation alone; None for a motion on a line.
     """
 
     shift: np.ndarray
     oscillating: np.ndarray
     force: float
     march: March
-    periodic: PeriodicState | None = None
+
+    @property
+    def effort(self) -> Effort:
+        """Effort of the last march."""
+        return Effort.of(self.march.solves, self.march.iterations, self.march.state.size)
 
 
 def at_turning_points(problem: Problem) -> bool:
@@ -149,7 +150,7 @@ def limit_on_a_line(contact: Contact, oscillation: Callable, step_tolerance: flo
     # the second turning point; the tractions at the first one have the opposite sign
     march = contact.march(_quarter(oscillation), start, step_tolerance)
     shift = lens_corner(-march.state, contact.bound)
-    force = float(forces(contact, shift)[FORWARD])
+    force = float(np.sum(contact.weight * shift[FORWARD]))
     return StaticLimit(shift, -march.state, force, march)
 
 
@@ -164,13 +165,12 @@ def lens_corner(oscillating: np.ndarray, bound: np.ndarray) -> np.ndarray:
     q_forward, q_lateral = oscillating
     size = np.hypot(q_forward, q_lateral)
     height = np.sqrt(np.maximum(bound**2 - size**2, 0.0))
-    with np.errstate(invalid="ignore", divide="ignore"):
-        slope = np.where(size > 0.0, np.abs(q_lateral) / size, 1.0)
-        turn = np.where(size > 0.0, -np.sign(q_lateral) * q_forward / size, 0.0)
-    corner = height * np.stack([slope, turn])
+    # at a point without traction, the result is the tip
+    turned = np.array([np.abs(q_lateral), -np.sign(q_lateral) * q_forward])
+    corner = height * (turned / np.where(size > 0.0, size, 1.0))
     # only the disc whose centre is further back can have its tip inside the other disc
     ahead = np.abs(q_forward)
-    tip = np.stack([bound - ahead, -np.sign(q_forward) * q_lateral])
+    tip = np.array([bound - ahead, -np.sign(q_forward) * q_lateral])
     other = np.hypot(bound - 2.0 * ahead, 2.0 * q_lateral)
     shift = np.where(other <= bound, tip, corner)
     return np.where(size < bound, shift, 0.0)
@@ -207,8 +207,13 @@ def loop_energy(
 
 
 def limit_on_a_loop(
-    contact: Contact, problem: Problem, path: Path, tolerance: float, step_tolerance: float
-) -> StaticLimit:
+    contact: Contact,
+    problem: Problem,
+    path: Path,
+    tolerance: float,
+    step_tolerance: float,
+    budget: Budget | None = None,
+) -> tuple[StaticLimit, PeriodicState]:
     """Compute the static limit of a contact from the periodic state of the oscillation alone.
 
     Parameters
@@ -221,14 +226,17 @@ def limit_on_a_loop(
         Path over a period, or half a period.
     tolerance, step_tolerance : float
         Tolerances of the state and of a step, as forces divided by mu F_z.
+    budget : run.Budget or None
+        Budget of the marches.  None means unlimited.
 
     Returns
     -------
-    StaticLimit
-        The limit; `periodic.converged` is False if the search failed.
+    tuple of StaticLimit and search.PeriodicState
+        The limit, and the periodic state.
     """
     mirror = problem.half_period_mirror
-    period_map, rounds = PeriodMap(contact, path, mirror=mirror), list[PeriodicState]()
+    period_map = PeriodMap(contact, path, mirror=mirror, budget=budget)
+    rounds: list[PeriodicState] = []
     start, goal = np.zeros(period_map.shape), Goal(tolerance, step_tolerance, MARCHES)
     while not rounds or not (rounds[-1].converged or len(rounds) == MOST_ROUNDS):
         rounds.append(find_periodic_state(period_map, start, goal))
@@ -245,7 +253,7 @@ def limit_on_a_loop(
             tractions = np.concatenate([tractions, [contact.mirrored(q) for q in tractions]])
         shift = largest_shift(tractions, bounds)
         force += float(np.sum(contact.weight * shift[FORWARD]))
-    return StaticLimit(shift, start, force, march, periodic)
+    return StaticLimit(shift, start, force, march), periodic
 
 
 def largest_shift(tractions: np.ndarray, bounds: np.ndarray) -> np.ndarray:
@@ -320,19 +328,19 @@ def limit_run(
             energy = loop_energy(contact, displacement)
             return Run({"friction": 0.0, "dissipation": energy}, distance=0.0, residual=0.0), None
         limit = limit_on_a_line(contact, displacement, inner)
+        settings.budget.take(limit.effort)
         energy = loop_energy(contact, displacement, limit.oscillating)
         sticks = np.hypot(*limit.shift) > LARGEST_SHIFT * np.max(contact.bound)
         # the limit needs a march of a quarter period and no search, so there are no periods
         distance, periods = 0.0, 0.0
-        effort = Effort.of(limit.march.solves, 0, limit.shift.size)
+        effort = limit.effort._replace(iterations=0, updates=0)
         reason = unsolved(limit.march, inner)
     else:
         path = path_of(problem, contact, resolution.steps, settings.method.integrator)
         accuracy = tolerance / FELT
         inner = min(LOOP_STEP_SHARE, MARCH_SHARE / path.steps) * accuracy
-        limit = limit_on_a_loop(contact, problem, path, accuracy, inner)
-        periodic = limit.periodic
-        assert periodic is not None  # true for a loop
+        tolerances = accuracy, inner
+        limit, periodic = limit_on_a_loop(contact, problem, path, *tolerances, settings.budget)
         # a constant traction does no work over a closed loop
         energy = dissipated_energy(contact, path, periodic.march)
         if contact.sticks:
@@ -504,7 +512,7 @@ def stick_edges(
         if progress is not None:
             progress(resolution)
         before, focus = radii, Focus(radii, STRONGEST_FOCUS) if radii else None
-        contact = settings.contact(problem, model, resolution, focus)
+        contact = replace(settings, focus=focus).contact(problem, model, resolution)
         run, sticks = limit_run(contact, problem, resolution, tolerance, settings)
         runs.append(run)
         radii = _stick_radii(contact, sticks)

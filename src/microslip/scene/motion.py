@@ -18,7 +18,7 @@ import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from functools import cached_property
-from typing import ClassVar, NamedTuple, NoReturn
+from typing import Any, ClassVar, NamedTuple, NoReturn
 
 import numpy as np
 
@@ -74,7 +74,7 @@ class Wave(NamedTuple):
     @property
     def lead(self) -> float:
         """Phase lead in radians."""
-        return float(np.deg2rad(self.degrees % 360.0))
+        return math.radians(self.degrees % 360.0)
 
     def __call__(self, phase: np.ndarray) -> np.ndarray:
         return self.share * self.form(self.cycles * phase + self.lead)
@@ -122,6 +122,7 @@ class Motion(spec.Named):
     amplitude_label: ClassVar[str] = "A"
     periodic: ClassVar[bool] = True
     edge_velocity: ClassVar[bool] = False
+    readings: ClassVar[Any] = ()
 
     def __post_init__(self) -> None:
         spec.refuse_strange(self, "motion")
@@ -158,10 +159,6 @@ class Motion(spec.Named):
 
     def _refuse(self, problem: str) -> NoReturn:
         raise InputError("motion", self.name, f"displacement: {problem}")
-
-    @property
-    def readings(self) -> tuple[Motion, ...]:
-        return ()
 
     # Symmetries
 
@@ -261,14 +258,13 @@ class Motion(spec.Named):
 
         Each of the three arrays has the shape of `phase`.
         """
-        forward, lateral, turn = (
-            amplitude * self.components[name](phase)
-            if name in self.components
-            else np.zeros_like(phase)
-            for name in PLANE
-        )
+        parts = dict.fromkeys(PLANE, np.zeros_like(phase))
+        for name, wave in self.components.items():
+            if name in PLANE:
+                parts[name] = amplitude * wave(phase)
+        forward, lateral, turn = parts.values()
         if self.edge_velocity or self.rotates:
-            unit = float(hertz.bore_angle(1.0, poisson))
+            unit = hertz.bore_unit(poisson)
             turn = unit * turn
             if self.edge_velocity:
                 velocity = velocity * unit * amplitude

@@ -264,7 +264,8 @@ class Problem:
     @cached_property
     def mean_speed(self) -> float:
         """Mean speed of the oscillation, which is the path length per radian of phase, in u_lim."""
-        moves = np.diff(np.stack(self.oscillation(LOOP)), axis=1)
+        places = np.array(self.oscillation(LOOP))
+        moves = places[:, 1:] - places[:, :-1]
         return float(np.sqrt(np.sum(moves**2, axis=0)).sum()) / (2.0 * np.pi)
 
     # Data from files

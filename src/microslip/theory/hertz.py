@@ -163,6 +163,12 @@ def bore_angle(amplitude: Numbers, poisson: float = 0.0) -> Numbers:
     return checked("amplitude", amplitude) * _twist_unit(poisson) * D_half()
 
 
+@cache
+def bore_unit(poisson: float) -> float:
+    """Return the angle of the bore amplitude 1 in u_lim/a; see bore_angle."""
+    return float(bore_angle(1.0, poisson))
+
+
 def bore_amplitude(angle: Numbers, poisson: float = 0.0) -> Numbers:
     """Convert an angle to a bore amplitude, phi~ = phi0 / phi_lk(1/2) (Eq 27, inverse of
     bore_angle).

@@ -89,9 +89,9 @@ def missing(text: str) -> str:
 
 def method_named(text: str) -> Method:
     """Return the `Method` with the given name, or raise InputError with the allowed names."""
+    if text in OWN:
+        return import_module("microslip.periodic.method").OWN[text]
     name, numbers = split(text)
-    if name in OWN:
-        return import_module("microslip.periodic.method").OWN[name]
     file = name.replace("-", "_")
     try:
         result = import_module(f"{__name__}.{file}").METHOD

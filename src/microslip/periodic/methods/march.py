@@ -21,7 +21,7 @@ def plain_march(
     The distance is estimated as in the shipped search, except that the remaining changes of the
     state are extrapolated as a geometric series with the ratio of the last two changes.
     """
-    state, march, last, distance, iterations = np.append(start, place), None, np.nan, np.inf, 0
+    state, march, last, distance, iterations = start, None, np.nan, np.inf, 0
     for marches in range(1, goal.most_marches + 1):
         march = period_map.march(state, goal.step_tolerance, march)
         iterations += march.iterations
@@ -37,8 +37,8 @@ def plain_march(
             break
         state, last = image, residual
     assert march is not None  # there is at least one march
-    start, converged = state[:-2].reshape(period_map.shape), distance <= goal.tolerance
-    return PeriodicState(march, start, residual, distance, marches, iterations, converged)
+    converged = distance <= goal.tolerance
+    return PeriodicState(march, state, residual, distance, marches, iterations, converged)
 
 
 METHOD = Method("plain march to the periodic state", search=plain_march, prepared=False)
