@@ -309,7 +309,11 @@ class _Search:
         start = slipping = forward_slip(contact)
         near_limit = method.prepared and contact.sticks
         if near_limit and problem.straight:
-            start = self._find_limit() + min(SLOW_EXCESS * self.rise, LARGEST_EXCESS) * slipping
+            # if the drift alone adds full friction in an interval, DriftRate.error is at most the
+            # change of the state, whatever the limit
+            if self.gain < problem.mean_load:
+                excess = min(SLOW_EXCESS * self.rise, LARGEST_EXCESS)
+                start = self._find_limit() + excess * slipping
         elif near_limit and problem.drift < SLOW_LOOP:
             # the force of this limit only sets `least`
             rest, tolerance = replace(problem, velocity=0.0), max(self.rise, self.tolerance)
