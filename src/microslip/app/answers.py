@@ -28,7 +28,7 @@ NEEDS = {"output": "--table or a range", "figure": "a range"}
 NEEDS |= dict.fromkeys(("decimal", "encoding"), "--table")
 """Options of `predict` that are allowed only with another option."""
 FRICTION = ["mu_apparent", "mu_apparent_error", "friction_force_N", "friction_force_error_N"]
-"""Columns of a table of friction, in addition to its axes."""
+"""Columns of a table of friction.  The table also has one column for each axis."""
 
 
 def point(motion: str, **arguments: Any) -> Answer:
@@ -81,8 +81,8 @@ def predict(motion: str, table: str | None = None, **arguments: Any) -> Answer:
     force, the probability of each outcome. A quantity can be a range: '0..2 um' gives 11 equally
     spaced values, '0..2 um, 21' gives 21, and '0.1..10 mm/s, 21, log' gives 21 logarithmically
     spaced values.  The result for a range is a table.  If the normal load oscillates, there are two
-    reference loads.  Dimensionless stiffness, mass and damping refer to mu times the load without
-    oscillation; dimensionless force and mu_macro refer to mu times the mean load.
+    reference loads.  The dimensionless stiffness, mass and damping refer to mu times the load
+    without oscillation.  The dimensionless force and mu_macro refer to mu times the mean load.
     """
     from microslip.si.inputs import is_range, read_inputs
 
@@ -212,9 +212,9 @@ def fit(
     u_lim at which the whole contact slides or the shear modulus.  Each row of the CSV file is a
     measurement of friction under vibration.  The heading names the columns and their units:
     friction [N] or mu; some of speed [mm/s], amplitude [um], frequency [kHz], load [N]; and
-    optionally friction_error [N] or mu_error.  An option in place of a column applies to all rows.
-    Exit codes: 0 both parameters determined; 1 only mu determined, or unreadable lines left out; 2
-    bad input, or neither parameter determined.
+    optionally friction_error [N] or mu_error.  If a column is missing, an option can give its value
+    for all rows.  Exit codes: 0 if both parameters are determined; 1 if only mu is determined, or
+    if unreadable lines are left out; 2 for bad input, or if neither parameter is determined.
     """
     import microslip
 
@@ -231,8 +231,9 @@ def response(path: str, output: str | None = None, **arguments: Any) -> Answer:
     """Compute the forces of a contact that follows a path from a file.
 
     The result contains forces, torque, dissipated energy and stick fraction, with error estimates.
-    The columns of the file are forward, lateral, angle, and load or indentation, with units as in
-    forward [um].  `load` is the load of the reference state.
+    The columns of the file are any of forward, lateral and angle, and at most one of load and
+    indentation.  Each heading contains the unit, as in forward [um].  `load` is the load of the
+    reference state.
     """
     import microslip
 
@@ -251,10 +252,10 @@ def response(path: str, output: str | None = None, **arguments: Any) -> Answer:
 def fold(record: str, output: str = "", rows: int = 32, **arguments: str) -> Answer:
     """Average a long record of a motion, such as one measured by a vibrometer, to one period.
 
-    The slow drift is removed, and the periods are averaged.  The standard error covers the scatter
-    between the periods and a slow drift of the frequency.  The columns of the record are time and
-    one or more of forward, lateral, angle, and load or indentation, each with its unit, as in time
-    [s],lateral [um].
+    The slow drift is removed, and the periods are averaged.  The standard error accounts for the
+    scatter between the periods and for a slow drift of the frequency.  The record has the column
+    time, any of the columns forward, lateral and angle, and at most one of load and indentation.
+    Each heading contains the unit, as in time [s],lateral [um].
     """
     from microslip.foundation.number_text import number_text
     from microslip.si.fold import fold as fold_record

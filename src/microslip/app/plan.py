@@ -1,10 +1,10 @@
 """Plan of a configuration: its products, the batches of requests that they need, and the files that
 are missing in the folder of results.
 
-A product is a dataset with its page, a figure, or a page of the explorer.  The files of a product
-are named by content, such as data/bore.0123456789abcdef.nc.  The name contains a hash of everything
-that the product is made from, so that an existing file is always up to date.  Plain names, such as
-bore.nc, are links.
+A product is one of the following: a dataset with its page; a figure; a page of the explorer.  The
+files of a product are named by content, such as data/bore.0123456789abcdef.nc.  The name contains a
+hash of everything that the product is made from, so that an existing file is always up to date.
+Plain names, such as bore.nc, are links.
 
 This module does not import Snakemake.  The import of this module must be fast, since every
 Snakemake process parses the workflow.
@@ -117,8 +117,8 @@ class Plan:
         """Return the batches of a product, keyed by their path without extension, in the order of
         the requests.
 
-        A certified map has one batch with all points.  The value of this batch is None, because its
-        requests depend on the results.
+        A certified map has one batch with all points.  The value of this batch is None, because the
+        choice of its requests depends on results.
         """
         configuration, blocks = self.configuration, []
         if (sweep := configuration.sweeps.get(name)) is not None:
@@ -141,8 +141,8 @@ class Plan:
 class Results:
     """The folder with the results of a plan.
 
-    A file that is damaged, or in which points have failed, is not replaced.  Instead, the new file
-    has a number in its name, such as data/bore.0123456789abcdef-1.nc.
+    A damaged file, or a file with failed points, is not replaced.  Instead, the new file has a
+    number in its name, such as data/bore.0123456789abcdef-1.nc.
 
     Attributes
     ----------
@@ -214,9 +214,9 @@ class Results:
         return {path: batch for path, batch in needed.items() if not path.exists()}
 
     def batches(self, certified: bool) -> list[str]:
-        """Return the names, without extension, of the batch files that are needed for missing
-        products and do not exist.  If `certified` is true, return the batches of certified maps,
-        otherwise all other batches."""
+        """Return the names, without extension, of missing batch files that are needed for missing
+        products.  If `certified` is true, these are the batches of certified maps.  If `certified`
+        is false, these are all other batches."""
         return [path.stem for path, b in self._needed.items() if (b is None) == certified]
 
     def new_points(self) -> int:
@@ -228,8 +228,8 @@ class Results:
         return sum(len(Job(folder / "new").missing(own)) for folder, own in requests.items())
 
     def order_of_batch(self, folder: str, name: str) -> str:
-        """Return the JSON text of a batch for its job.  For a certified map, the text contains only
-        the name of the map."""
+        """Return the JSON text that describes a batch for the job that solves this batch.  For a
+        certified map, the text contains only the name of the map."""
         path = f"{folder}/{name.partition('-')[0]}"
         for product in self.missing:
             if path in (batches := self.plan.batches(product)):
@@ -252,8 +252,8 @@ class Results:
         }
 
     def _chosen(self, folder: str, stem: str, endings: tuple[str, ...]) -> tuple[str, bool]:
-        """Return the name of complete files and True.  If there are no complete files, return an
-        unused name and False."""
+        """Return a name, and whether complete files with this name exist.  If there are no complete
+        files, the name is an unused one."""
         number = self._listed(folder).get(stem, {})
         for variant in sorted(number):
             if content.GAPS not in number[variant] and number[variant].issuperset(endings):
@@ -264,8 +264,8 @@ class Results:
         return next(name for name in names if name not in number), False
 
     def _list(self, folder: str) -> dict[str, dict[str, set[str]]]:
-        """Return the extensions of the files in a folder.  The extensions are keyed by the file
-        name without its number, and then by the file name."""
+        """Return the extensions of the files in a folder.  The outer keys are file names without
+        their number, and the inner keys are file names with their number."""
         listed: dict[str, dict[str, set[str]]] = {}
         path = self.folder / folder
         for file in os.listdir(path) if self.here and path.is_dir() else ():

@@ -82,8 +82,8 @@ def _code_of(command: Callable[[], int]) -> int:
 def _open_closed_streams() -> None:
     """Open the standard streams that are closed, and buffer standard output until the end.
 
-    Otherwise, a file that is opened later would get the number of a closed stream, and the output
-    of this stream would be written to the file.  With the buffer, standard output is either
+    If a stream stays closed, a file that is opened later gets the number of the stream, and the
+    output of the stream is written to this file.  With the buffer, standard output is either
     complete or missing, and only `_written` has to handle a full device.
     """
     missing = sys.stdout is None
@@ -125,9 +125,9 @@ def _written(code: int) -> int:
 def _code_in_thread(command: Callable[[], int]) -> int:
     """Run a command in another thread.
 
-    Python handles signals in the main thread, between two bytecode instructions.  The call of a
-    compiled kernel is a single instruction, which may take a minute but does not block other
-    threads.
+    Python handles signals in the main thread, between two bytecode instructions.  For Python, the
+    call of a compiled kernel is a single instruction.  The call may take a minute, but does not
+    block other threads.
     """
     threading.stack_size(STACK)
     codes: list[int] = []

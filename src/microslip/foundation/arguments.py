@@ -17,8 +17,9 @@ SMALLEST_TOLERANCE = 1e-6
 LARGEST_BODY = 1e6
 """Largest allowed stiffness, mass and damping of a drive, in working units."""
 SMALLEST_STIFFNESS = 1e-9
-"""Smallest stiffness of a spring, in working units.  A softer spring stretches by more than 1e9
-u_lim, with a rounding error of 1e-7 u_lim.  It is equivalent to a constant force."""
+"""Smallest stiffness of a spring, in working units.  A softer spring would stretch by more than 1e9
+u_lim, and the rounding error of this length is 1e-7 u_lim.  Such a spring is equivalent to a
+constant force."""
 
 
 def without_array(value: Any) -> Any:

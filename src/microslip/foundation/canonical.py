@@ -52,5 +52,6 @@ def sha256(text: str) -> str:
 
 
 def fingerprint(*parts: object) -> str:
-    """Return the first 32 digits of the SHA-256 of `parts`, which must be convertible to JSON."""
+    """Return the first 32 digits of the SHA-256 of `parts`.  The parts must be convertible to
+    JSON."""
     return sha256(canonical_json(parts))[:32]

@@ -16,9 +16,9 @@ by Numba's settings and by a listener to Numba's events:
   which is written after each compilation.  At the start of a process, files that do not match this
   list are removed.
 
-- Two processes that compile one function at the same time can mix up the codes of its signatures.
-  Therefore, only one process compiles at a time.  The other processes wait, and then use the code
-  that it has stored.
+- If two processes compile the same function at the same time, they can mix up the compiled codes
+  for different argument types.  Therefore, only one process compiles at a time.  The other
+  processes wait, and then use the code that the first process has stored.
 """
 
 from __future__ import annotations
@@ -51,8 +51,8 @@ if numba.config.DISABLE_JIT:
     raise InputError("NUMBA_DISABLE_JIT", numba.config.DISABLE_JIT, allowed)
 
 numba.config.SLP_VECTORIZE = 1
-"""Combine neighbouring scalar operations into vector instructions, which Numba does not do by
-default.  Matrix products then take half the time."""
+"""Numba option, off by default, that combines neighbouring scalar operations into vector
+instructions.  With this option, matrix products take half the time."""
 OPTIONS = {"nogil": True, "error_model": "numpy"}
 """Numba options.  Sums are not reordered, and division by zero works as in NumPy."""
 ROOM = 16_000_000
@@ -212,7 +212,8 @@ def kernel(function: Callable | None = None, **options: object) -> Callable:
 
 
 def _compile(compile_and_store: Callable, signature: object) -> object:
-    """Compile a function and store its code, or only compile it if the code cannot be stored."""
+    """Compile a function, and store its code.  If the code cannot be stored, the function is only
+    compiled."""
     try:
         return compile_and_store(signature)
     except OSError as error:  # the function has been compiled

@@ -8,10 +8,10 @@ Commas, semicolons or tabs separate the columns.  A heading is a name, with or w
 brackets.  Empty lines, lines that begin with #, a first line such as "sep=;" and empty columns at
 the end are ignored.  A comment directly above the first line can be the heading.
 
-`pandas.read_csv` accepts too much.  Under the heading "load [N],mu", pandas reads the line "1" as a
-load with an empty mu, and the line "1,5,0.3" as a load of 5.  For an unclosed quote, pandas rejects
-the whole file.  Duplicate columns are renamed, and error messages do not contain the line number of
-a cell.
+`pandas.read_csv` accepts too much.  For example, take the heading "load [N],mu".  For the line "1",
+pandas returns a load with an empty mu.  For the line "1,5,0.3", pandas returns a load of 5.  For an
+unclosed quote, pandas rejects the whole file.  Duplicate columns are renamed, and error messages do
+not contain the line number of a cell.
 """
 
 from __future__ import annotations
@@ -32,7 +32,7 @@ SEPARATORS = {",": "comma", ";": "semicolon", "\t": "tab"}
 LABELS = ("label", "name", "id", "sample", "comment")
 """Columns of text that are copied to the output."""
 PURE = ("", "1", "-")
-"""Units in a heading that stand for a pure number."""
+"""Units in a heading that mean a column of pure numbers."""
 HEADING = re.compile(r"(\w+)\s*(?:\[([^\]]*)\]|\(([^()]*)\))?")
 NUMBER = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?|[+-]?(nan|inf|infinity)", re.I | re.A)
 NO_ROW = re.compile(r"[\s,;\"]*|\s*#(?!(N/A|NV|[A-Z/0]+[!?])).*")
@@ -45,13 +45,12 @@ UNIT = re.compile(r"[\[(]?[^\W\d_][^\s,;]*[\])]?")
 """Pattern of a cell that may be a unit."""
 DECIMAL_COMMA = re.compile(r"(?<=[0-9]),(?=[0-9])|^([+-]?),(?=[0-9])")
 GROUPED = re.compile(r"[+-]?[1-9]\d{0,2}(\.\d{3})*", re.A)
-"""Pattern of a number in which a point can be a thousands separator, such as 1.100, or that has no
-point, such as 900."""
+"""Pattern of a number without a point, such as 900, or of a number in which each point can be a
+thousands separator, such as 1.100."""
 Heads = list[tuple[str, str | None]]
 """Name and unit of each column."""
 Rows = Iterator[tuple[int, list[str]]]
-"""Line number and cells of each row.  There are no cells if the quotes of the row are not in
-pairs."""
+"""Line number and cells of each row.  A row has no cells if its quotes are not in pairs."""
 UTF_8 = "allowed: UTF-8, which spreadsheets call CSV UTF-8, or the encoding of the file by name"
 SOURCES = "allowed is a path, a DataFrame of pandas, or a mapping of names to sequences"
 
@@ -81,7 +80,7 @@ class Table:
 
     @property
     def columns(self) -> dict[str, list[Any]]:
-        """The cells of each column, each with the unit of the heading, such as "10 N"."""
+        """The cells of each column.  Each cell includes the unit of the heading, as in "10 N"."""
         return {n: [_with_unit(c, self.units[n]) for c in one] for n, one in self.cells.items()}
 
     @property
@@ -290,8 +289,8 @@ def _heading(lines: list[str], index: int, decimal: str) -> tuple[str, Heads, Ro
 
 def _rows(lines: list[str], index: int, separator: str) -> Rows:
     """Yield the line number and the cells of each row, beginning with a given line.  A quoted cell
-    can have several lines, which are joined by spaces.  Such a cell ends in the next line with an
-    odd number of quotes."""
+    can have several lines, which are joined by spaces.  Such a cell ends on the next line that
+    contains an odd number of quotes."""
     while index < len(lines):
         where, text, cells = index + 1, lines[index], _cells(lines[index], separator)
         if not cells and text.count('"') % 2:
@@ -306,8 +305,8 @@ def _rows(lines: list[str], index: int, separator: str) -> Rows:
 
 
 def _cells(text: str, separator: str) -> list[str]:
-    """Return the cells of a row, or an empty list if the quotes are not in pairs around whole
-    cells."""
+    """Return the cells of a row.  The list is empty unless the quotes are in pairs, and each pair
+    encloses a whole cell."""
     rows = csv.reader([text], delimiter=separator, strict=True, skipinitialspace=True)
     try:
         return [cell.strip() for cell in next(rows, [])]
@@ -379,8 +378,8 @@ def _number(
 ) -> float:
     """Convert a word to a number.
 
-    unit: unit in the heading, for the message.  Raises ValueError with the line number unless the
-    word is a finite number of at least `least`.
+    unit: unit in the heading, for the message.  Raises ValueError unless the word is a finite
+    number of at least `least`.  The message contains the line number.
     """
     if not NUMBER.fullmatch(word):
         of = f" in {unit}, the unit of the heading" if unit else ""
@@ -395,8 +394,9 @@ def _number(
 def _refuse_thousands(name: str, words: Mapping[int, str | None]) -> None:
     """Raise ValueError for a column in which points may be thousands separators.
 
-    Programs with decimal commas may write 900 and 1.100 for 900 and 1100.  This check is not needed
-    if commas separate the cells or are the declared decimal marks.
+    Programs with decimal commas may use points as thousands separators, and write 1100 as 1.100 but
+    900 without a point.  The check is not needed in two cases: commas separate the cells, or commas
+    are declared as decimal marks.
     """
     cells = [(k, word) for k, word in words.items() if word and word.lstrip("+-") != "0"]
     points = [(k, word) for k, word in cells if "." in word]

@@ -7,7 +7,8 @@ import errno
 import os
 
 NO_WRITING = (errno.ENOSPC, errno.EDQUOT, errno.EROFS)
-"""Error numbers of operating system errors whose message makes the remedy clear."""
+"""Error numbers of the operating system for which the message of the system makes the remedy
+clear."""
 
 LONGEST = 400
 """Largest length of a value in a message, in characters.  The middle of a longer value is
@@ -18,8 +19,8 @@ class InputError(ValueError):
     """An invalid argument.
 
     The message is one line, "argument = value: what is allowed".  Other layers use the attributes
-    of the error to replace the argument by the name of an option, or the value by the string of a
-    quantity.
+    of the error to adapt the message.  They replace the argument by the name of an option, or the
+    value by the quantity as the user wrote it.
 
     Attributes
     ----------
@@ -39,8 +40,8 @@ class InputError(ValueError):
         return " ".join(f"{self.argument} = {shown(self.value)}: {self.allowed}".split())
 
     def renamed(self, argument: str, value: object = None) -> InputError:
-        """Return a copy with another argument name, and with another value unless `value` is
-        None."""
+        """Return a copy of the error with another argument name.  The copy also has another value,
+        unless `value` is None."""
         return InputError(argument, self.value if value is None else value, self.allowed)
 
 

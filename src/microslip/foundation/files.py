@@ -30,8 +30,8 @@ def content_of(path: str | os.PathLike, most: int = MOST_BYTES) -> bytes:
 
 
 def refuse_no_folder(folder: object) -> None:
-    """Raise CacheError if the name of a folder is empty, is not a string, or begins with ~, which
-    only a shell replaces by the home folder."""
+    """Raise CacheError if the name of a folder is empty or is not a string.  A name that begins
+    with ~ is also refused, because only a shell replaces ~ by the home folder."""
     name = os.fspath(folder) if isinstance(folder, str | os.PathLike) else ""
     problem = "allowed: the name of a folder"
     if isinstance(name, str) and Path(name).parts[:1] == ("~",):
@@ -66,8 +66,8 @@ def write_atomically(path: Path, content: bytes) -> None:
 
 @contextmanager
 def writing_beside(path: str | os.PathLike[str]) -> Iterator[Path]:
-    """Context manager that yields a temporary Path in the folder of `path`, and finally renames it
-    to `path`.
+    """Context manager that yields a temporary Path in the folder of `path`.  At the end, the
+    temporary file is renamed to `path`.
 
     The file is flushed to disk before it is renamed.  After an error or an interrupt, `path` is
     unchanged.  Raises CacheError if the operating system reports an error.

@@ -8,7 +8,7 @@ A result depends on the content of a file and not on its folder.  Therefore, the
 a pressure from a file contains a digest: "soft_square.py:sha256=0123456789abcdef,share=0.5" or
 "file:sha256=0123456789abcdef,grid=samples".  The digest of a Python file covers the files that it
 imports from its folder.  Each process stores the path that belongs to a digest.  `remember` stores
-paths that another process has passed on.
+paths that this process has received from another process.
 
 This module imports only fast modules, because each start of the workflow imports this module.
 """
@@ -45,7 +45,7 @@ DIGITS = 16
 """Number of hexadecimal digits of a digest in a name."""
 OPTIONS = re.compile(r"(?:^|,)(grid|pitch|sha256|decimal|encoding)=([^,]*)$")
 DECIMALS = {"point": ".", "comma": ","}
-"""Decimal marks, by the words that represent them in names."""
+"""Decimal marks, keyed by the words that represent them in names."""
 HINT = (
     "grid=cells or grid=samples, and pitch=0.5 mm, for pressures; decimal=comma or encoding=cp1252"
 )
@@ -100,7 +100,7 @@ class NamedFile:
 
     @property
     def placed(self) -> str:
-        """The name with the path and the digest, for other processes that read the file."""
+        """The name with the path and the digest.  Other processes read the file by this name."""
         return self._text(self.path)
 
     def _text(self, path: str) -> str:
@@ -143,8 +143,8 @@ def parse(name: object, argument: str = "file") -> NamedFile | None:
 def read(
     file: NamedFile, argument: str, folders: Iterable[str | os.PathLike] = ()
 ) -> tuple[NamedFile, bytes]:
-    """Read a file.  Returns a copy of `file` with the absolute path and the digest, and the content
-    of the file.
+    """Read a file.  The first result is a copy of `file` with the absolute path and the digest.
+    The second result is the content of the file.
 
     Parameters
     ----------
@@ -194,7 +194,7 @@ def read(
 
 
 def remember(names: Iterable[str]) -> None:
-    """Store the file paths from names that contain a path and a digest.  Other names are
+    """Store the file path of each name that contains a path and a digest.  Other names are
     ignored."""
     for file in filter(None, map(parse, names)):
         if file.digest and os.path.isabs(file.path):
@@ -247,8 +247,9 @@ def read_object(named: NamedFile, argument: str, create: Callable[[NamedFile, by
 
 
 def _imports_of(path: Path) -> tuple[Sources, set[str]]:
-    """Return the `Sources` of the folder that contains a file, and the names of the file itself and
-    of the files in this folder that it imports."""
+    """Return the `Sources` of the folder that contains a file, and a set of names.  The set
+    contains the name of the file, and the names of the files in this folder that the file
+    imports."""
     from microslip.foundation.source_digest import Sources  # late, since it imports ast
 
     sources = Sources(path.parent, "")
@@ -258,8 +259,9 @@ def _imports_of(path: Path) -> tuple[Sources, set[str]]:
 def _run(path: Path, name: str) -> ModuleType:
     """Run a Python file as a module with the given name.  The file can import the files beside it.
 
-    Afterwards, sys.modules is restored, except for this module, because files in two folders can
-    have the same name, and an edited file is run again.
+    Afterwards, sys.modules contains this module, and otherwise the same modules as before.  The
+    reason is that files in two folders can have the same name, and that an edited file is run
+    again.
     """
     module = sys.modules[name] = ModuleType(name)
     module.__file__ = str(path)

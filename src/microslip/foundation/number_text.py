@@ -13,8 +13,8 @@ EXACT = 1e-9
 """Relative error below which a number is printed without its error, because all printed digits are
 correct."""
 ROUNDING = 1e-12
-"""Error below which a zero is printed without its error.  It is the rounding error of numbers near
-1."""
+"""A zero with a smaller error is printed without this error.  The value is the rounding error of
+numbers near 1."""
 SIZES = -4, 7
 """Range of decimal exponents in which numbers are printed without an exponent."""
 WIDE = Context(prec=800)
@@ -89,7 +89,8 @@ def _short(number: Decimal) -> str:
 
 
 def _rounded(number: float, digits: int, rounding: str | None = None) -> Decimal:
-    """Round the shortest decimal representation of a float: 0.01 stays 0.01."""
+    """Round a float, starting from its shortest decimal representation.  For example, 0.01 stays
+    exactly 0.01."""
     return Context(prec=digits, rounding=rounding).create_decimal(Decimal(repr(number)))
 
 
@@ -127,8 +128,8 @@ def interval_text(low: float, high: float, unit: str = "", *, error: float = 0.0
 
 
 def prefixed(value: float, unit: str) -> tuple[str, float]:
-    """Return the unit with the largest metric prefix with which the value is at least 1, and the
-    size of this prefix.  For 0, the unit has no prefix."""
+    """Return the unit with a metric prefix, and the factor of this prefix.  The prefix is the
+    largest one with which the value is at least 1.  For 0, the unit has no prefix."""
     size = abs(value) or 1.0
     prefix, factor = next((one for one in PREFIXES.items() if size >= one[1]), ("p", 1e-12))
     return f"{prefix}{unit}", factor

@@ -3,10 +3,10 @@
 The name of a result contains the digest of the solver.  This digest covers the code of all
 subpackages that compute results, and the file of a comparison method.  The name of a dataset, page
 or figure contains the digest of its builder.  The builder consists of the modules that make the
-product, and of the modules that they import from the subpackages in OUTER (except foundation).  The
-name of a motion or a pressure in a user's file contains the digest of this file and of the files
-that it imports from its folder. Comments, docstrings and layout do not change a digest.  Messages
-change only the digests of builders.
+product, and of the modules imported by them from the subpackages in `OUTER`, except foundation.
+The name of a motion or a pressure in a user's file also contains a digest.  This digest covers the
+user's file, and the files that it imports from its folder.  Comments, docstrings and layout do not
+change a digest.  The text of messages influences only the digests of builders.
 
 Files are read when a digest is first needed.
 """
@@ -29,9 +29,11 @@ PACKAGE = Path(__file__).parents[1]
 OUTER = {"app", "bundle", "config", "datasets", "foundation", "report", "si", "studies", "sweeps"}
 """Subpackages that do not compute results, except for the files in NUMBERS."""
 NUMBERS = {"foundation/compiled.py", "sweeps/evaluate.py", "sweeps/period_codec.py"}
-"""Files in OUTER on which results depend: compilation, and conversion of the solver's output."""
+"""Files in `OUTER` on which results depend nevertheless.  They compile functions, and convert the
+output of the solver."""
 METHODS = "periodic/methods/"
-"""Folder of comparison methods.  A file counts only for requests with its method."""
+"""Folder of comparison methods.  A file in this folder influences only the results of requests that
+use its method."""
 ENDINGS = {".py", ".csv", ".html", ".css", ".js"}
 """File name extensions of modules, of their tables, and of parts of pages."""
 
@@ -140,8 +142,7 @@ class Sources:
 
 
 _READER = Path(__file__).read_bytes()
-"""Content of this file.  Parse results that another version of this file has stored are not
-used."""
+"""Content of this file.  Parsed data that another version of this file has stored is not used."""
 
 
 def is_physics(name: str) -> bool:
@@ -208,7 +209,8 @@ def of_request(request: dict) -> str:
 
 @cache
 def of_solver(method: str = "") -> str:
-    """Return the digest of the code of the physics and of the file of a comparison method."""
+    """Return the digest of the code that computes results.  It covers the code of the physics and
+    the file of a comparison method."""
     files = {f"{METHODS}{method}.py"}.intersection(LOADED.names)
     return LOADED.digest(LOADED.solver | LOADED.closure(files, is_physics))
 

@@ -19,8 +19,8 @@ NUMBER = re.compile(
 WHOLE = re.compile(r"[+-]?[0-9]{1,18}", re.ASCII)
 MINUS = "\N{MINUS SIGN}"
 HALVES = {"diameter": "radius", "stroke": "amplitude", "peak_to_peak": "amplitude"}
-"""Quantities that are half of another quantity, keyed by words in the name of the other
-quantity."""
+"""Words that name half of a quantity, keyed by the word for the quantity.  For example, a radius is
+half of a diameter."""
 
 
 def read(argument: str, text: str, whole: bool = False) -> float | int:
@@ -63,8 +63,8 @@ def read(argument: str, text: str, whole: bool = False) -> float | int:
 
 def near_miss(name: object, names: Iterable[str]) -> str:
     """Return 'did you mean NAME? ' for the most similar name, or '' if no name is similar.  If the
-    name is that of a quantity twice as large as an argument, such as a diameter in place of a
-    radius, the hint says so."""
+    name belongs to a quantity that is twice an argument, the hint says so.  For example, a diameter
+    is twice a radius."""
     word = str(name).lstrip("-").replace("-", "_")
     half = re.sub("|".join(HALVES), lambda match: HALVES[match[0]], word)
     for one in names:
@@ -92,11 +92,13 @@ def split(text: str, what: str, names: Iterable[str]) -> tuple[str, str | None]:
 def numbers_in(
     part: str | None, text: str, what: str, name: str, parameters: Iterable[str] | None = None
 ) -> dict[str, float]:
-    """Read the parameters in the part of a string after the name, such as "forward=0.5,phase=90".
-    Returns the numbers, keyed by name, or an empty dict if the part is None.
+    """Read the parameters in the part of a string that follows the name, such as
+    "forward=0.5,phase=90".  Returns the numbers, keyed by name, or an empty dict if the part is
+    None.
 
-    If the part cannot be read, or if a number is not in `parameters`, raises InputError about the
-    argument `what`.  The message contains the whole string, and an example with the name.
+    Raises InputError about the argument `what` if the part cannot be read, or if `parameters` does
+    not contain the name of a number.  The message contains the whole string, and an example with
+    the name.
     """
     numbers: dict[str, float] = {}
     for one in [] if part is None else part.split(","):
@@ -121,8 +123,8 @@ def numbers_in(
 def refuse_strange(record: Any, what: str) -> None:
     """Raise InputError about the argument `what` if a numeric field of a dataclass is not finite.
 
-    Numeric fields are those whose default is a number.  An array of one number is replaced by the
-    number; see `arguments.without_array`.
+    Numeric fields are those whose default is a number.  An array that contains a single number is
+    replaced by this number; see `arguments.without_array`.
     """
     for field in fields(record):
         if isinstance(field.default, int | float):

@@ -38,7 +38,7 @@ DEFINITIONS = {
     "meter,metre=m second=s gram=g radian=rad newton=N pascal=Pa degree=deg": SPELLED_PREFIXES,
 }
 """Allowed prefixes, keyed by definitions of units.  A definition is a number times known units.
-One hertz is one turn per second, which differs from 1 rad/s by 2 pi."""
+One hertz is one turn per second, which is 2 pi times 1 rad/s."""
 CYCLIC = re.compile(r"\w{0,2}(Hz|cps)")
 """Names of cyclic frequencies, which are accepted alone but not in products."""
 ANGULAR = re.compile(r"\w?rad(/s|\s*s\^?-1|·?s⁻¹)?")
@@ -64,13 +64,13 @@ HINTS = {
     "N": {"kg": ", of a mass; for its weight write gf or kgf, as in '500 gf'"},
     "m/s": {"rpm": ", of a rotation; its speed is the rate in rad/s times a radius"},
 }
-"""Hints about wrong units, keyed by the SI unit, and then by a unit of the same kind as the wrong
-unit."""
+"""Hints about wrong units.  The outer keys are SI units, and the inner keys are units of the same
+kind as the wrong unit."""
 
 
 class Unit(NamedTuple):
-    """A unit, defined by its factor to a product of base units, and by the exponents of the base
-    units m, kg, s, rad and K."""
+    """A unit, described by a factor and by the exponents of the base units m, kg, s, rad and K. The
+    unit is the factor times the product of the base units."""
 
     factor: Fraction
     powers: tuple[int, ...]
@@ -255,8 +255,7 @@ def _number(text: str, si: str, units: bool) -> tuple[float, bool]:
 
 
 def _hint(digits: str, rest: str) -> str:
-    """Return a hint about the part of a string that follows the digits of a number and could not be
-    read."""
+    """Return a hint about `rest`, which follows the digits of a number and could not be read."""
     if digits and (fraction := re.fullmatch(r"/\s*([1-9]\d*)\s*(.*)", rest, re.S)):
         value = float(Fraction(Decimal(digits)) / int(fraction[1]))
         return f" (did you mean {f'{value!r} {fraction[2]}'.strip()!r}?)"

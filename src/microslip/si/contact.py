@@ -1,4 +1,5 @@
-"""The contact of two elastic bodies in SI units, and the dimensionless groups of the solver.
+"""The contact of two elastic bodies in SI units.  The module also computes the dimensionless groups
+that the solver needs.
 
 All formulas accept arrays of inputs.  For tangential loads, two half-spaces are equivalent to one
 half-space whose compliance is the sum of both compliances.  The normal and the tangential problem
@@ -22,9 +23,9 @@ from microslip.si.inputs import AT_REST, OSCILLATIONS, Inputs
 from microslip.theory import hertz
 
 LARGEST_RATIO = 0.5
-"""Largest accepted ratio of the contact radius to the smaller radius of the two bodies.  At this
-ratio, the surface of a sphere is tilted by 30 degrees at the edge of the contact, and is 7 % deeper
-there than the parabola of Hertz's theory."""
+"""Largest accepted ratio of the contact radius to the radius of the smaller body.  At this ratio,
+the surface of a sphere is tilted by 30 degrees at the edge of the contact, and is 7 % deeper there
+than the parabola of Hertz's theory."""
 ROUND = 1e-6
 """Largest relative difference between two radii that count as equal."""
 OUT_OF_RANGE = "outside the range of floating-point numbers; allowed are sizes of real bodies"
@@ -166,8 +167,8 @@ class Contact:
 
     @cached_property
     def amplitude(self) -> Any:
-        """Amplitude for microslip.solve: the largest of `amplitudes`, or None for a steady
-        motion."""
+        """Amplitude for microslip.solve.  It is the largest value of `amplitudes`, or None for a
+        steady motion."""
         sizes = self.amplitudes.values()
         return reduce(np.maximum, sizes) if sizes else None
 

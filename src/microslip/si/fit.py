@@ -51,8 +51,9 @@ Rows = dict[str, np.ndarray]
 values and their errors."""
 Friction = Callable[..., np.ndarray]
 """friction(velocity, amplitude, rough=False) returns mu_macro and its error estimate as an array of
-shape (2, n).  If `rough` is true, the arguments can have any shape, and the first item of the
-result is an approximation of mu_macro whose error hardly depends on the point."""
+shape (2, n).  If `rough` is true, the arguments can have any shape.  The first item of the result
+is then an approximation of mu_macro, and the error of this approximation hardly depends on the
+point."""
 
 MOTIONS = ("transverse", "longitudinal", "zigzag")
 CONDITIONS = ("speed", "amplitude", "load", "frequency")
@@ -70,11 +71,12 @@ LISTS = "understood", "warnings", "left_out"
 """Fields of a Fit with several strings, which are joined to one string in a dataset."""
 PARTS = "value", "low", "high"
 OPEN = "open"
-"""Printed in place of a bound that the rows do not determine."""
+"""Text that is printed instead of a bound that the rows do not determine."""
 MORE_ROWS = "add rows without vibration, or rows where vibration reduces friction more"
 EMPTY = "empty; allowed: a number in every row; leave out the row, or fill the cell"
 MOST_ROWS, MOST_SOLVED = 10_000, 200
-"""Largest number of rows if a map is given, and if the solver computes the rows."""
+"""Largest number of rows.  If a map is given, the first value applies.  Otherwise, the solver
+computes the rows, and the second value applies."""
 TOLERANCE, CONFIDENCE = 1e-3, 0.95
 TOLERANCES = INPUTS["tolerance"]._replace(high=0.02)
 CONFIDENCES = Input("", "", "", high=0.999999, exact=True)
@@ -92,18 +94,18 @@ map."""
 NODES = 161
 """Number of values of ln u_lim at which the friction of the rows is tabulated."""
 MOST_PASSES, SETTLED = 6, 5e-4
-"""Largest number of corrections of the coarse map, and relative change of both unknowns below which
-no further correction is made."""
+"""MOST_PASSES: largest number of corrections of the coarse map.  SETTLED: no further correction is
+made if the relative change of both unknowns is below this value."""
 SMALLEST_MU = 1e-5
 WIDEST_MU = 2.0
 """Largest allowed ratio of the upper to the lower bound of the interval for mu."""
 UNLIKELY = 0.01
-"""Probability (p-value) of the sum of squares below which a warning is given."""
+"""A warning is given if the probability (p-value) of the sum of squares is below this value."""
 REGION = 801
 """Number of values of ln u_lim at which the confidence region is computed."""
 PIECES = 60
-"""Number of linearly spaced points on each curve of the figure.  The number of logarithmically
-spaced points is the same."""
+"""Each curve of the figure has this number of linearly spaced points, and the same number of
+logarithmically spaced points."""
 ROW_UNITS = {"_Pa": "Pa", "_m_s": "m s-1", "_Hz": "Hz", "_N": "N", "_m": "m", "_si": "m"}
 """Units of the variables in a dataset, keyed by the last part of the name."""
 
@@ -114,7 +116,7 @@ class Fit:
 
     Each interval covers the scatter of the rows at the confidence level.  The interval is then
     widened by the error estimate of the model, because this error is not random.  A bound is None
-    if the rows do not determine it.  The page docs/reference/fields.md explains all fields, and the
+    if the rows do not determine it.  The page docs/reference/fields.md explains all fields and all
     names in `rows`.
 
     Attributes
@@ -318,8 +320,9 @@ def fit(
 
 
 def _read_rows(source: Any, shared: dict[str, Any], **form: str) -> dict[str, Any]:
-    """Read the rows of a file or of a mapping of columns.  Returns a dict with the rows, and with
-    the fields `quantity`, `labels`, `left_out` and `understood` of a `Fit`.  Raises InputError."""
+    """Read the rows of a file or of a mapping of columns.  Returns a dict that contains the rows
+    and four fields of a `Fit`: `quantity`, `labels`, `left_out` and `understood`.  Raises
+    InputError."""
     table = table_of("measured", source, UNITS, need_units=True, **form)
     columns, errors = table.columns, dict(table.errors)
     good: dict[int, list[float]] = {}
@@ -483,8 +486,8 @@ def _lengths(rows: Rows, load: float | None = None) -> np.ndarray:
 
 
 def _curves(friction: Friction, lengths: np.ndarray, x: Any) -> np.ndarray:
-    """Return rough values of mu_macro in all rows for several values x of ln u_lim.  The array x
-    has the shape (..., 1)."""
+    """Return rough values of mu_macro in all rows, for each value of ln u_lim in the array `x`.
+    This array has the shape (..., 1)."""
     still = lengths[1] == 0.0
     velocity, amplitude = np.where(still, 1.0, lengths)
     rough = friction(velocity / np.exp(x), amplitude / np.exp(x), rough=True)[0]
@@ -654,11 +657,11 @@ def _warnings(motion: str, rows: Rows, bodies: dict[str, Any], mu: float, size: 
 
 
 def _curve(rows: Rows, profile: Profile, friction: Friction, mu: float) -> Rows:
-    """Compute the model's friction between rows that differ in one condition only.  The returned
-    arrays contain these curves one after another.
+    """Compute the model's friction on curves.  Each curve connects rows that differ in one
+    condition only.  The returned arrays contain these curves one after another.
 
     The condition that differs is the one with the most distinct values.  The correction of the
-    coarse map is known in the rows, and is interpolated between them.
+    coarse map is known only for the rows, and is interpolated between the rows.
     """
     along = max(KEYS, key=lambda key: len(np.unique(rows[key])))
     which = np.unique([rows[k] for k in KEYS if k != along], axis=1, return_inverse=True)[1].ravel()

@@ -30,8 +30,8 @@ FEWEST_PERIODS, FEWEST_PER_PERIOD = 4, 4
 """Smallest number of periods in a record, and smallest number of samples in a period.  At each end
 of the record, half a period is lost."""
 ROWS, MOST_ROWS = 32, 10_000
-"""Default and largest number of samples in the period.  More samples keep more harmonics, and more
-noise."""
+"""Default and largest number of samples in the period.  With more samples, the period contains more
+harmonics, but also more noise."""
 REFINEMENTS = 3
 """Number of corrections of the frequency.  The error that remains after a correction is due to the
 errors of the phases."""
@@ -40,12 +40,12 @@ PARTS, MOST_PARTS, PERIODS_OF_PART = FEWEST_PERIODS, 20, 10
 part.  The median amplitude of 10 noisy periods is rarely below one half of the mean."""
 STEADY = 0.5
 """Smallest amplitude of a part divided by the mean amplitude.  If the amplitude is below one half
-of the mean, it is nearer to 0 than to the mean, so that a state of rest describes the part better
+of the mean, it is nearer to 0 than to the mean.  A state of rest then describes the part better
 than the mean period does."""
 LARGEST_CHANGE = 0.1
 """Largest difference between the amplitudes of the quarters of a record, divided by the mean."""
 MOST_DECIMALS = 12
-"""Largest number of decimals of times that count as rounded.  Times with more decimals need no
+"""Times with at most this number of decimals count as rounded.  Times with more decimals need no
 allowance for rounding."""
 LARGEST_LOSS = 0.01
 """Largest accepted relative loss of the strongest harmonic due to a drift of the frequency.  The
@@ -61,12 +61,12 @@ FINER = 32
 """Number of interpolated points per sample for the peak-to-peak value.  With 32 samples, the peak
 of a sine is too small by at most 5e-6 of its amplitude."""
 CONSTANT = 1e-12
-"""Largest variation of a column that counts as constant, divided by its largest value.  It allows
-for rounding errors."""
+"""A column counts as constant if its variation, divided by its largest value, is at most this
+value.  It allows for rounding errors."""
 NOT_CONSTANT = "constant; allowed is an oscillation"
 TREND, SLOWEST = 3, 3
-"""Degree of the polynomial that is subtracted before the search for the frequency, and smallest
-number of periods per record in this search."""
+"""TREND: degree of the polynomial that is subtracted before the search for the frequency.  SLOWEST:
+smallest number of periods per record in this search."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -263,7 +263,7 @@ def _change(sizes: np.ndarray) -> float:
 
 
 def _phases(parts: np.ndarray) -> tuple[float, float, float, int, int]:
-    """Return the relative correction of the frequency, the standard error of this correction, the
+    """Compute five values: the relative correction of the frequency and its standard error, the
     variance of the slow phase drift (in periods squared), and the order and the column of the
     strongest harmonic.  The first three values are computed from the phases of this harmonic."""
     power = np.mean(np.abs(parts) ** 2, axis=0)
@@ -299,9 +299,9 @@ def _checked(time: Any, columns: Mapping[str, Any]) -> tuple[float, float, list[
 
 
 def _step(time: np.ndarray) -> tuple[float, float]:
-    """Return the time step, and the standard error of the record's length that is due to the
-    rounding of the times.  The rounding errors of times that are rounded to the same number are not
-    independent.
+    """Return the time step, and the standard error of the length of the record.  This error is due
+    to the rounding of the times.  Times that are rounded to the same number do not have independent
+    rounding errors.
 
     Raises InputError if the steps differ by more than rounding can explain.
     """
@@ -327,7 +327,8 @@ def _step(time: np.ndarray) -> tuple[float, float]:
 
 
 def _strongest(values: np.ndarray) -> float:
-    """Return how many periods of its strongest spectral component the record contains."""
+    """Find the strongest spectral component of the record, and return how many of its periods the
+    record contains."""
     x = np.linspace(-1.0, 1.0, len(values))
     trend = np.polynomial.polynomial.polyvander(x, TREND)
     rest = values - trend @ np.linalg.lstsq(trend, values, rcond=None)[0]

@@ -105,7 +105,8 @@ OF_BODIES = (
     *("young", "nu", "hardness", "density", "counter_hardness", "counter_density", "material"),
     "tolerance",
 )
-"""Inputs without a printed line of their own.  The properties of a body are printed in its line."""
+"""Inputs that are not printed on a separate line.  The properties of a body are printed on the line
+of the body."""
 SEARCHED = "amplitude", "speed", "load"
 """Inputs that a reduction can replace."""
 OSCILLATIONS = {
@@ -199,7 +200,7 @@ continuous-bore|| rotation            | | and spins steadily about the contact n
 """Kinds of the motions that need their own list of inputs.  All other motions have one amplitude or
 a rotation."""
 AT_REST = Kind("", "rests", needed=())
-"""Kind of a contact without a motion."""
+"""The `Kind` object of a contact without a motion."""
 
 
 def kind_of(motion: Any) -> Kind:

@@ -100,7 +100,7 @@ OUTCOMES = {
     "stays": "it stays: the force is below the threshold",
     "undecided": "undecided within the error",
 }
-"""Sentences about the outcomes, except for a contact that runs away."""
+"""Sentence for each outcome, except for the outcome that the contact runs away."""
 REASONS = ("mu_static_reason", "displacement_reason")
 LISTS = ("remarks", "warnings", "not_checked")
 """Columns of a prediction that are lists of strings."""
@@ -224,9 +224,10 @@ class Prediction:
         return self.inputs["counterbody"]
 
     def columns(self) -> tuple[dict[str, Any], dict[str, dict[str, str]]]:
-        """Return all columns, keyed by name, and the attributes of the columns with numbers.  The
-        value and the error of every output are included, and are None if the output does not apply.
-        The columns spread, low and high are included only if an input is uncertain."""
+        """Return two dicts, keyed by name: all columns, and the attributes of the numerical
+        columns.  The value and the error of every output are included, and are None if the output
+        does not apply.  The columns spread, low and high are included only if an input is
+        uncertain."""
         columns = {name: getattr(self, name) for name in (*TEXTS, *REASONS, "converged")}
         columns["inputs"], attributes = dict(self.inputs), {}
         columns |= {name: list(getattr(self, name)) for name in LISTS}
@@ -325,7 +326,7 @@ def _scaled(size: float, unit: str) -> tuple[str, float]:
 
 def _lines(title: str, one: Value, sentence: str) -> list[str]:
     """Format a `Value` as a line with its error.  If the inputs are uncertain, a second line
-    contains its uncertainty."""
+    contains the uncertainty of the value."""
     value, error = one.value, one.error
     size = max(abs(value), error if abs(value) <= error < math.inf else 0.0)
     name, scale = _scaled(size, one.unit)

@@ -156,7 +156,8 @@ def outputs(contact: Contact, answer: Prediction) -> dict[str, Value]:
 
 def factors_of(contact: Contact, answer: Prediction) -> dict[str, Any]:
     """Return the factors whose products are the outputs, in SI units and keyed by name.  Attributes
-    of the contact, which can also be factors, are not included.  All formulas accept arrays."""
+    of the contact are not included, although they can be factors as well.  All formulas accept
+    arrays."""
     inputs, known, mean_load = contact.inputs, answer.values, answer.values["mean_load"].value
     friction, velocity, unit = known["friction"], known["velocity"], contact.speed_unit
     still, period = contact.mu * contact.load * mean_load, 2.0 * math.pi / contact.omega

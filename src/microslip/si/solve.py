@@ -36,10 +36,11 @@ Smaller errors take more than a minute."""
 SLOWEST = 1e-3
 """Dimensionless velocity below which the accepted error is absolute instead of relative."""
 MARGIN = 0.8
-"""Safety factor on the accepted error of a second run, because the second velocity can be
-smaller."""
+"""Safety factor on the accepted error of a second run.  It is below 1 because the second velocity
+can be smaller than the first."""
 RUNS_AWAY = "runs away"
-"""First words of the solver's reason for a contact that accelerates without limit."""
+"""The reason in the result of the solver begins with these words if the contact accelerates without
+limit."""
 MAP = "map"
 """Model name in a Result that comes from a map."""
 AMPLITUDES = 1e-6, 1e4
@@ -51,7 +52,8 @@ LOAD = 1e-12
 """Load, in N, at which the dimensionless groups are computed in a search for the load.  It is so
 small that Hertz's theory applies to all bodies."""
 STEP = 0.05
-"""Step of the finite difference for the slope of friction, in the logarithm of the unknown."""
+"""Step of the finite difference that gives the slope of friction.  The step is a change of the
+logarithm of the unknown."""
 
 
 class NoSolutionError(InputError):
@@ -107,8 +109,8 @@ def answer_of(contact: Contact) -> Prediction:
 def solve_at(contact: Contact, velocity: float | None, tolerance: float, **drive: float) -> Result:
     """Return the `Result` for a contact, computed by microslip.solve or interpolated in a map.
 
-    The velocity and the drive are those of `problem_of`.  A raised InputError is about the
-    corresponding input of `predict`.
+    The arguments `velocity` and `drive` have the same meaning as for `problem_of`.  A raised
+    InputError is about the corresponding input of `predict`.
     """
     inputs = contact.inputs
     try:
@@ -225,8 +227,8 @@ def within_range(drive: dict[str, float]) -> dict[str, float]:
     """Return the dimensionless drive, limited to the range of the solver.
 
     If the force exceeds the range of the solver, the contact runs away.  A body that is too heavy
-    or too stiff hardly moves.  The mass, stiffness and damping of such a body are divided by one
-    factor, which preserves the natural frequency.
+    or too stiff hardly moves.  The mass, stiffness and damping of such a body are divided by a
+    common factor.  This preserves the natural frequency.
     """
     body = {name: value for name, value in drive.items() if name != "force"}
     scale = max(1.0, max(body.values(), default=0.0) / arguments.LARGEST_BODY)
@@ -276,7 +278,7 @@ def _rest(contact: Contact) -> tuple[dict[str, Value], str]:
 def with_mean_load(problem: Problem) -> Problem:
     """Return the problem without the oscillation of its normal load.
 
-    A problem in which the contact separates is returned unchanged, because its units do not belong
+    If the contact separates, the problem is returned unchanged, because its units then do not refer
     to the mean load.  If nothing else oscillates, the amplitude of the result is 0.
     """
     motion = problem.motion
@@ -300,17 +302,17 @@ SIMPLER: dict[str, Callable[[Problem], Problem]] = {
     ),
     "a constant load suffices: with the mean load": with_mean_load,
 }
-"""Functions that simplify a Problem, keyed by the beginning of the sentence to print if the simpler
-Problem has the same mu_macro within the error."""
+"""Functions that simplify a Problem.  The key of a function is the beginning of a sentence, which
+is printed if the simpler Problem has the same mu_macro within the error."""
 
 
 def simplifications(contact: Contact, answer: Prediction) -> list[str]:
-    """Return the sentences of SIMPLER that are true for a contact.  The simpler contact must have
-    the same friction at the same speed, within the error of the result.
+    """Return the sentences of `SIMPLER` that apply to a contact.  A sentence applies if the simpler
+    contact has the same friction at the same speed, within the error of the result.
 
     A contact counts as simpler only if the solver chooses a cheaper model for it, or if its load
-    becomes constant.  The list is empty for a contact under a prescribed force, and for a result
-    that is a closed form, comes from a map or is not converged.
+    becomes constant.  The list is empty for a contact under a prescribed force.  The list is also
+    empty for a result from a closed form or a map, and for a result that is not converged.
     """
     friction, tolerance = answer.values["friction"], contact.inputs.tolerance or TOLERANCE
     if contact.inputs.force is not None or not answer.converged or answer.model not in MODELS:
@@ -471,8 +473,7 @@ def _check_share(inputs: Inputs, share: float, tolerance: float) -> None:
 
 
 def _line(inputs: Inputs, name: str, share: float) -> tuple[float, float, float, float, float]:
-    """Express the unknown as scale * exp(power * place), where friction decreases as `place`
-    increases.
+    """Express the unknown as scale * exp(power * place).  Friction decreases as `place` increases.
 
     Returns
     -------

@@ -25,9 +25,9 @@ from microslip.scene.files import COLUMNS, FORM, UNITS, columns_of, read_period
 from microslip.scene.samples import NORMAL, PLANE, Sampled
 
 USUAL_ROWS, MOST_ROWS = 2_000, 10_000
-"""Largest number of rows in a period without a hint to use `microslip fold`, and largest allowed
-number of rows.  With more than USUAL_ROWS rows, a prediction can take minutes, and the file may be
-a record of many periods."""
+"""USUAL_ROWS: largest number of rows in a period without a hint to use `microslip fold`.  With more
+rows, a prediction can take minutes, and the file may be a record of many periods.  MOST_ROWS:
+largest allowed number of rows."""
 FOLD = "for a record of many periods, `microslip fold` writes the mean period"
 
 
@@ -67,14 +67,15 @@ class Stroke:
         return {name: one / units[name] - (name in NORMAL) for name, one in self.columns.items()}
 
     def sampled(self, contact: Any, size: float) -> Sampled:
-        """Return the motion for microslip.solve, with deviations divided by `size`."""
+        """Return the motion for microslip.solve.  Its displacements, and the deviations of the load
+        or indentation from 1, are divided by `size`."""
         deviations = self.deviations(contact).items()
         return Sampled.of_columns({n: one / size + (n in NORMAL) for n, one in deviations})
 
 
 def scales(contact: Any, columns: dict[str, np.ndarray]) -> dict[str, float]:
-    """For each column, return the SI value of the unit that `microslip.response` and
-    `microslip.Sampled` use."""
+    """Return the unit of each column in `microslip.response` and `microslip.Sampled`, as a value in
+    SI units."""
     if "indentation" in columns and not math.isfinite(contact.indentation):
         allowed = "allowed is a load: the indentation under this pressure is not known"
         raise InputError("indentation", None, allowed)

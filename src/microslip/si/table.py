@@ -44,7 +44,7 @@ PRINTED |= {f"probability_{one}": one for one in ("stays", "moves", "runs_away")
 """Headings of the outputs in a printed table."""
 WIDTH = 13
 MISSING: tuple[dict[str, Any], dict[str, dict[str, str]]] = {"converged": False}, {}
-"""Columns of a contact without a prediction, and their attributes."""
+"""Columns, and attributes of columns, for a contact that has no prediction."""
 
 
 @dataclass(frozen=True)
@@ -85,7 +85,7 @@ class Cases:
 
 
 Answers = Sequence[Prediction | InputError | str]
-"""The prediction of each contact, or the reason why there is no prediction."""
+"""For each contact, its prediction or the reason why there is no prediction."""
 
 
 def predict_table(

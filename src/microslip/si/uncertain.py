@@ -6,9 +6,9 @@ sequence, so that the same inputs always have the same draws.  A draw outside th
 is replaced by the closest value of the range.  Outputs in closed form are evaluated for each draw.
 The result of the solver depends only on a few dimensionless groups of each draw.  If the groups of
 all draws lie on a line, the solver computes the result at a few points of this line, and results
-are interpolated between these points.  In general, there are several lines, and the changes of the
-result along them are added.  The lines are the principal axes of the groups.  If there are at most
-as many inputs as principal axes, the lines are the axes of the inputs instead.
+are interpolated between these points.  In general, there are several lines.  The changes of the
+result along the lines are added.  The lines are the principal axes of the groups.  If there are at
+most as many inputs as principal axes, the lines are the axes of the inputs instead.
 """
 
 from __future__ import annotations
@@ -33,8 +33,8 @@ DRAWS = 2**15
 """Number of draws.  The error of a probability is about 1e-3."""
 LEVELS = (-3.0, -1.5, 1.5, 3.0)
 """Points along a line at which the solver computes the result, in standard deviations.  Draws
-beyond the outermost points are replaced by these points, which reduces a standard deviation by
-0.25 % (1.1 % with points at 2.5)."""
+beyond the outermost points are replaced by these points.  This reduces a standard deviation by
+0.25 %.  With outermost points at 2.5, the reduction would be 1.1 %."""
 STATIC_LEVELS = (-3.0, -1.96, -1.3, -0.65, 0.65, 1.3, 1.96, 3.0)
 """Points along a line at which the static limit is computed.  The bounds of a 95 % interval are at
 -1.96 and 1.96."""
@@ -42,25 +42,25 @@ NEARER = (1.0, 0.75, 0.5, 0.25)
 """Factors by which a level is multiplied.  They are tried in this order until the inputs are within
 the range of the theory."""
 REFINEMENTS = 3
-"""Number of bisections for the smallest amplitude with a static limit of 0, and number of further
-points with a static limit close to the force."""
+"""Number of bisections in the search for the smallest amplitude with a static limit of 0.  The same
+number of points is added where the static limit is close to the force."""
 VANISHING = 1e-3
 """Largest static limit that counts as 0 in the bisection."""
 CLOSEST = 64
-"""A fraction 1 / CLOSEST of the draws counts as close to the force: the draws whose static limits
-are closest to the force."""
+"""The draws whose static limits are closest to the force count as close to it.  Their number is the
+number of draws divided by this value."""
 NEGLIGIBLE = 1e-3
-"""Largest standard deviation of the groups along an axis that is ignored, divided by the standard
-deviation along the first axis.  Also the fraction of draws without a finite value above which a
-standard uncertainty is infinite."""
+"""An axis is ignored if the standard deviation of the groups along it, divided by the standard
+deviation along the first axis, is at most this value.  Also, a standard uncertainty is infinite if
+the fraction of draws without a finite value is above this value."""
 SMALLEST = 5e-324
-"""Smallest positive number.  It replaces 0 for an input that must be above 0."""
+"""Smallest positive number.  If an input must be above 0, this number replaces 0."""
 DRIVEN = ("velocity", "force", "stiffness", "mass", "damping")
-"""Groups that have no effect on the static limit."""
+"""Dimensionless groups on which the static limit does not depend."""
 
 
 class _Line(NamedTuple):
-    """A line through the draws, along which values are interpolated.
+    """A line through the draws.  Values are interpolated along this line.
 
     Attributes
     ----------
@@ -165,8 +165,8 @@ class Draws:
         return drawn
 
     def _static(self, central: float) -> np.ndarray:
-        """Compute the static limit for all draws.  Nodes are added where the static limit vanishes,
-        and where it is close to the force."""
+        """Compute the static limit for all draws.  Nodes are added where the static limit becomes
+        0, and where the static limit is close to the prescribed force."""
         lines = self._lines({"static": central}, static=True)
         force = self.contact.drive().get("force") if len(lines) == 1 else None
 
@@ -205,8 +205,9 @@ class Draws:
 
     def _lines(self, central: dict[str, float], static: bool = False) -> list[_Line]:
         """Return the lines along which the result, or the static limit, varies.  These lines are
-        the principal axes of the groups, or the axes of the inputs if there are at most as many
-        inputs as principal axes.  The first node of each line is at the centre."""
+        the principal axes of the groups.  If there are at most as many inputs as principal axes,
+        the lines are the axes of the inputs instead.  The first node of each line is at the
+        centre."""
         normal, count = self._normal, len(self._inputs.uncertain)
         groups = self._groups(self.contact, static)
         if len(groups) == 1:
@@ -281,8 +282,8 @@ def normal_numbers(count: int) -> np.ndarray:
 
 
 def with_interval(one: Value, draws: Any) -> Value:
-    """Return a copy of a `Value`, with the standard uncertainty and the 95 % interval of its draws
-    added.  A draw without a value counts as infinite."""
+    """Return a copy of a `Value` that also contains the standard uncertainty and the 95 % interval
+    of the draws.  A draw without a value counts as infinite."""
     drawn = np.broadcast_to(np.asarray(draws, dtype=float), (DRAWS,))
     drawn = np.where(np.isnan(drawn), math.inf, drawn)
     low, high = np.quantile(drawn, INTERVAL, method="nearest")
@@ -299,9 +300,10 @@ def probabilities(contact: Contact, answer: Prediction) -> dict[str, Value]:
     """Return the probability of each outcome under a prescribed force, with its error estimate.
     If no force is prescribed, the result is empty.
 
-    The error estimate is the largest of three values: the change of the probability due to the
-    error of the threshold, the difference between the even and the odd draws, and
-    log(DRAWS) / DRAWS, which is the order of the sequence's discrepancy.
+    The error estimate is the largest of three values.  The first value is the change of the
+    probability due to the error of the threshold.  The second value is the difference between the
+    even and the odd draws.  The third value, log(DRAWS) / DRAWS, is the order of the discrepancy of
+    the sequence.
 
     contact, answer: the attributes of Draws.
     """

@@ -41,9 +41,10 @@ LARGE_MU = 1.0
 SMALL = 0.1
 """Ratios up to this value are negligible in the theory."""
 STEEP = 0.2
-"""Ratio above which half-spaces are a poor approximation: contact radius a divided by the bodies'
-smaller radius, or by the radius R of relative curvature.  Hertz's theory assumes a << R1, R2 and a
-<< R (K. L. Johnson, Contact Mechanics, 4.2)."""
+"""Half-spaces are a poor approximation if one of two ratios is above this value.  The ratios are
+the contact radius a divided by the radius of the smaller body, and a divided by the radius R of
+relative curvature.  Hertz's theory assumes a << R1, R2 and a << R (K. L. Johnson, Contact
+Mechanics, 4.2)."""
 AGREES = 0.01
 """Largest relative difference between two sizes or loads that count as equal.  It allows for
 rounding to two or three digits."""
@@ -168,8 +169,8 @@ def warnings_of(contact: Contact, speed: float) -> list[str]:
 
 
 def broken_rules(values: Mapping[str, float | None]) -> list[str]:
-    """Return the warnings for the given measures, keyed by name.  Rules about measures that are not
-    given do not apply."""
+    """Return the warnings for the given measures, keyed by name.  A rule applies only if the values
+    of its measures are given."""
 
     def value(side: float | str) -> float | None:
         return values.get(side) if isinstance(side, str) else side
@@ -271,11 +272,11 @@ def _pull_off(contact: Contact) -> tuple[float | None, float | None]:
 
 
 def _contradictions(contact: Contact) -> list[str]:
-    """Return a message for each size or load that differs from its value in a pressure file with
-    units.
+    """Return a message for each size or load that disagrees with a pressure file.  Only files with
+    units contain such values.
 
-    A value is accepted if it lies in the range of all possible readings of the file, widened by the
-    relative difference AGREES.
+    A pressure file can be read in several ways.  A value is accepted if it lies within the range of
+    all these readings, widened by the relative difference `AGREES`.
     """
     texts, readings = [], (contact.shape, *contact.shape.readings) if not contact.radii else ()
     size, load = ("size_m", "m"), ("load_N", "N")
