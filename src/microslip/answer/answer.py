@@ -152,7 +152,7 @@ class Answer:
         )
 
     def to_dict(self) -> dict[str, Any]:
-        """Return a dict of the values, `converged` and `reason`."""
+        """Return a dict that contains the values and the entries `converged` and `reason`."""
         return {**self.values, "converged": self.converged, "reason": self.reason}
 
 

@@ -44,8 +44,8 @@ def closed_form(problem: Problem, tolerance: float) -> Exact | None:
     Closed forms exist in four cases.  The first case is the steady state of a motion without
     oscillation, where every point slips in the direction of its rigid velocity.  The second case is
     the limit of vanishing velocity, and the third case is motion along one line at nu = 0.  The
-    fourth case is fast sliding, if the midpoint of the bounds in theory/exact.py is accurate to
-    within the tolerance.
+    fourth case is fast sliding.  There, the midpoint of the bounds in theory/exact.py is used if it
+    is accurate to within the tolerance.
 
     Parameters
     ----------
@@ -74,10 +74,11 @@ def closed_form(problem: Problem, tolerance: float) -> Exact | None:
 
 
 def _fast_sliding(problem: Problem, tolerance: float) -> Exact | None:
-    """Return the midpoint of the bounds for fast sliding, or None if it is not accurate enough.
+    """Return the midpoint of the bounds for fast sliding.  Returns None if the midpoint is not
+    accurate enough.
 
-    The dissipated energy per radian of phase lies between d and d (1 + drop / (4 - 2 drop)), where
-    d is the drift; see theory/exact.py.  `drop` is the largest value of 1 - mu.
+    Let d be the drift.  The dissipated energy per radian of phase is at least d, and at most
+    d (1 + drop / (4 - 2 drop)); see theory/exact.py.  `drop` is the largest value of 1 - mu.
     """
     motion = problem.motion
     largest_drop = LARGEST_DROPS.get(motion.name)

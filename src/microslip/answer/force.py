@@ -43,8 +43,8 @@ SLOWEST, FASTEST = 1e-6, 1e6
 """Parameters of the search for the velocity: first drift per radian of phase, factor between the
 drifts of two runs, and bounds."""
 FLATTEST = 1e-6
-"""Smallest accepted rise of friction between two runs, divided by the relative increase in
-velocity."""
+"""Smallest slope of the friction in the search: the rise between two runs, divided by the relative
+increase in velocity."""
 HALVINGS = 2
 """Number of bisections of the last velocity interval, on a logarithmic scale."""
 STEADY_ERROR = 1e-9
@@ -57,7 +57,7 @@ SLOWEST_SHARE = 0.3
 """Smallest accepted velocity of the coarse run under the force, as a fraction of the estimate from
 coarse runs at prescribed velocities.  A slower run is not resolved and is not used."""
 SCALE_SHARE = 0.9
-"""The relative tolerance refers to this fraction of the coarse run's velocity."""
+"""The relative tolerance refers to this fraction of the velocity in the coarse run."""
 ROUGH_TOLERANCE = 3e-2
 """First tolerance of the static limit.  It is divided by 10 until the difference between the force
 and the limit exceeds the error of the limit."""
@@ -65,8 +65,8 @@ STATIC_TOLERANCE = 1e-3
 """Largest accepted error of the static limit when the force is close to it.  The SI layer uses the
 same value, so both agree on which forces are below the threshold."""
 GAP_MARGIN = 2.0
-"""Distance above the static limit at which the contact certainly moves, in units of the limit's
-error."""
+"""A force certainly moves the contact if it exceeds the static limit by this factor times the error
+of the limit."""
 AT_REST, UNBOUNDED = Estimate(0.0, {"model": 0.0}), Estimate(math.nan, {"model": math.inf})
 """Velocity of a contact at rest, and velocity of a contact without a mean velocity."""
 
@@ -137,7 +137,8 @@ def _without_runs(
 
 
 def _unknown(request: Request, reason: str) -> Result:
-    """Create the `Result`, without estimates, for a point that failed because of `reason`."""
+    """Create the `Result` of a point that failed.  The result contains `reason`, but no
+    estimates."""
     effort = {"model": request.model, "effort": request.budget.taken}
     return _without_runs(request, UNBOUNDED, UNKNOWN, reason, **effort)
 
@@ -189,7 +190,7 @@ def _moving(request: Request, moving_force: float) -> Result:
     """Compute the `Result` for a moving contact.
 
     The runs use `moving_force`, under which the contact certainly moves.  If this force is larger
-    than the requested force, the velocity lies between 0 and the velocity in the runs.
+    than the requested force, the velocity lies between 0 and the velocity under `moving_force`.
     """
     force, original = request.problem.force or 0.0, request
     request = _under(moving_force, request)

@@ -89,7 +89,8 @@ class Ladder:
     def levels(self, tolerance: float) -> tuple[int, ...]:
         """Return the finest levels to try at a tolerance, in the order in which they are tried.
 
-        The last of these levels is one level above the first level for SMALLEST_TOLERANCE.
+        The last of these levels comes directly after the first level for the smallest allowed
+        tolerance.
         """
         if self.imposed:
             return (self.start,)

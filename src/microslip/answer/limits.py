@@ -46,8 +46,8 @@ class Limit(NamedTuple):
 
 
 LARGEST_FORCE = 1e6
-"""Largest accepted force divided by mu times the mean normal load.  The contact already runs away
-at 1."""
+"""Largest accepted force divided by mu times the mean normal load.  At a value of 1, the contact
+already runs away."""
 LIMITS = {
     "velocity": Limit(0.0, LARGEST["velocity"]),
     "amplitude": Limit(0.0, LARGEST["amplitude"]),
@@ -70,8 +70,8 @@ RETURNED = 1e-12
 """A forward oscillation below this fraction of the amplitude is treated as a rounding error."""
 CLOSEST_FORCE = 0.9999
 """Forces from this value up to 1, divided by mu times the mean normal load, are refused.  With a
-transverse oscillation, runs converged up to 0.9998, where the contact already advances by 200
-amplitudes per period."""
+transverse oscillation, runs converged for forces up to 0.9998.  At this force, the contact already
+advances by 200 amplitudes per period."""
 CLOSEST_STEADY_FORCE = 1.0 - 1e-7
 """Largest force on a steady rotation, divided by mu times the mean normal load.  The rounding error
 of the friction, 1.1e-16, causes a relative error of 1.1e-16 / (2 (1 - force)) in the velocity.  At
@@ -246,8 +246,8 @@ def choose_model(problem: Problem, model: str = "auto") -> str:
     Rings are chosen if the traction depends only on the radius (translation at nu = 0).  Angular
     modes are chosen for other motions of a round contact, and squares in all other cases.  Squares
     are also chosen for the static limit of a contact without symmetry, because its stick zone is
-    not round.  The slider and the rigid contact are never chosen.  To bound their model error, a
-    run on rings would be needed, which already gives the result.
+    not round.  The slider and the rigid contact are never chosen.  Their model error could only be
+    bounded with a run on rings, and this run already gives the result.
 
     Parameters
     ----------

@@ -1,4 +1,5 @@
-"""Tractions on the whole disc, over a period of the periodic state or in a steady motion."""
+"""Tractions on the whole disc, either during a period of the periodic state or in a steady
+motion."""
 
 from __future__ import annotations
 
@@ -293,7 +294,7 @@ def traction_field(
 
 
 def _work(traction: np.ndarray, slip: np.ndarray) -> np.ndarray:
-    """Compute the work per area that a traction does on a slip over the period, for every point."""
+    """Compute the work of the traction on the slip during the period, per area, at every point."""
     return 0.5 * np.sum((traction[1:] + traction[:-1]) * slip[1:], axis=0)
 
 

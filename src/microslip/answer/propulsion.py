@@ -29,8 +29,8 @@ from microslip.scene.pressure import Pressure
 from microslip.scene.problem import Problem
 
 FACTOR, FASTEST = 4.0, 1e6
-"""Parameters of the search for the root: factor between trial velocities, and largest velocity
-divided by the first trial velocity."""
+"""FACTOR: ratio of successive trial velocities in the search for the root.  FASTEST: largest
+velocity divided by the first trial velocity."""
 
 
 class Propulsion(Answer):

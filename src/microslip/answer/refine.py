@@ -12,17 +12,18 @@ The error estimate has four sources:
   The finest run is repeated for each interpolation; refinement does not reduce the differences.
 
 The methods are of second order, f(n) = f + C / n^2 + ..., and the difference D of the last two
-levels gives the correction D / 3.  If the differences decrease with another order p, the
-differences beyond the last level add up to D / (2^p - 1), and the extrapolated value is wrong by
-D (1 / (2^p - 1) - 1 / 3).  The error estimate is this error for the observed order, times a safety
-factor.  The estimate is at least the correction and at most D, each times the safety factor.
+levels gives the correction D / 3.  Assume that the differences decrease with another order p.  The
+differences beyond the last level then add up to D / (2^p - 1).  Therefore, the extrapolated value
+is wrong by D (1 / (2^p - 1) - 1 / 3).  The error estimate is a safety factor times this error,
+evaluated at the observed order.  The estimate is at least the correction and at most D, each times
+the safety factor.
 
 Two levels can agree by chance.  Therefore D is at least a quarter of the difference of the first
 two levels, the value expected for second order.  This is the grid convergence index of Roache (J.
 Fluids Eng. 116, 1994), applied to both pairs of levels.  In two cases, the last two levels are
-taken to agree by chance: the differences change sign, or the observed order is far above 2.  Then
-the last level need not be better than the second-to-last level, and D is the difference of the
-first two levels.
+taken to agree by chance: the differences change sign, or the observed order is far above 2.  The
+last level then need not be better than the second-to-last level.  Therefore, D is the difference of
+the first two levels.
 
 If the differences increase, n/4 is too coarse for the leading term to dominate, and a slightly
 finer level is probably too coarse as well.  The next n is then a level whose coarser levels have
@@ -56,10 +57,11 @@ READING_SAFETY = 2.5
 """Safety factor on the differences between the interpolations (readings) of a pressure or a motion.
 No interpolation resolves a peak or an edge between the points."""
 SMALLEST_SHARE = 0.8
-"""Smallest error estimate for the resolution, divided by the tolerance (at an imposed resolution,
-by Ladder.accuracy).  It is above 0 because three levels can agree by chance.  The calibration by
-benchmarks/error_estimates.py gave 0.7; the value was increased because benchmarks/attacks.py found
-errors of up to 0.75 times the tolerance where the levels agree."""
+"""The error estimate for the resolution is at least this fraction of the tolerance.  At an imposed
+resolution, `Ladder.accuracy` takes the place of the tolerance.  The fraction is above 0 because
+three levels can agree by chance.  The calibration by benchmarks/error_estimates.py gave 0.7; the
+value was increased because benchmarks/attacks.py found errors of up to 0.75 times the tolerance
+where the levels agree."""
 LARGEST_REST = 0.5
 """Finer runs are started only if the errors from sources other than the resolution sum to at most
 this fraction of the tolerance."""
@@ -202,9 +204,9 @@ def _estimates(
 ) -> tuple[dict[str, Estimate], float]:
     """Return estimates of all values, and the observed order of convergence of the requested value.
 
-    `runs` contains the runs at n/4, n/2 and n, followed by runs with other interpolations at n.
-    `goal` is the largest accepted resolution error of the value `name`.  The other arguments have
-    the same meaning as for `refine`.
+    `runs` contains the runs at n/4, n/2 and n, followed by further runs at n, which use other
+    interpolations.  `goal` is the largest accepted resolution error of the value `name`.  The other
+    arguments have the same meaning as for `refine`.
     """
     three, others, imposed = runs[:3], runs[3:], ladder.imposed > 0.0
     common = {"periodicity": 0.0, "solver": 0.0}

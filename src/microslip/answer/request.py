@@ -34,22 +34,23 @@ TOLERANCE = 1e-3
 """Default tolerance, also used as the accuracy of runs if no tolerance is requested."""
 MOST_WORK = {"polar": 2e9, "cartesian": 2e9}
 MOST_WORK_OF_OTHERS = 2e8
-"""Default limits on the work (step solves times unknowns) by model.  They are more than ten times
-the work of the slowest points in the paper's range at a tolerance of 1e-4."""
+"""Default limits on the work, by model.  The work is the number of step solves times the number of
+unknowns.  The limits are more than ten times the work of the slowest points in the paper's range at
+a tolerance of 1e-4."""
 RUN_SHARE = 0.05
 """Largest distance of a run from its periodic state, divided by the tolerance.  With the weights of
 the runs, these distances contribute at most a twelfth of the tolerance."""
 FACTOR, SMALLEST_FACTOR = 4.0, 1.15
 """Ratio of successive velocities in a second attempt.  After a failure, the ratio is replaced by
-its square root, down to SMALLEST_FACTOR."""
+its square root.  The smallest ratio is `SMALLEST_FACTOR`."""
 FASTEST_START = 1.0
-"""Largest drift, in u_lim per radian of phase, at which a second attempt looks for a first periodic
-state.  At this drift, transients last less than a period."""
+"""A second attempt looks for the first periodic state at a drift of at most this value, in u_lim
+per radian of phase.  At this drift, transients last less than a period."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class Request:
-    """A checked request for the friction of a problem, or for its velocity under a force.
+    """A checked request: the friction in a problem, or the velocity of the contact under a force.
 
     Attributes
     ----------
@@ -94,8 +95,8 @@ class Request:
         return replace(self, problem=replace(self.problem, **changes))
 
     def result(self, estimates: dict[str, Estimate], reason: str = "", **values: Any) -> Result:
-        """Create the `Result`.  Values that are not given are set to those of a result that needs
-        no run."""
+        """Create the `Result`.  Values that are not passed are set to the values of a result that
+        is computed without a run."""
         own: dict[str, Any] = {
             "model": CLOSED_FORM if self.chosen else self.model,
             "tolerance": self.tolerance,
@@ -350,7 +351,8 @@ def within_friction(problem: Problem, friction: Estimate) -> Estimate:
     """Clip the friction to its range: 0 to 1, or -1 to 1 for motions that can propel the contact.
 
     Values outside this range result from rounding and discretisation errors.  If the error exceeds
-    the width of the range, the result is the middle of the range with half the width as its error.
+    the width of the range, the result is the middle of the range.  The error of this result is half
+    the width.
     """
     least = -1.0 if problem.propels else 0.0
     if not math.isfinite(friction.value):

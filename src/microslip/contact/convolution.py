@@ -6,8 +6,9 @@ Along an axis with n cells, the cell j has the coordinate x = j - (n - 1) / 2.  
 cosines and sines of 2 pi k x / (2 n - 1) for k = 0 .. n - 1.  This period is long enough that the
 convolution does not wrap around.  The influence of forward tractions on forward displacements, and
 of lateral tractions on lateral displacements, is even along both axes: it multiplies each wave by a
-number.  The influence of the tractions in one direction on the displacements in the other is odd
-along both axes: it multiplies the wave by a number and exchanges cosine and sine.
+number.  The influence of forward tractions on lateral displacements, and of lateral tractions on
+forward displacements, is odd along both axes.  It multiplies each wave by a number, and exchanges
+cosine and sine.
 
 If a symmetry determines the field at negative forward coordinates, only the cells with positive
 forward coordinates are resolved.  Each wave along the lateral axis is then either even or odd along

@@ -38,7 +38,7 @@ rounding."""
 DECAY = -np.log(ACCURACY)
 """Logarithm of the decay after which a downward recurrence no longer depends on its start value."""
 MOST_MODES = 1 + int(np.ceil(0.5 * DECAY))
-"""Largest possible ratio of modes_for(r, s, n) to n + 2."""
+"""Upper bound on the ratio of modes_for(r, s, n) to n + 2."""
 OUTER_POINTS = 8
 INNER_POINTS = 12
 CLUSTER_POWER = 4
@@ -141,7 +141,7 @@ def modes_for(r: float, s: float, n: int) -> int:
     """Return the number of values G_m(r, s) from which `n` values C_m can be computed.
 
     The number is n + 2 if the upward recurrence is stable.  Otherwise the number is larger, but at
-    most MOST_MODES (n + 2).
+    most `MOST_MODES` times n + 2.
     """
     growth = np.log(s / r)
     return n + 2 if (n + 1) * growth < 2.0 else n + 3 + int(DECAY / growth)
@@ -178,9 +178,9 @@ def coupling_kernels(r: float, s: float, toroidal: np.ndarray, n: int, out: np.n
 def _points_of_pair(averaging: Averaging, i: int, j: int, points: np.ndarray) -> int:
     """Fill `points` with quadrature points of a pair of rings, and return the number of points.
 
-    A point consists of a radius on ring i (outer rule), a radius on ring j (inner rule), and a
-    weight.  The weights include the traction profile s(r) of each ring, normalised so that the
-    integral of s(r) r dr is 1.
+    A quadrature point consists of three numbers: a radius on ring i (outer rule), a radius on ring
+    j (inner rule), and a weight.  The weights include the traction profile s(r) of each ring,
+    normalised so that the integral of s(r) r dr is 1.
     """
     psi = averaging.psi
     a0, a1 = psi[i], psi[i + 1]

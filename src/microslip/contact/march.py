@@ -3,9 +3,11 @@
 With the rigid displacement w and z = A q - w, stage i of a step is a Coulomb step (splitting.py)
 for tractions q_i and slips r_i,
 
-    A q_i + r_i = b_i,     b_i = z + w(t + c_i h) - Sum_{j<i} (a_ij / gamma) r_j.
+    A q_i + r_i = b_i,
 
-The last stage is the end of the step, after which z = b - r - w.
+where b_i = z + w(t + c_i h) - Sum_{j<i} (a_ij / gamma) r_j.
+
+The last stage is at the end of the step.  There, z is b - r - w.
 
 A body of mass m with a dashpot c, which is driven by a constant force or through a spring k, obeys
 
@@ -30,8 +32,8 @@ from microslip.contact.splitting import LEVELS, respond, solve_step
 from microslip.foundation.compiled import kernel
 
 STIFFNESS, DAMPING, MASS, LOAD, PLACE, RATE = range(6)
-"""Indices of the parameters of a drive: k, c, m, load, and the values of x and x' at the start of
-the path.  The last two are ignored if both m and c are 0."""
+"""Indices of the parameters of a drive.  The parameters are k, c, m, the load, and the values of x
+and x' at the start of the path.  The values of x and x' are ignored if both m and c are 0."""
 
 
 @kernel

@@ -31,7 +31,7 @@ from microslip.scene.hertz import HERTZ
 from microslip.scene.pressure import Pressure
 
 FEWEST_PROLONGED = 16
-"""Smallest number of rings for which, in rotations, tractions from a coarser mesh are a better
+"""In rotations with at least this number of rings, tractions from a coarser mesh are a better
 initial guess than the static limit."""
 SHARED_MODES = (9, 17, 33)
 """Possible numbers of modes for which averages of the kernels are computed.  As a result, runs with
@@ -67,7 +67,8 @@ def _single_waves(
 
 
 def _pairs(angles: int, symmetry: str) -> tuple[list[tuple[Wave, Wave]], list[tuple[Wave, Wave]]]:
-    """Return the pairs of waves at nu > 0: the coupled pairs, and the pairs without coupling.
+    """Return two lists of pairs of waves at nu > 0.  The first list contains the coupled pairs, and
+    the second list contains the pairs without coupling.
 
     A wave is described by (m, part): part 0 is e^{i m theta}, and part 1 is i e^{i m theta}.  For a
     whole disc and for rotations, the shortest waves are not coupled, because their cosine is 0 at

@@ -1,4 +1,4 @@
-"""Elastic operators of contacts on rings, in compiled code.
+"""Compiled elastic operators for contacts that are discretised into rings.
 
 A field is an array of shape (2, points) with the forward and lateral components at the points of a
 contact.  The points are ordered by angle, then by ring.  Each angle has `width` points; the points

@@ -1,16 +1,17 @@
 """Paths in time: phases, stages of the integrator, and the rigid displacement at each stage.
 
-With the elastic displacement A q, the rigid displacement w and z = A q - w, the contact obeys dz =
--(slip), where Coulomb's law relates slip and traction.  This equation is a rate-independent
-differential inclusion.  It is integrated by stiffly accurate diagonally implicit Runge-Kutta
-methods, in which every stage is one Coulomb step,
+Let A q be the elastic displacement, w the rigid displacement, and z = A q - w.  The contact obeys
+dz = -(slip), and Coulomb's law relates the slip to the traction.  This equation is a
+rate-independent differential inclusion.  It is integrated by stiffly accurate diagonally implicit
+Runge-Kutta methods, in which every stage is one Coulomb step,
 
-    A q_i + r_i = b_i,     b_i = z + w(t + c_i h) - Sum_{j<i} (a_ij / gamma) r_j,
+    A q_i + r_i = b_i,
 
-with r_i = gamma h (slip rate).  The last stage is the end of the step, so that tractions at the end
-of a step are within the friction bound.  Backward Euler has a single stage.  In a theta method, the
-single stage is before the end of the step.  The state is extrapolated to the end of the step, where
-tractions can exceed the bound.
+where b_i = z + w(t + c_i h) - Sum_{j<i} (a_ij / gamma) r_j, and r_i is gamma h times the slip rate.
+The last stage is the end of the step, so that tractions at the end of a step are within the
+friction bound.  Backward Euler has a single stage.  In a theta method, the single stage is before
+the end of the step.  The state is extrapolated to the end of the step, where tractions can exceed
+the bound.
 """
 
 from __future__ import annotations
@@ -105,12 +106,12 @@ def turning_point_grading(drift: float, stroke: float) -> float:
 def turning_point_width(drift: float, stroke: float) -> float:
     """Return the half-width, in phase, of the zone of equal steps at a turning point.
 
-    Outside the zone, steps are proportional to the distance from the turning point.  For short
-    strokes, the width is infinite, and only the grading applies.  The slip reverses within the
-    phase max(1, drift) / stroke, while the velocity of the oscillation is below u_lim per radian or
-    below the drift.  For strokes above LONG_STROKE, the zone shrinks gradually, due to the term
-    LONG_STROKE**2 / stroke.  At the stroke LONG_STROKE, the longest step is twice as long as the
-    shortest.
+    Outside the zone, steps are proportional to the distance from the turning point.  For strokes up
+    to LONG_STROKE, the width is infinite, so that the steps follow the grading alone.  The slip
+    reverses while the velocity of the oscillation is below u_lim per radian, or below the drift.
+    This reversal takes the phase max(1, drift) / stroke.  Due to the term LONG_STROKE**2 / stroke,
+    the zone shrinks gradually for strokes above LONG_STROKE.  At the stroke LONG_STROKE, the
+    longest step is twice as long as the shortest.
     """
     if stroke <= LONG_STROKE:
         return math.inf
@@ -202,9 +203,9 @@ def phases_between(
 ) -> np.ndarray:
     """Return phases from the first turning point to the last one.
 
-    There are `steps` steps between neighbouring turning points, and hence (len(turns) - 1) steps +
-    1 phases.  The steps are graded towards both turning points.  For `grading` and `width`, see
-    turning_point_grading and turning_point_width.
+    There are `steps` steps between neighbouring turning points.  The number of phases is therefore
+    (len(turns) - 1) steps + 1.  The steps are graded towards both turning points.  For `grading`
+    and `width`, see turning_point_grading and turning_point_width.
     """
     t = np.linspace(-np.pi / 2, np.pi / 2, steps + 1)
     t = t + 0.5 * grading * np.sin(2 * t)

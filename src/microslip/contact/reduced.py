@@ -23,9 +23,9 @@ springs with friction.  The model is exact for tangential loading of an axisymme
 direction (Cattaneo and Mindlin).  For slip in two directions, the model is an approximation,
 because the springs do not interact.  Springs at -a < x < a have the stiffness G* and the friction
 bound G* (1 - h(x)) per unit length.  Here h(x) is the depth for the contact radius x divided by the
-reference depth.  So the spring at x begins to slide at the displacement (1 - h) u_lim, which is (1
-- x^2) u_lim for a sphere.  At d times the reference depth, the spring begins to slide at (d - h)
-u_lim if d > h.
+reference depth.  The spring at x therefore begins to slide at the displacement (1 - h) u_lim.  For
+a sphere, this displacement is (1 - x^2) u_lim.  If the depth is d times the reference depth and
+d > h, the spring begins to slide at the displacement (d - h) u_lim.
 """
 
 from __future__ import annotations
@@ -142,9 +142,9 @@ class DahlContact(contact.Contact):
 def load_on_springs(pressure: Pressure, edges: np.ndarray, depth: np.ndarray) -> np.ndarray:
     """Return the load of the springs within |x| < edges in the method of dimensionality reduction.
 
-    At each of k depths d, the spring at x carries G* (d - h(x)) per unit length, where h(x) is the
-    depth for the contact radius x.  The integral of x h' is the load of a contact of this radius.
-    The result has the shape (k, n + 1).
+    The load is computed at each of k depths d.  At the depth d, the spring at x carries
+    G* (d - h(x)) per unit length.  Here h(x) is the depth at which the contact radius is x.  The
+    integral of x h' is the load of a contact of this radius.  The result has the shape (k, n + 1).
     """
     inside = np.minimum(edges, pressure.radius(depth)[:, None])
     compression = depth[:, None] - pressure.depth(inside)

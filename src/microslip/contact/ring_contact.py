@@ -22,7 +22,7 @@ from microslip.scene.pressure import Pressure
 
 
 def load_on_rings(pressure: Pressure, edges: np.ndarray, depth: np.ndarray) -> np.ndarray:
-    """Return the load within each of n + 1 radii, `edges`, at each of k depths.
+    """Return the load inside each of n + 1 radii (`edges`), for each of k depths.
 
     A depth is the indentation divided by its value in the reference state, in which the contact
     radius is a and the load is F_z.  The result has the shape (k, n + 1).
@@ -266,12 +266,12 @@ class RingContact(Contact):
     def _effective_radii(self) -> np.ndarray:
         """Effective radii, as an array of shape (cells + 1,).
 
-        Without slip, a contact whose radius is entry k has the same stiffness as the first k rings.
-        An effective radius is slightly smaller than the outer edge of the k rings.  A ring joins
-        the contact when the contact radius reaches the mean of the effective radii without and with
-        this ring.  The stiffness of a growing contact is then correct on average.  If the ring
-        joined as soon as the contact reached the ring's inner edge, it would stick too early, which
-        would cause an error of first order.
+        Without slip, a contact whose radius is entry k of the array has the same stiffness as the
+        first k rings.  This entry is slightly smaller than the outer radius of these k rings.  A
+        ring joins the contact when the contact radius reaches the mean of the effective radii
+        without and with this ring.  The stiffness of a growing contact is then correct on average.
+        If the ring joined as soon as the contact reached the ring's inner edge, it would stick too
+        early, which would cause an error of first order.
         """
         weighted = self.area[:, None] * self.influence
         part = np.linalg.solve(np.linalg.cholesky(0.5 * (weighted + weighted.T)), self.area)
@@ -299,9 +299,9 @@ class RingContact(Contact):
 
         Rings join or leave the contact only at the last stage of a step, because the integrator
         would carry over a jump from an earlier stage to the later stages.  A ring that joins at the
-        last stage is strained for the fraction 1 / (1 + carried) of the step, but on average it
-        should be strained for half of the step.  The contact radius is therefore evaluated at an
-        earlier time, to make up for the difference.
+        last stage is strained during the fraction 1 / (1 + carried) of the step.  On average, the
+        ring should be strained during half of the step.  The contact radius is therefore evaluated
+        at an earlier time, to make up for the difference.
         """
         assert path.depth is not None  # otherwise the bounds are constant
         stages = len(path.carry)
@@ -371,4 +371,4 @@ class RadialContact(RingContact):
 
 
 NO_DRIVE = np.zeros(6), np.zeros(0)
-"""Values of the arguments `drive` and `lengths` of march.march if no body is driven."""
+"""Arguments `drive` and `lengths` of march.march for a contact without a driven body."""

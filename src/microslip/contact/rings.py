@@ -118,7 +118,8 @@ def _of_edges(psi: np.ndarray, focus: Focus | float | None, pressure: Pressure) 
 def _focused(count: int, places: np.ndarray, strength: float) -> np.ndarray:
     """Return count + 1 edges as angles psi, graded towards `places`.
 
-    Each place is an edge between two rings.  The rings are widest half-way between two places.
+    Each of the `places` is an edge between two rings.  Between two successive places, the rings are
+    widest in the middle.
     """
     edge = np.pi / 2
 
@@ -147,7 +148,7 @@ def _shared_out(count: int, ends: Sequence[float]) -> list[int]:
     """Return the number of rings up to each of the angles `ends`, approximately proportional to
     psi.
 
-    There are at least a few rings on both sides of each place.
+    Each interval between two successive angles contains at least a few rings.
     """
     least = max(count // (2 * len(ends) - 2), 1)
     before = [int(round(count * end / ends[-1])) for end in ends]

@@ -48,11 +48,11 @@ points stick.  The value is calibrated by benchmarks/splitting.py."""
 LEVELS = 4
 """Number of penalties for which a resolvent is computed."""
 PENALTIES = 2.0 ** (np.arange(LEVELS) - 0.5 * (LEVELS - 1))
-"""Possible penalties of a step, divided by `best_penalty`, from 1/sqrt(8) to sqrt(8)."""
+"""Possible penalties of a step, from 1/sqrt(8) to sqrt(8) times `best_penalty`."""
 BETWEEN_LOOKS = 2e5
-"""Approximate number of point updates between two calls of `interrupted`, which corresponds to a
-few hundredths of a second.  A call waits for the other threads of the interpreter, so calls should
-be rare."""
+"""Approximate number of point updates between two calls of `interrupted`.  These updates take a few
+hundredths of a second.  A call waits for the other threads of the interpreter, so calls should be
+rare."""
 
 _acquire = types.ExternalFunction("PyGILState_Ensure", types.intc())
 _release = types.ExternalFunction("PyGILState_Release", types.void(types.intc))
@@ -147,7 +147,8 @@ def squared_distance(weight: np.ndarray, a: np.ndarray, b: np.ndarray) -> float:
 
 @kernel
 def stuck_share(y: np.ndarray, bound: np.ndarray, q: np.ndarray, factors: np.ndarray) -> float:
-    """Set q to P(y), and return D (see the module) times the number of points with a bound above 0.
+    """Set q to P(y).  Returns D (see the docstring of the module) times the number of points with a
+    bound above 0.
 
     `factors` is a scratch array.
     """
@@ -171,8 +172,8 @@ def imbalance(
 ) -> float:
     """Return the residual of the equation of the body after an additional displacement, `advance`.
 
-    The advance is added to the slip of the points that slip.  `excess` is the residual without the
-    forward force if the advance is 0.
+    The advance is added to the slip of the points that slip.  `excess` is the residual for an
+    advance of 0, without the forward force.
     """
     weight, penalty, _, _, _ = points
     force = excess + stiffness * advance

@@ -33,8 +33,8 @@ from microslip.scene.pressure import Pressure
 MOST_DISPLACEMENTS = 60
 """Largest number of trial displacements of a driven body in each step."""
 FLATTEST = 1e-3
-"""Smallest slope in the secant method, divided by the largest possible slope.  Flatter secants are
-replaced by this slope."""
+"""Smallest slope in the secant method, as a fraction of the largest possible slope.  Flatter
+secants are replaced by this slope."""
 INNER = 0.3
 """Allowed residual at each trial displacement, divided by the tolerance of the step."""
 ROUNDED = 1e-10
@@ -47,8 +47,8 @@ class CartesianContact(Contact):
     """Contact of equal cells that cover the rectangle around the contact; see contact.Contact.
 
     States have the shape (2, cells, cells), with the forward coordinate along axis 1 and the
-    lateral coordinate along axis 2.  If symmetry is used, axis 1 or both of these axes have half
-    the length.  A cell cut by the edge of the contact carries only the load inside the contact.
+    lateral coordinate along axis 2.  If symmetry is used, either axis 1 or both axes have half the
+    length.  A cell cut by the edge of the contact carries only the load inside the contact.
 
     Parameters
     ----------

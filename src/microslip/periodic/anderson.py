@@ -15,7 +15,7 @@ fraction of its full norm.  The value is about the square root of the rounding e
 
 
 def remember(pairs: np.ndarray, count: int, image: np.ndarray, change: np.ndarray) -> int:
-    """Append an image and a change to `pairs`, an array of shape (2, DEPTH + 1, n).
+    """Append an image and a change to the array `pairs`, which has the shape (2, DEPTH + 1, n).
 
     If `pairs` is full, the oldest pair is dropped.  Returns the number of pairs.
     """
@@ -31,8 +31,9 @@ def accelerated(pairs: np.ndarray, count: int, scale: np.ndarray, out: np.ndarra
     """Fill `out` with the combination of the stored images that has the smallest change.
 
     The least-squares problem is solved by modified Gram-Schmidt, starting with the newest
-    difference.  `pairs` holds images and changes, the newest last.  `scale` multiplies the changes
-    in the least-squares norm.  `out` and `scale` are arrays of shape (n,).
+    difference.  `pairs` contains pairs of an image and a change.  The newest pair is the last one.
+    `scale` multiplies the changes in the least-squares norm.  `out` and `scale` are arrays of shape
+    (n,).
     """
     images, changes = pairs[0], pairs[1]
     last, n = count - 1, len(out)

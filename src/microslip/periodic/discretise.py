@@ -56,9 +56,9 @@ def focus_strength(drift: float) -> float:
     `drift` is the forward displacement per radian of phase, in u_lim; 0 for the static limit.
 
     In a layer of width drift^(2/3) at the stick radius, the slip is as small as the drift.  Ring
-    widths grow quadratically from the stick radius.  So the ratio of the smallest to the mean ring
-    width should be the square root of the layer's width.  The ratio is rounded to a power of two,
-    so that different points share meshes.
+    widths grow quadratically from the stick radius.  Therefore, the ratio of the smallest to the
+    mean ring width should be the square root of the width of this layer.  The ratio is rounded to a
+    power of two, so that different points share meshes.
     """
     if drift == 0.0:
         return STATIC_FOCUS

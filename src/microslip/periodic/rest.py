@@ -1,9 +1,10 @@
 """Run a contact under a force below the static limit until it comes to rest.
 
 First, the force alone displaces the contact by partial slip.  Then the oscillation begins at its
-mean position, and each period displaces the contact by less than the period before.  The remaining
-displacement decays at least as fast as a power of the number of periods.  So the displacements
-between successive doublings of this number decay at least as fast as a geometric series.
+mean position.  In each period, the displacement is smaller than in the period before.  The
+remaining displacement decays at least as fast as a power of the number of periods.  Therefore, the
+displacements between n and 2 n periods, for n = 1, 2, 4, ..., decay at least as fast as a geometric
+series.
 """
 
 from __future__ import annotations
@@ -22,8 +23,8 @@ from microslip.scene.motion import HALF_PERIOD
 from microslip.scene.problem import Problem
 
 FIRST_LOOK, MOST_INTERVALS = 16, 16384
-"""Number of (half) periods before the first check for rest, and largest number of (half)
-periods."""
+"""FIRST_LOOK: number of (half) periods before the first check for rest.  MOST_INTERVALS: largest
+number of (half) periods."""
 LOOKS = 1.5, 4.0 / 3.0
 """Factors, used alternately, by which the number of (half) periods grows from check to check.  The
 factors keep this number a multiple of four."""
@@ -34,11 +35,10 @@ SLOWEST_RATIO = 0.9
 """Let r be the ratio of the displacements in two successive doublings of the number of periods.
 The remaining displacement is extrapolated only if r is at most this value."""
 LONG, DRIFTING = 200, 1.8
-"""After LONG (half) periods, a ratio r above DRIFTING means that the contact keeps drifting; a
-steady drift has r = 2.  On a coarse mesh, the threshold of drift can be below the force."""
+"""If the ratio r is above DRIFTING after LONG (half) periods, the contact keeps drifting.  In a
+steady drift, r is 2.  On a coarse mesh, the threshold of drift can be below the force."""
 MOST_SHARE = 0.9
-"""`most_after` is the number of periods after which the oscillation has caused this fraction of the
-displacement."""
+"""After `most_after` periods, the oscillation has caused this fraction of the displacement."""
 
 
 def run_to_rest(

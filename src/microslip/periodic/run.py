@@ -245,6 +245,6 @@ def failed_run(reason: str) -> Run:
 
 
 def periods_of(marches: int, problem: Problem) -> float:
-    """Convert a number of marches, each over a period or half a period, to a number of full
-    periods."""
+    """Convert a number of marches to a number of full periods.  Each march covers a period or half
+    a period."""
     return 0.5 * marches if problem.half_period_mirror else float(marches)

@@ -10,8 +10,8 @@ changes so slowly that a small residual is no evidence of convergence.
 
 The state of a driven body includes two more numbers, its position x and rate x' (see
 contact/march.py).  In one period, unbalanced forces hardly change the state of a heavy body or of a
-body on a soft spring.  To match the stiffness of the contact, the map therefore scales up the
-changes of x and x', as if the spring were stiffer and the body lighter.  This scaling does not
+body on a soft spring.  To match the stiffness of the contact, the map scales up the changes of x
+and x'.  This has the same effect as a stiffer spring and a lighter body.  This scaling does not
 change the fixed point of the map.  A contact in full slip is much more compliant than a sticking
 contact.  For a contact in full slip, the stiffness is the rise of the mean force with the
 displacement.
@@ -39,13 +39,14 @@ LOOSEST, LOOSEST_NEAR = 1e-4, 1e-5
 """Largest tolerance of a step.  The first value is for an initial state far from the periodic
 state, and the second value is for an initial state near it."""
 NOISE = 1e-2
-"""Largest accepted residual of a march, divided by the force that the drift adds in this march.  An
-error of the state decays at most as fast as the state drifts."""
+"""Largest accepted residual of a march, as a fraction of the force that the drift adds in this
+march.  The rate at which an error of the state decays is at most the rate at which the state
+drifts."""
 DRIFTING, MOST_RETURNS = 0.5, 3
 """DRIFTING: a state below the static limit is stuck if its residual exceeds this fraction of the
 force that the drift adds.  Such a state drifts without slip, so its change does not measure the
 distance to the periodic state.  The search then goes halfway back to the last state that was not
-stuck, at most MOST_RETURNS times in a row."""
+stuck.  MOST_RETURNS: largest number of such returns in a row."""
 FORGETFUL = 0.2
 """The plain map is not accelerated if its contraction factor is below this value."""
 CAUTION = 0.3
@@ -138,7 +139,8 @@ class DriftRate:
     least: float = np.nan
 
     def error(self, force: float, change: float) -> float:
-        """Return the error of a mean force if the plain map changes the state by `change`."""
+        """Return the error of a mean force.  `change` is the change of the state by the plain
+        map."""
         excess = abs(force - self.static_force)
         if math.isnan(excess):  # the limit can be any force from 0 to full slip
             excess = max(abs(force), abs(self.full - force))

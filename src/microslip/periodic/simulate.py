@@ -5,8 +5,8 @@ length.
 
 The search for the state of a driven contact starts from the periodic state at a prescribed
 velocity.  This velocity is the velocity of the spring's far end, or an approximate velocity under
-the force.  The number of periods in a search does not depend on the number of steps, so a run with
-many steps starts from the result of a run with few steps.
+the force.  The number of periods in a search does not depend on the number of steps.  To save time,
+a run with many steps therefore starts from the result of a run with few steps.
 """
 
 from __future__ import annotations
@@ -104,10 +104,11 @@ def steady_state(
 
 
 SLOW_EXCESS, LARGEST_EXCESS = 4.0, 0.6
-"""A search starts from the static limit plus a forward traction.  This traction is the friction
-bound times SLOW_EXCESS * drift^(2/3), but at most LARGEST_EXCESS times the bound.  Friction rises
-with the same power of the drift.  The factor SLOW_EXCESS is so large that the search starts with
-too much forward traction, which makes an accelerated search converge faster."""
+"""A search starts from the static limit plus a forward traction.  This traction, divided by the
+friction bound, is `SLOW_EXCESS` times drift^(2/3), but at most `LARGEST_EXCESS`.  The rise of the
+friction is proportional to the same power of the drift.  The factor SLOW_EXCESS is so large that
+the search starts with too much forward traction, which makes an accelerated search converge
+faster."""
 MARCHES_FROM_COARSER = 50
 """Largest number of marches in a search that starts from interpolated tractions.  If more are
 needed, a search from the usual start is faster."""
@@ -117,9 +118,9 @@ LOOSEST_START = 1e-4
 """Largest tolerance of the state at a prescribed velocity from which the search for a driven
 contact starts, as a force divided by mu F_z."""
 COARSENING, PREPARED_FROM = 6, 96
-"""A run of a driven contact with at least PREPARED_FROM steps starts from a run with COARSENING
-times fewer steps.  Runs with fewer steps are cheap and start directly; they suffice for a tolerance
-of 1e-3."""
+"""PREPARED_FROM: a run of a driven contact with at least this number of steps starts from a run
+with fewer steps.  COARSENING: ratio of these numbers of steps.  Runs with fewer than PREPARED_FROM
+steps are cheap and start directly; they suffice for a tolerance of 1e-3."""
 MOST_SCALED = 4.0
 """Largest factor by which the initial tractions are scaled to match the prescribed force."""
 
@@ -209,8 +210,8 @@ class _Search:
     `unit` is the force, divided by mu F_z, that corresponds to an error of 1 in the result.  If the
     velocity is prescribed or a spring pulls the contact, the result is a force.  For a prescribed
     force, the result is a velocity, and `unit` is the smaller of two estimates.  The first estimate
-    is the stiffness of the contact times the displacement at velocity 1 in an interval.  The second
-    estimate is the rise of the friction force with the velocity.
+    is the stiffness of the contact times the displacement of the contact in an interval at velocity
+    1.  The second estimate is the rise of the friction force with the velocity.
     """
 
     def __init__(
@@ -381,7 +382,8 @@ class _Search:
             yield Start(tractions, np.array([place, 0.0]), friction=run.mu)
 
     def _similar_runs(self, guess: Run | None) -> Iterator[Run]:
-        """Yield the guess, and a Run with COARSENING times fewer steps."""
+        """Yield runs with a similar state: the guess, and a Run with fewer steps (see
+        `COARSENING`)."""
         if guess is not None:
             yield guess
         if self.resolution.steps >= PREPARED_FROM:

@@ -9,11 +9,12 @@ the bound allows:
     mu F_z mu_static = Integral { mean of q_forward
                                   + max s_forward : |q(t) + s| <= g(t) for all t } dA.
 
-For ratcheting, this equation is the counterpart of Melan's shakedown theorem.  At points that slip
-in every period of the oscillation alone, s is 0, because q reaches the bound in several directions,
-so that no constant traction can be added.  For a loop without half-period symmetry, the mean of q
-at these points is not 0, because the oscillation drags the contact along.  At points that never
-slip, q contains an arbitrary constant, which does not change the sum of the two terms above.
+For ratcheting, this equation is the counterpart of Melan's shakedown theorem.  Some points slip in
+every period even if only the oscillation acts.  There, q reaches the bound in several directions,
+so that no constant traction can be added, and s is 0.  The mean of q at these points is not 0 for a
+loop without half-period symmetry.  The reason is that the oscillation drags the contact along.  At
+points that never slip, q contains an arbitrary constant.  The sum q + s does not depend on this
+constant.
 
 For a motion on a line under a constant load, q(t) moves along the segment between the tractions at
 the two turning points.  After their mean is subtracted, these tractions are +-q.  So only the two
@@ -76,17 +77,19 @@ point grows in a constant direction, so backward Euler gives the same tractions 
 steps.  A second-order method can end a step below the bound, and s depends on the square root of
 the distance from the bound."""
 SLOW_LOOP = 0.02
-"""The stick zone of the static limit determines the state on a loop if the drift is below this
-value, in u_lim per radian of phase."""
+"""If the drift is below this value, the stick zone of the static limit determines the state on a
+loop.  The value is in u_lim per radian of phase."""
 MARCHES, MOST_ROUNDS = 120, 3
-"""Largest number of marches in a search for the periodic state of a loop, and largest number of
-searches.  An accelerated search that stalls because of rounding errors is restarted."""
+"""MARCHES: largest number of marches in a search for the periodic state of a loop.  MOST_ROUNDS:
+largest number of searches.  An accelerated search that stalls because of rounding errors is
+restarted."""
 HALVINGS = 50
-"""Number of bisections in the search for the largest shift, enough to reach the rounding error."""
+"""Number of bisections in the search for the largest shift.  This number is enough to reach the
+rounding error."""
 FELT = 4.0
-"""Ratio of the limit's error to the distance between the tractions and the periodic state of the
-oscillation alone.  In tests, this ratio was at most 3.  Slipping points are on the bound after
-every step, so their shift is 0."""
+"""The error of the limit is this factor times the distance between the tractions and the periodic
+state of the oscillation alone.  In tests, the ratio of the error to this distance was at most 3.
+Slipping points are on the bound after every step, so their shift is 0."""
 LOOP_STEP_SHARE = 1e-4
 """Ratio of the step tolerance to the tolerance of the periodic state.  A point's shift depends on
 the square root of the distance between its traction and the bound."""
@@ -280,8 +283,8 @@ def largest_shift(tractions: np.ndarray, bounds: np.ndarray) -> np.ndarray:
     least, most = np.zeros(forward.shape[1:]), 2.0 * bounds.min(axis=0)
 
     def reach(shift: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Return whether a forward shift lies inside the discs of all phases, and bounds on the
-        lateral shift."""
+        """Return whether a forward shift lies inside the discs of all phases.  Also returns the
+        bounds on the lateral shift."""
         across = bounds**2 - (forward + shift) ** 2
         width = np.sqrt(np.maximum(across, 0.0))
         ends = (-lateral - width).max(axis=0), (width - lateral).min(axis=0)
@@ -375,11 +378,13 @@ MOST_PASSES = 4
 MOST_EDGES = 4
 """Largest number of edges of the stick zone.  If there are more, they are treated as scatter."""
 SLIVER = 1e-3
-"""Two edges closer than this fraction of the contact radius are treated as scatter.  If there is
-little slip, the shift is almost 0 in the rings on either side of an edge."""
+"""If the distance between two edges is below this fraction of the contact radius, both edges are
+treated as scatter.  If there is little slip, the shift is almost 0 in the rings on either side of
+an edge."""
 _EDGES: dict[Problem, tuple[tuple[float, ...], Effort]] = {}
 MOST_STORED = 64
-"""Largest number of static limits whose edges are stored, with the effort of the search."""
+"""The edges of at most this number of static limits are stored, each with the effort of the
+search."""
 
 
 def edge_focus(
@@ -395,8 +400,8 @@ def edge_focus(
     ring with two edges.  Under an oscillating load, the edges are computed for the static limit
     only.
 
-    The effort of a search is charged to every point that uses its result.  So the work that is left
-    for a point does not depend on earlier points.
+    The effort of a search is charged to every point that uses its result.  Therefore, the work that
+    remains in the budget of a point does not depend on earlier points.
 
     Parameters
     ----------
@@ -446,7 +451,7 @@ def edge_focus(
 
 
 def _edges_of(limit: Problem, settings: Settings, progress: Callable | None) -> tuple[float, ...]:
-    """Find the radii of the edges for a problem at velocity 0."""
+    """Find the radii of the edges of the stick zone, for a problem at velocity 0."""
     motion, model = limit.motion, "polar" if limit.motion.rotates else "radial"
     edges = partial(stick_edges, limit, model, settings=settings, progress=progress)
     if not at_turning_points(limit):
@@ -526,8 +531,8 @@ def _stick_radii(contact: Contact, sticks: np.ndarray | None) -> tuple[float, ..
 
     A ring sticks if most of its points do.
 
-    Pairs of radii closer than SLIVER are removed.  Returns only the outermost radius if there are
-    more than MOST_EDGES radii, and no radius if `sticks` is None.
+    Pairs of radii closer than SLIVER are removed.  If there are more than `MOST_EDGES` radii, only
+    the outermost radius is returned.  If `sticks` is None, no radius is returned.
     """
     edges = contact.edges
     if sticks is None or edges is None:

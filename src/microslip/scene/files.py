@@ -47,7 +47,8 @@ FORM = UNITS | {"time": "s"}
 """SI unit of each column of a file."""
 EVEN_TIMES = 1e-2
 """Largest allowed deviation of a time from equal spacing, divided by the spacing.  Such a deviation
-changes the values of a sine with N samples by at most 2 pi EVEN_TIMES / N times its amplitude."""
+changes the values of a sine with N samples.  Relative to the amplitude of the sine, the change is
+at most 2 pi EVEN_TIMES / N."""
 
 
 def columns_of(table: Table, is_record: bool = False) -> dict[str, np.ndarray]:
@@ -281,8 +282,8 @@ def _split(line: str, decimal: str) -> tuple[str | None, list[str]]:
 
 
 def _pitch(text: str) -> tuple[float, float, Mapping[str, str | None]]:
-    """Return the forward and the lateral distance between the cells of a matrix, and the unit of
-    each.
+    """Return the forward and the lateral distance between the cells of a matrix.  Also returns the
+    unit of each distance.
 
     text: a length such as "0.5 mm" for both distances, or two lengths such as "0.5 mm x 0.6 mm".
     """

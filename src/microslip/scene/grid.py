@@ -20,10 +20,11 @@ READINGS = ("cells", "samples")
 around its point; a cell is one grid step wide.  With "samples", values apply at the points and are
 interpolated bilinearly.  The pressure is 0 outside the grid."""
 FINE = 256
-"""Number of squares along each side of the contact for the computation of u_lim and the torque."""
+"""To compute u_lim and the torque, the contact is divided into this number of squares along each
+side."""
 FINEST = 1024
-"""Largest number of squares along each side.  If a grid has more than FINE points along a side,
-more than FINE squares are used."""
+"""Largest number of squares along each side.  If a grid has more points along a side than `FINE`,
+the number of squares is increased up to this limit."""
 REGULAR = 1e-3
 """Largest allowed distance of a coordinate from the regular grid, divided by the step of the
 grid."""
@@ -90,7 +91,8 @@ def _step(label: str, axis: np.ndarray) -> float:
 
 @dataclass(frozen=True, eq=False)
 class Axis:
-    """One side of the smallest rectangle that contains all nonzero pressures, with its grid points.
+    """One side of the smallest rectangle that contains all nonzero pressures, and the grid points
+    along this side.
 
     points: evenly spaced coordinates, as an array of shape (n,).  low, high: coordinates of the two
     ends of the side.  step: distance between neighbouring points.  reading: one of READINGS.
@@ -112,8 +114,8 @@ class Axis:
         return 0.5 * (self.high - self.low)
 
     def integrals(self, edges: np.ndarray) -> np.ndarray:
-        """Compute the integral of the shape function of each point over each interval between
-        edges.
+        """For each point and each interval between edges, integrate the shape function of the point
+        over the interval.
 
         The result is an array of shape (intervals, n).
         """

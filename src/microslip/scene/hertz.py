@@ -67,9 +67,9 @@ class Ellipse(Pressure):
     def torque(self) -> float:
         """Mean distance from the centre, weighted by the pressure.
 
-        The mean is 3 pi/16 on the unit circle.  Scaling one axis of this circle by the ratio gives
-        the ellipse, and multiplies distances along a ray at the angle t by hypot(cos t, ratio sin
-        t).
+        The mean is 3 pi/16 on the unit circle.  If one axis of this circle is scaled by the ratio,
+        the circle becomes the ellipse.  The scaling multiplies distances along a ray at the angle t
+        by hypot(cos t, ratio sin t).
         """
         angle = (np.arange(512) + 0.5) * (np.pi / 1024)
         stretch = np.hypot(np.cos(angle), self.ratio * np.sin(angle))

@@ -7,9 +7,10 @@ punches gives
 
     G* = 1 / (2 Integral_0^1 x h'(x) dx)
     bound(r, c) = (G*/pi) Integral_r^c h'(x) / sqrt(x^2 - r^2) dx
-    load beyond r = 2 G* Integral_r^c h'(x) sqrt(x^2 - r^2) dx.
+    load(r, c) = 2 G* Integral_r^c h'(x) sqrt(x^2 - r^2) dx,
 
-The substitution x = r cosh(eta) makes these integrals smooth.
+where load(r, c) is the load outside the radius r.  The substitution x = r cosh(eta) makes these
+integrals smooth.
 
 Power is an indenter with the profile f(r) ~ r^n: a cone for n = 1, a sphere for n = 2, and an
 indenter with a flatter end for larger n.  Punch is a flat punch with a rounded edge: f(r) is 0

@@ -28,8 +28,8 @@ from microslip.scene.pressure import Pressure
 from microslip.theory import hertz, masing, oscillating_load, paper
 
 FOCUS_RANGE = (0.05, 0.9995)
-"""Range of radii towards which rings are graded.  A stick zone whose radius is below this range
-carries almost no load."""
+"""Range of radii towards which rings are graded.  If the stick radius is below this range, the
+stick zone carries almost no load."""
 
 LOOP = np.linspace(0.0, 2.0 * np.pi, 721)
 """Phases at which the extremes of an oscillation over one period are evaluated."""
@@ -218,18 +218,18 @@ class Motion(spec.Named):
         """Whether the oscillation alone can propel the contact, so that the mean friction can be
         negative.
 
-        Propulsion is impossible if the oscillation at some later phase equals the original
-        oscillation with the forward component reversed.  Let d be the greatest common divisor of
-        the numbers of cycles of all components.  After a fraction 1/(2 d) of the period, every
-        component has the same value as before, or minus this value if its number of cycles is an
-        odd multiple of d.  If the forward component has then changed its sign and the load has not,
-        the oscillation cannot propel the contact.  The signs of the lateral component and of the
-        angle do not matter, because under a symmetric pressure two images of a solution are
-        solutions as well.  The mirror image reverses the forward component and the angle.  The
-        point reflection q(-forward, -lateral) reverses the angle; it is a solution because the
-        influence of one point on another is an even function of the vector between them.  Together
-        with -q, which reverses all components, these images give every combination of signs.  In
-        all images, the forward force has the sign of the forward motion.
+        Propulsion is impossible if a shift of the oscillation in time has the same effect as a
+        reversal of its forward component.  Let d be the greatest common divisor of the numbers of
+        cycles of all components.  After a fraction 1/(2 d) of the period, a component with n cycles
+        has the opposite value if n / d is odd, and the same value as before if n / d is even.  The
+        oscillation cannot propel the contact if, after this time, the forward component is reversed
+        and the load is the same as before.  The signs of the lateral component and of the angle do
+        not matter, because under a symmetric pressure two images of a solution are solutions as
+        well.  The mirror image reverses the forward component and the angle.  The point reflection
+        q(-forward, -lateral) reverses the angle; it is a solution because the influence of one
+        point on another is an even function of the vector between them.  The solution -q reverses
+        all components.  Combinations of these three images give every combination of signs.  In all
+        images, the forward force has the sign of the forward motion.
         """
         if "forward" not in self.components:
             return False
@@ -300,8 +300,8 @@ class Motion(spec.Named):
         return float(np.diff(fast - still)[0]) / (2.0 * np.pi) * velocity
 
     def stroke(self, amplitude: float, poisson: float) -> float:
-        """Compute half the peak-to-peak displacement of the contact edge, in u_lim; 0 for steady
-        motions."""
+        """Compute half the peak-to-peak displacement of the contact edge, in units of u_lim.  The
+        result is 0 for steady motions."""
         if not self.periodic:
             return 0.0
         ends = self.moved(np.array(HALF_PERIOD), 0.0, amplitude, poisson)
@@ -321,9 +321,9 @@ class Motion(spec.Named):
 
         If the load oscillates, the result is the smallest contact radius divided by the largest.
         For a translation, the result is the stick radius of a straight oscillation with the same
-        reach (Eq 8).  For a rotation, the result is Lubkin's stick radius (Eq 30).  Lubkin's radius
-        is derived for Hertz pressure, but a mesh graded towards it does no harm under other
-        pressures.
+        largest distance from the centre (Eq 8).  For a rotation, the result is Lubkin's stick
+        radius (Eq 30).  Lubkin's radius is derived for Hertz pressure, but a mesh graded towards it
+        does no harm under other pressures.
         """
         if self._normal.share:
             smallest = pressure.radius(self._extreme(-1.0, amplitude, pressure))

@@ -284,9 +284,9 @@ class Measured(spec.NamedByText, Pressure):
     ) -> Measured:
         """Create a pressure with the given name.
 
-        The attribute `readings` contains two further pressures: the same values with the other
-        meaning in `grid.READINGS`, and the values at half the resolution.  An InputError is raised
-        in the same cases as by `grid.checked`.
+        The attribute `readings` contains two further pressures.  The first has the same values with
+        the other meaning in `grid.READINGS`, and the second has the values at half the resolution.
+        An InputError is raised in the same cases as by `grid.checked`.
         """
         points, values, step = checked(forward, lateral, values)
         peak = float(values.max())

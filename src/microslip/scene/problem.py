@@ -248,7 +248,8 @@ class Problem:
 
     @cached_property
     def unit_drift(self) -> float:
-        """Mean forward displacement per radian of phase at velocity 1, in u_lim."""
+        """Mean forward displacement per radian of phase at the dimensionless velocity 1, in units
+        of u_lim."""
         return self.motion.drift(1.0, self.size, self.poisson)
 
     @property

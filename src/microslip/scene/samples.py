@@ -122,8 +122,8 @@ class SampledPath(_Samples):
 class Sampled(spec.NamedByText, _Samples):
     """One period of a motion of any shape, given by equally spaced samples.
 
-    With the amplitude A, the indenter moves by A times the interpolated displacements.  If the load
-    or indentation is h for A = 1, it is 1 + A (h - 1) for any A.
+    With the amplitude A, the indenter moves by A times the interpolated displacements.  A sample h
+    of the load or indentation becomes 1 + A (h - 1).
 
     Attributes
     ----------
@@ -186,7 +186,8 @@ class Sampled(spec.NamedByText, _Samples):
 
     @cached_property
     def readings(self) -> tuple[Motion, ...]:
-        """The motion through every second sample."""
+        """Tuple that contains the motion through every second sample.  The tuple is empty if there
+        are too few samples."""
         if len(self.rows) < 2 * FEWEST_SAMPLES:
             return ()
         height = None if self.height is None else self.height[::2]
@@ -215,8 +216,8 @@ class Sampled(spec.NamedByText, _Samples):
 
     @cached_property
     def cycles(self) -> int:
-        """Root mean square of the cycle counts per period, taken in the column with the largest
-        value."""
+        """Effective number of cycles per period: the root mean square of the numbers of cycles of
+        all harmonics.  The result is the largest value of all columns."""
         power = np.abs(np.fft.rfft(self.rows - self.rows.mean(axis=0), axis=0)) ** 2
         if self.height is not None:
             height = np.abs(np.fft.rfft(self.height - self.height.mean())) ** 2
@@ -396,7 +397,7 @@ def checked_columns(
 
 def _rows_of(columns: Mapping[str, Any], fewest: int) -> tuple[np.ndarray, np.ndarray | None, bool]:
     """Convert columns to three values: the displacements as an array of shape (rows, 3), the load
-    or indentation as an array of shape (rows,) or None, and whether it is a load."""
+    or indentation as an array of shape (rows,) or None, and True if this array is a load."""
     arrays = checked_columns(columns, PLANE + NORMAL, fewest, LARGEST["amplitude"])
     heights = [name for name in NORMAL if name in arrays]
     for name in heights:

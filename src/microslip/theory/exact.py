@@ -12,7 +12,8 @@ bound on the dissipation.  With the force F (|F| <= 1) and d = 1 - mu, it follow
   lateral force. Forward tractions contribute at most phi d to the mean power of the torque, and
   lateral tractions contribute at most phi sqrt(d/5), where 1/5 is the second moment of Hertz
   pressure about a diameter. Hence d <= 1 / (5 (v - 1)^2) for v > 1.
-- longitudinal (forward v t + x sin t): the sphere never moves backward if v >= x, so d = 0.
+- longitudinal (forward v t + x sin t): if v >= x, the sphere never moves backward.
+  In this case, d = 0.
 
 For the transverse motion, the dissipated energy per radian is the work v mu + y <F_lateral cos t>.
 This energy is at least v and at most v (1 - d) + y sqrt(d), hence at most v + y^2 / (4 v). For the

@@ -111,7 +111,8 @@ def D(c: Numbers) -> Numbers:
 
 
 def _D_of_log(log_c: np.ndarray) -> np.ndarray:
-    """Return D as a function of ln c <= 0, accurate also if c is near 1 or underflows."""
+    """Return D as a function of ln c, where ln c <= 0. The result is also accurate if c is near 1,
+    or so small that c underflows."""
     k_squared = 0.0 - np.expm1(2 * log_c)
     near = k_squared / 3 * scipy.special.elliprd(0.0, np.exp(2 * np.maximum(log_c, -20.0)), 1.0)
     return np.where(log_c < -20.0, np.log(4.0) - 1 - log_c, near)
@@ -208,10 +209,10 @@ def mindlin_stick_radius(u: Numbers) -> Numbers:
 def mindlin_traction(r: Numbers, u: Numbers) -> Numbers:
     """Return the shear traction at the radius r after the displacement u from rest.
 
-    The traction is g - g_c in the stick zone and g outside (Cattaneo and Mindlin). Here g_c = 3/(2
-    pi) sqrt(c^2 - r^2) is the friction bound of an inner contact of radius c = sqrt(1 - u). The
-    formula is exact for nu = 0. Raises ValueError unless r >= 0 and u >= 0 in u_lim; the arguments
-    are broadcast. The result is dimensionless.
+    The traction is g - g_c in the stick zone, and the friction bound g in the slip annulus
+    (Cattaneo and Mindlin). Here g_c = 3/(2 pi) sqrt(c^2 - r^2) is the friction bound of an inner
+    contact of radius c = sqrt(1 - u). The formula is exact for nu = 0. Raises ValueError unless r
+    >= 0 and u >= 0 in u_lim; the arguments are broadcast. The result is dimensionless.
     """
     r, u = np.broadcast_arrays(checked("r", r), np.minimum(checked("u", u), 1.0))
     gap = 1 - u - r * r

@@ -144,9 +144,9 @@ def torsion_energy(pressure: IndenterPressure, angle: float, poisson: float = 0.
     """Compute the dissipated energy per period of an oscillating torsion without sliding.
 
     By Masing's rules, the energy is 8 W - 4 T phi, where W is the work of the first loading. The
-    torque T is the sum of the torques (16/3) G s^3 (-d phi(s)) of punches of all radii s.
-    Integration by parts gives 64 G Integral_c^1 s^2 phi(s) (phi(c) - phi(s)) ds.  For a sphere,
-    this result is the formula of Lubkin and Deresiewicz.
+    torque T is a sum over punches of all radii s. A punch of the radius s contributes (16/3) G s^3
+    (-d phi(s)). Integration by parts gives 64 G Integral_c^1 s^2 phi(s) (phi(c) - phi(s)) ds. For a
+    sphere, this result is the formula of Lubkin and Deresiewicz.
 
     Parameters
     ----------

@@ -10,8 +10,8 @@ dimensionless as in `paper`.
 An Iwan model consists of parallel Jenkins elements, each of which is a spring in series with a
 slider. Let F(u) be the force of the first loading along one line at nu = 0. This force is 1 minus
 the load at the indentation depth 1 - u. The slope of F is 2 G* c, where c is the contact radius at
-this depth. In an Iwan model whose elements have the stiffness rho dphi for slip displacements from
-phi to phi + dphi, the slope is Integral_u^1 rho dphi. Hence
+this depth. Consider an Iwan model in which the elements with slip displacements from phi to phi +
+dphi have the stiffness rho dphi. The slope of its force is Integral_u^1 rho dphi. Hence
 
     rho(phi) = -F''(phi) = 2 G* / h'(c)    at the depth h(c) = 1 - phi,
 
@@ -103,9 +103,9 @@ def longitudinal_energy(
 ) -> float:
     """Compute the dissipated energy per period of the motion in `longitudinal`.
 
-    The energy is divided by mu F_z u_lim. The sphere slides forward over the net advance per
-    period, and the backward and forward strokes form a loop. The arguments have the same meaning as
-    for `longitudinal`, but must be floats.
+    The energy is divided by mu F_z u_lim. In each period, the sphere slides forward by the net
+    advance, and the backward and forward strokes form a loop. The arguments have the same meaning
+    as for `longitudinal`, but must be floats.
     """
     stroke = 0.0
     if velocity < amplitude:
@@ -115,10 +115,11 @@ def longitudinal_energy(
 
 
 def loop_energy(amplitude: Numbers, curve: Callable = mindlin_force) -> Numbers:
-    """Compute the dissipated energy of a force-displacement loop, 8 W(A) - 4 A F(A).
+    """Compute the dissipated energy of a force-displacement loop.
 
-    W is the work of the first loading, that is, the integral of the curve F from 0 to the amplitude
-    A. For a sphere, the result is the formula of Mindlin and Deresiewicz.
+    The energy is 8 W(A) - 4 A F(A). Here W is the work of the first loading, that is, the integral
+    of the curve F from 0 to the amplitude A. For a sphere, the result is the formula of Mindlin and
+    Deresiewicz.
 
     Parameters
     ----------
@@ -222,8 +223,8 @@ class Iwan:
     def error(self) -> float:
         """Error of the force on an initial loading and on loops between any two displacements.
 
-        The result is at most `error_on_any_path`, which is the smaller of the two estimates if
-        there is a single element.
+        The result is at most `error_on_any_path`. If there is a single element, `error_on_any_path`
+        is the smaller of the two estimates.
         """
         on_loops = LOOP_ERRORS * float(self.force_error.max()) + self.poisson_error
         return min(on_loops, self.error_on_any_path)
@@ -287,9 +288,9 @@ class Iwan:
 def with_elements(pressure: IndenterPressure, count: int) -> Iwan:
     """Create an Iwan model of an axisymmetric indenter at nu = 0 with `count` elements.
 
-    All intervals have nearly equal errors.  An interval with the stiffness k and the width w in
-    slip displacement has the error k w / 8, so sqrt(k w) is divided into equal parts.  The flat end
-    of a punch is a separate interval.
+    All intervals have nearly equal errors. An interval with the stiffness k and the width w in slip
+    displacement has the error k w / 8. The intervals therefore divide the sum of sqrt(k w) into
+    equal parts. The flat end of a punch is a separate interval.
     """
     parts = np.sqrt(np.diff(pressure.depth(_GRID)) * np.diff(_GRID))
     measure = np.concatenate([[0.0], np.cumsum(parts)])

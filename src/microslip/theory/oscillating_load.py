@@ -117,7 +117,8 @@ class _Motion:
         return np.arccos(np.clip((1.0 - height) / self.amplitude, -1.0, 1.0))
 
     def _climbs(self, t: np.ndarray) -> np.ndarray:
-        """Return an array that has the sign of phi' and is finite where contact begins."""
+        """Return an array with the sign of phi'. Unlike phi', the array is finite where contact
+        begins."""
         height = np.maximum(1.0 - self.amplitude * np.cos(t), 0.0)
         if self.by_load:  # the rate of load is proportional to the present stiffness
             radius = self.pressure.radius(self.pressure.of_load(height))
@@ -154,10 +155,11 @@ class _Motion:
     def lack(
         self, start: np.ndarray, high: float, later: Sequence[tuple[float, float]]
     ) -> np.ndarray:
-        """Integrate phi - min phi over time, from each of the times `start`.
+        """Integrate phi - min phi over time. Each of the times `start` is the beginning of one
+        integral.
 
-        The function phi rises from `start` to `high`, and again in the intervals `later`. The
-        result has the shape (n,).
+        The function phi increases from the time `start` to the time `high`, and also in each of the
+        intervals `later`. The result has the shape (n,).
         """
         level = self.phi(start)
         last = later[-1][1] if later else high

@@ -169,9 +169,9 @@ def _fast_forward(inverse: np.ndarray) -> np.ndarray:
 def bore_torque(velocity: Numbers) -> Numbers:
     """Return the torque of the steady continuous bore under Hertz pressure (Eq 22).
 
-    The torque, divided by its value at velocity 0, is 1 - v^2 + (3/8) v^4 for v <= 1, and 16/(15 pi
-    v) 2F1(1/2, 1/2; 7/2; 1/v^2) for v > 1. Raises ValueError unless velocity >= 0; the argument can
-    have any shape.
+    The torque is divided by its value at velocity 0. For v <= 1, the result is 1 - v^2 + (3/8) v^4.
+    For v > 1, the result is 16/(15 pi v) 2F1(1/2, 1/2; 7/2; 1/v^2). Raises ValueError unless
+    velocity >= 0; the argument can have any shape.
     """
     velocity = checked("velocity", velocity)
     slow, inverse = np.minimum(velocity, 1.0) ** 2, 1 / np.maximum(velocity, 1.0)
@@ -357,10 +357,10 @@ def transverse_drift(force: Numbers, amplitude: Numbers) -> Numbers:
 def bore_drift(force: Numbers, amplitude: Numbers) -> Numbers:
     """Return the mean velocity of a rigid contact under oscillating bore.
 
-    The velocity is (2/pi) E^-1(P) in units of Omega phi0 a, where E is the friction of Eq 21 as a
-    function of velocity. This unit is proportional to the amplitude, so the result does not depend
-    on the amplitude. The function has the same arguments and exceptions as `transverse_drift`;
-    forces between 1 - 1e-13 and 1 raise InputError.
+    In units of Omega phi0 a, the velocity is (2/pi) E^-1(P). Here E^-1 is the inverse of E, the
+    friction of Eq 21 as a function of velocity. The result does not depend on the amplitude, because
+    the unit is proportional to the amplitude. The function has the same arguments and exceptions as
+    `transverse_drift`; forces between 1 - 1e-13 and 1 raise InputError.
     """
     steady = np.vectorize(_steady_bore, otypes=[float])(checked("force", force))
     return np.broadcast_arrays(2.0 / np.pi * steady, checked("amplitude", amplitude))[0].copy()

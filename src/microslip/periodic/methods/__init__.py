@@ -1,11 +1,11 @@
 """Methods for comparison with the shipped method, and the names of all methods.
 
-The methods in OWN replace at most the integrator, see periodic.method.  Every other method is a
-file in this folder.  For example, the file `some_name.py` defines METHOD, a `method.Method`, and
-this method is called `some-name` in `microslip.solve` and in configurations.  Files whose names
-start with an underscore contain shared code.  The name of a method can be followed by parameters,
-for example "projected-gradient:step=0.5".  A method can require a package that microslip does not
-depend on.  Studies omit a method if its package is not installed.
+The methods named in `OWN` replace at most the integrator; see periodic.method.  Each of the other
+methods is a file in this folder.  For example, the file `some_name.py` defines METHOD, a
+`method.Method`, and this method is called `some-name` in `microslip.solve` and in configurations.
+Files whose names start with an underscore contain shared code.  The name of a method can be
+followed by parameters, for example "projected-gradient:step=0.5".  A method can require a package
+that microslip does not depend on.  Studies omit a method if its package is not installed.
 
 The functions that list and check names import neither the solver nor NumPy.
 """
@@ -28,7 +28,7 @@ if TYPE_CHECKING:
 
 SHIPPED = "shipped"
 OWN = (SHIPPED, "euler", "midpoint")
-"""Names of the methods without a file."""
+"""Names of the methods that have no file in this folder."""
 METHODS = Path(__file__).parent
 
 

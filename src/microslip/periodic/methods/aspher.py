@@ -6,8 +6,9 @@ per backward Euler step by a projected conjugate gradient method.  The method su
 only, at any nu.
 
 The time integration starts without tractions.  The integration ends when the mean forces of two
-periods agree, or after MOST_PERIODS periods.  Within so few periods, only fast forward motions
-become periodic.  Two settings differ from the defaults of the package:
+periods agree, or when the largest number of periods (`MOST_PERIODS`) is reached.  Within so few
+periods, only fast forward motions become periodic.  Two settings differ from the defaults of the
+package:
 
 - The preconditioner is off.  The preconditioner is designed for sticking points.  When the slip
   changes direction, the preconditioned solver needs about five times as many iterations, and the
@@ -17,8 +18,8 @@ become periodic.  Two settings differ from the defaults of the package:
   By default, the package returns to the tractions before the step, which makes the mean forces
   wrong.
 
-An iteration computes two products with the influence operator; solvers of microslip compute one.
-The effort counts iterations.
+In each iteration, the package computes two products with the influence operator, whereas the
+solvers of microslip compute one.  The effort counts iterations.
 """
 
 from __future__ import annotations
