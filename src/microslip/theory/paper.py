@@ -358,9 +358,9 @@ def bore_drift(force: Numbers, amplitude: Numbers) -> Numbers:
     """Return the mean velocity of a rigid contact under oscillating bore.
 
     In units of Omega phi0 a, the velocity is (2/pi) E^-1(P). Here E^-1 is the inverse of E, the
-    friction of Eq 21 as a function of velocity. The result does not depend on the amplitude, because
-    the unit is proportional to the amplitude. The function has the same arguments and exceptions as
-    `transverse_drift`; forces between 1 - 1e-13 and 1 raise InputError.
+    friction of Eq 21 as a function of velocity. The result does not depend on the amplitude,
+    because the unit is proportional to the amplitude. The function has the same arguments and
+    exceptions as `transverse_drift`; forces between 1 - 1e-13 and 1 raise InputError.
     """
     steady = np.vectorize(_steady_bore, otypes=[float])(checked("force", force))
     return np.broadcast_arrays(2.0 / np.pi * steady, checked("amplitude", amplitude))[0].copy()
