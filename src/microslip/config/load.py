@@ -138,8 +138,8 @@ def _yaml_problem(error: Any, text: str) -> str:
 
 
 def reread(config: dict, paths: Iterable[str | os.PathLike]) -> dict:
-    """Return a copy of a configuration in which the values from files are as `read_yaml` reads
-    them.
+    """Return a copy of a configuration in which the values from files are replaced by those that
+    `read_yaml` reads.
 
     Snakemake reads files as YAML 1.1, in which 1e-3 is a string and 010 is 8.
 
@@ -157,7 +157,7 @@ def reread(config: dict, paths: Iterable[str | os.PathLike]) -> dict:
 
 
 def _replaced(value: Any, old: Any, new: Any) -> Any:
-    """Return `new` if `value` equals `old`, and otherwise `value`.  Values inside mappings are
+    """Return `new` if `value` equals `old`; otherwise, return `value`.  Values inside mappings are
     replaced in the same way.  An ellipsis stands for a missing value."""
     if value == old and new is not ...:
         return new

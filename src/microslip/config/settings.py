@@ -38,12 +38,12 @@ SHARE_OF_POINTS = 0.3
 STATIC_AMPLITUDES = {"transverse": 1.0, "bore": 5.0}
 """Largest amplitude at which the paper's map of a motion shows static friction."""
 AXES = ("mass", "damping", "stiffness", "poisson", "amplitude", "velocity", "force")
-"""Axes of a sweep, in the order of the dimensions of datasets."""
+"""Axes of a sweep, in the order of a dataset's dimensions."""
 STUDIES = ("accuracy", "stability", "claims")
 """Keys of the studies. They are also the names of the datasets."""
 SOLVING = ("all", "solve_batch", "solve_map")
 MAKING = ("make_products", "make_dataset", "draw_figure", "make_page", "link_file")
-"""Names of the workflow's rules. Datasets and figures must have other names."""
+"""Names of the workflow's rules. These names are not allowed for datasets and figures."""
 
 
 class Refusal(ValueError):
@@ -67,7 +67,8 @@ def refuse(is_bad: bool, message: str, key: str = "") -> None:
 
 
 def refuse_unknown(name: Any, names: Collection[str], problem: str, key: str = "") -> None:
-    """Raise Refusal if `name` is not in `names`. The message states the problem and the names."""
+    """Raise Refusal if `name` is not in `names`. The message states the problem and lists the
+    allowed names."""
     if name not in names:
         allowed = ", ".join(names) or "none"
         raise Refusal(f"{problem}; {near_miss(name, names)}allowed: {allowed}", key)
@@ -171,7 +172,8 @@ def _each(kinds: Iterable[Allowed], values: Any, key: str = "") -> list:
 
 
 def _list(kind: Allowed, text: str, alone: bool = False) -> Allowed:
-    """Return the type of a list of one or more different values. The list is converted to a tuple.
+    """Return the type of a list that is not empty and has no duplicates. The list is converted to a
+    tuple.
 
     alone: if True, a string is allowed in place of a list with one string.
     """
@@ -298,15 +300,15 @@ def _tolerance(given: dict[str, Any]) -> float:
 class Sweep(Settings):
     """A grid of points.  Each axis with more than one value is a dimension of the dataset.
 
-    A sweep with `error` is a certified map over the ranges of its axes.
+    A sweep that has the key `error` is a certified map over the ranges of its axes.
     """
 
     motion: Text
-    """Motion, with parameters as in "elliptic:forward=0.5,phase=30", file:FILE, or the path of a
-    Python file."""
+    """Name of a motion, optionally with parameters as in "elliptic:forward=0.5,phase=30"; or
+    file:FILE for a data file; or the path of a Python file."""
     pressure: Text = "hertz"
-    """Normal pressure, with parameters as in "power:exponent=1", file:FILE, or the path of a Python
-    file."""
+    """Name of a normal pressure, optionally with parameters as in "power:exponent=1"; or file:FILE
+    for a data file; or the path of a Python file."""
     title: Title = None
     """Title of the dataset, also used in figures. It is plain text: $ and \\ have no special
     meaning."""
@@ -335,9 +337,9 @@ class Sweep(Settings):
     tolerance: Annotated[float | None, _or_null(_number(1e-6, 0.1))] = Field(
         default_factory=_tolerance
     )
-    """Largest accepted absolute error of mu_macro. With null, cells and steps must be prescribed,
-    and a point counts as converged if its runs reach the periodic state. The default for a
-    certified map is three tenths of `error`, at most 0.01."""
+    """Largest accepted absolute error of mu_macro. If the tolerance is null, cells and steps must
+    be prescribed, and a point counts as converged if its runs reach the periodic state. The default
+    for a certified map is three tenths of `error`, at most 0.01."""
     cells: Cells = None
     """Number of rings, or of squares across the contact. By default, it follows from the
     tolerance."""
@@ -356,7 +358,7 @@ class Sweep(Settings):
 
     @property
     def drives(self) -> dict[str, tuple[float, ...]]:
-        """Values of the drive parameters that are given, keyed by name."""
+        """Values of the given drive parameters, keyed by name."""
         return {name: values for name, values in self.axes.items() if name in DRIVES}
 
     @property
@@ -399,9 +401,9 @@ class Figure(Settings):
     """A figure.  The key `kind` determines what the figure shows."""
 
     kind: Annotated[str, _one_of(*KINDS)]
-    """Kind of figure. map shows friction over two axes, and curves shows it along one axis, with a
-    panel for each sweep. history, field and transients show a single run. explorer is an
-    interactive page."""
+    """Kind of figure. The kind map shows friction over two axes. The kind curves shows friction
+    along one axis, with a panel for each sweep. The kinds history, field and transients show a
+    single run. The kind explorer is an interactive page."""
     sweep: Annotated[
         tuple[str, ...], _list(_SWEEP, f"{_SWEEP.text}, or a list of names", True)
     ] = ()
@@ -490,7 +492,8 @@ class _Grid(Settings):
 
 
 class ModelMap(_Grid):
-    """Grid of the maps that show the cheapest model for each tolerance, at Poisson's ratio 0."""
+    """Grid of the maps of the cheapest model. There is a map for each tolerance, and Poisson's
+    ratio is 0."""
 
     tolerance: Annotated[tuple[float, ...], _axis(1e-6, 0.1)] = (1e-3, 1e-2)
     """Absolute tolerances of mu_macro. There is a map for each tolerance."""
@@ -537,7 +540,7 @@ class Block(Settings):
     steps: Annotated[tuple[int, ...], _axis(8, LARGEST["steps"], step=2)] = ()
     """Imposed number of time steps in a period. By default, it follows from the tolerance."""
     step: PositiveAxis = ()
-    """Parameter `step` of the methods. Methods without this parameter are omitted from the
+    """Parameter `step` of the methods. A method that lacks this parameter is omitted from the
     block."""
     title: Title = None
     """Heading of the block in the figure. The default is the name of the varied quantity."""
@@ -585,8 +588,8 @@ class Claims(_Grid):
     tolerance: Tolerance = 5e-4
     """Largest accepted absolute error of mu_macro."""
     cells: Annotated[int, _number(8, 64, 2)] = 32
-    """Number of rings, and number of angular points on half the disc, in the runs whose tractions
-    are evaluated. The error estimate comes from a run with half this number."""
+    """Number of rings in the runs whose tractions are evaluated. The number of angular points on
+    half the disc is the same. The error estimate comes from a run with half this number."""
 
     def model_post_init(self, context: Any, /) -> None:
         """Raise Refusal if settings contradict each other."""

@@ -3,9 +3,9 @@
     transverse.nc     dims point, cell and node
 
 A cell is a box in the scaled coordinates of sweeps.map_coordinates.  Friction in a cell is
-interpolated by the polynomial through its points: 5 along the velocity, 5 along the amplitude and,
-if the map has an axis for Poisson's ratio, 3 along that axis.  cell_error is the error bound of the
-cell.  Identical records give byte-identical files.
+interpolated by the polynomial through the points of the cell: 5 along the velocity, 5 along the
+amplitude and, if the map has an axis for Poisson's ratio, 3 along that axis.  cell_error is the
+error bound of the cell.  Identical records give byte-identical files.
 """
 
 from __future__ import annotations

@@ -3,8 +3,8 @@
 On a regular grid, values are interpolated along each axis by the cubic through the four nearest
 nodes.  To estimate the error, the value at each node is also predicted from the neighbouring nodes,
 by a cubic with twice the spacing.  The error bound of a cell is the largest difference between
-prediction and value at the nodes of its cubic.  For a smooth function, the true error is a
-sixteenth of this bound.  At a kink, the true error and the bound are about equal.  Near an
+prediction and value at the nodes of the cubic in this cell.  For a smooth function, the true error
+is a sixteenth of this bound.  At a kink, the true error and the bound are about equal.  Near an
 unknown value, the interpolation is linear, and the difference between the two nodes serves as the
 error.
 
@@ -39,7 +39,8 @@ BORDERS = {
 AXES = ("mass", "damping", "stiffness", "poisson", "amplitude", "velocity", "force")
 """Coordinates of maps, in the order of the dimensions of a result."""
 NUMBERS = ("cell", "node", "point")
-"""Dimensions of a certified map.  Their coordinates number the cells, nodes and points."""
+"""Dimensions of a certified map.  The coordinates along these dimensions are the numbers of the
+cells, nodes and points."""
 PARTS = (*NUMBERS, "mu_macro", "cell_error", "cell_node", *sum(BORDERS.values(), ()), *AXES)
 """Variables of a certified map that have a checksum."""
 SAME = 1e-12
@@ -84,7 +85,7 @@ class Axis:
 
     @cached_property
     def nodes(self) -> np.ndarray:
-        """Scaled coordinates without the static limit."""
+        """Scaled coordinates of the values, except the value at the static limit."""
         return self.scaled(self.values[self.static :])
 
     def scaled(self, points: np.ndarray) -> np.ndarray:
@@ -130,7 +131,7 @@ class Axis:
         """For each node, return the absolute error of the cubic through the neighbouring nodes.
 
         The nodes are along the first axis of the table.  An end node is assigned the error of its
-        neighbour.  If there are only two nodes, both are assigned the difference between their
+        neighbour.  If there are only two nodes, the error of both is the difference between their
         values.  At the static limit, the error is 0.
         """
         if self.static:

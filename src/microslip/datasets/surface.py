@@ -103,8 +103,8 @@ def largest_around(values: np.ndarray) -> np.ndarray:
     """Return the largest entry at the nodes around each cell of a table.
 
     The nodes around a cell form a window with four nodes along each side.  The table is padded with
-    its edge entries.  The result has the shape (n - 1, m - 1), but at least one entry along each
-    axis.
+    its edge entries.  The result has the shape (n - 1, m - 1), but it has at least one entry along
+    each axis.
 
     values: entries at the nodes, as an array of shape (n, m).
     """

@@ -32,7 +32,7 @@ PAPER = "R. Pohrt, Front. Mech. Eng. 6:566440 (2020), doi:10.3389/fmech.2020.566
 def build(
     configuration: Configuration, name: str, records: Iterable[dict]
 ) -> tuple[xr.Dataset, dict[str, xr.Dataset]]:
-    """Build the dataset of a sweep, and the datasets of its groups by name (see GROUPS).
+    """Build the dataset of a sweep, and a dict of the datasets of its groups (see GROUPS).
 
     The dataset has the dimensions of the sweep.  Variables with other axes are in groups.
 
@@ -114,7 +114,7 @@ GROUPS = {
 }
 """Titles of the groups in the file of a sweep.  For each motion, only some of the groups exist."""
 ENTRIES = {"history": "periods", "transients": "travel"}
-"""For each group of single runs, the entry by which the requests of the group are recognised."""
+"""For each group of single runs, the entry that identifies the requests of the group."""
 LONGEST_TEXT = 256
 """Maximum number of characters in a string.  A longer string is truncated and ends with dots."""
 
@@ -124,7 +124,7 @@ def _shortened(text: str) -> str:
 
 
 def _of_runs(runs: list[dict]) -> dict[str, dict]:
-    """Return the variables of single runs by group.
+    """Return the variables of single runs, keyed by group.
 
     The values come from the requests, the results and the closed forms.  A variable without the
     dimension `start` is taken from the first run of its group.

@@ -38,8 +38,8 @@ def _forms(sweep: Sweep) -> dict[str, ClosedForm]:
 
 
 def variables(sweep: Sweep) -> dict:
-    """Evaluate the closed forms at the points of a sweep.  Returns a dict of tuples (dims, values,
-    attributes) by name."""
+    """Evaluate the closed forms at the points of a sweep.  Returns a dict with a tuple (dims,
+    values, attributes) for each name."""
     motion, pressure = solver_names(sweep)
     forms, limits = [*_forms(sweep).values()], {}
     drift = catalogue.DRIFT_FORMS.get(motion)

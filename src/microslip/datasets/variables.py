@@ -6,7 +6,7 @@ which are described in catalogue.csv.  The columns of variables.csv are:
 - group: part of the dataset, or kind of sweep, that has the variable,
 - name, dims, kind, units: name, dimensions (of variables outside the map), type and unit,
 - source: entry of a result from which the values are taken; if it is empty, the entry has the name
-  of the variable.  For a change, the variable whose change is computed,
+  of the variable.  For a variable that contains a change: the variable whose change is computed,
 - long_name: text that is short enough for the axis of a plot; description: longer text,
 - flag_meanings: meanings of 0 and 1, if these are not "no" and "yes".
 """
@@ -21,12 +21,13 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 ANCILLARY = "ancillary_variables"
-"""Attribute of a variable that contains the name of the variable with its error."""
+"""Name of the attribute that states which variable contains the error of a variable."""
 TYPES: dict[str, type] = {"float": float, "int": np.int32, "bool": bool, "str": object}
-"""Types of values by their names in tables.  Any other name lists the meanings of the codes 0, 1,
-..., separated by spaces."""
+"""Types of values by their names in tables.  Any other entry in the column of types lists the
+meanings of the codes 0, 1, ..., separated by spaces."""
 MISSING = {"float": np.nan, "str": ""}
-"""Value of a missing entry for each type of variable; 0 for the other types."""
+"""Value that replaces a missing entry, keyed by the type of the variable.  For the other types,
+this value is 0."""
 
 
 def rows(path: Path) -> list[dict[str, str]]:
@@ -48,7 +49,7 @@ def rows_of(*groups: str) -> dict[str, dict[str, str]]:
 def columns(
     table: Iterable[Mapping[str, str]], entries: Iterable[Mapping], size: int
 ) -> dict[str, np.ndarray]:
-    """Return the values of variables along one dimension, by name.
+    """Return the values of variables along one dimension, as a dict keyed by name.
 
     Parameters
     ----------

@@ -6,8 +6,8 @@ from typing import NamedTuple
 
 
 class Motion(NamedTuple):
-    """Texts of a motion: heading, and name and HTML label of the second force component in a
-    period."""
+    """Texts of a motion: the heading, the name of the second force component in a period, and the
+    HTML label of this component."""
 
     title: str
     force: str
@@ -21,5 +21,5 @@ MOTIONS = {
     ),
     "bore": Motion("oscillating bore", "torque", TORQUE),
 }
-"""Motions that have stored periods, a form for real contacts, and panels in the figures of
-`claims`."""
+"""Motions that have stored periods and a form for real contacts in the explorer. They also have
+panels in the figures of the study `claims`."""

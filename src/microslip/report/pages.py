@@ -98,7 +98,8 @@ def claims_page(dataset: xr.Dataset, lines: list[str]) -> str:
 
 
 def _records(dataset: xr.Dataset, dim: str, prefix: str = "") -> list[SimpleNamespace]:
-    """Return the entries along a dimension. The attribute `name` of an entry is the coordinate.
+    """Return the entries along a dimension. The attribute `name` of an entry is its coordinate in
+    this dimension.
 
     prefix: prefix to remove from the names of variables. The default is the name of the dimension.
     """
@@ -109,7 +110,8 @@ def _records(dataset: xr.Dataset, dim: str, prefix: str = "") -> list[SimpleName
 
 
 def _runs(dataset: xr.Dataset) -> dict[str, SimpleNamespace]:
-    """Return the runs by name, each with a description and the number of its row on the page."""
+    """Return a dict of the runs, keyed by name. Each run has a description and the number of its
+    row on the page."""
     runs = {run.name: run for run in _records(dataset, "run")}
     for row, run in enumerate(runs.values(), start=1):
         run.row = row

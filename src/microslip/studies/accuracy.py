@@ -35,7 +35,7 @@ if TYPE_CHECKING:
 CHOICE_TOLERANCES = (1e-2, 1e-3, 1e-4)
 """Tolerances of the timed solves at each point."""
 MAP_LEVELS, MAP_REPEATS = 5, 3
-"""Largest number of levels, and largest number of repeated measurements, in a map."""
+"""Largest number of levels in a map, and largest number of repeated measurements."""
 MAP_SQUARES = 16
 """Largest number of squares along a side in a map.  Even this mesh is more expensive than rings,
 although rings are far more accurate."""
@@ -47,8 +47,8 @@ together."""
 AS_CHEAP = 1.5
 """Two measured times count as equal if their ratio is below this value."""
 MODELS = "models"
-"""Name of the contest between the models with the shipped method and the methods that replace the
-whole run."""
+"""Name of the contest in which the models, run with the shipped method, compete with the methods
+that replace the whole run."""
 
 TITLE = "Accuracy and cost of methods for the friction of a vibrated Hertz contact"
 COMMENT = (
@@ -210,10 +210,11 @@ def on_front(cost: ArrayLike, error: ArrayLike) -> np.ndarray:
 
 
 def largest_from(runs: pd.DataFrame, *series: str) -> pd.Series:
-    """Return, for each run, the largest error of this run and of all finer runs in its series.  The
-    value is NaN if the run has no error.
+    """For each run, return the largest error among this run and all finer runs of the same series.
+    The value is NaN if the run has no error.
 
-    The error of a coarse run can be small by chance, where the error changes its sign.
+    The error of a coarse run can be small by chance, because the error may change its sign as the
+    mesh is refined.
 
     runs: table with the column `error` and rows from coarse to fine. series: names of the columns
     whose values identify a series of levels.
@@ -222,12 +223,12 @@ def largest_from(runs: pd.DataFrame, *series: str) -> pd.Series:
 
 
 def cheapest(runs: pd.DataFrame, exact: str, tolerance: float) -> pd.DataFrame:
-    """Return the cheapest run within the tolerance at each place.
+    """For each place, return the cheapest run within the tolerance.
 
     All finer runs of the same model must also be within the tolerance.  The finest run of a model
-    cannot be confirmed in this way, so it does not count, except for the model `exact`, which
-    converges to the reference.  Because times are uncertain, costs within a factor AS_CHEAP of the
-    lowest cost count as equal.  The first run with such a cost is returned.
+    cannot be confirmed in this way, so it does not count.  The model `exact` is an exception,
+    because it converges to the reference.  Times are uncertain, so a cost counts as equal to the
+    lowest cost if their ratio is at most AS_CHEAP.  The first run with such a cost is returned.
 
     runs: table with the columns place, model, cells, seconds and error, from coarse to fine.
     """
@@ -257,8 +258,8 @@ def profiles(runs: pd.DataFrame, points: list[str], tolerances: Sequence[float])
     """Return the competitors of all contests, and the cost ratios of the competitors.
 
     A run counts only if all finer runs of the same competitor and model are also within the
-    tolerance. The shipped method takes part in a contest with the points and models of its
-    competitors.
+    tolerance. In each contest, only those runs of the shipped method count that have the points and
+    models of its competitors.
 
     runs: table of trials.  points: names of all points.
     """

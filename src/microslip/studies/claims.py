@@ -107,8 +107,8 @@ SINGLE_RUNS = {
     "patches": ("tractions over a period", "['least_stick']"),
     "run": ("single run, method {method}", "['mu_macro']"),
 }
-"""Short description of each kind of single run, and part of the result that is printed when a
-command repeats the run."""
+"""For each kind of single run: a short description, and the part of the result that the command for
+repeating the run prints."""
 
 
 def _description(request: dict) -> str:
@@ -162,7 +162,8 @@ def _patches(study: Claims, answers: Answers) -> dict:
 
 
 def _edges(amplitude: float, moments: np.ndarray) -> dict:
-    """Return the theoretical edges of the stick zone for v -> 0 at the moments of the patches.
+    """Return the theoretical edges of the stick zone in the limit v -> 0.  The edges are computed
+    at the same moments as the patches.
 
     The moments are the same as in stick_area.patches.  Next to a turning point, the stick zone is a
     leaf-shaped region on one side of the contact, where |cos angle| >= tau/g.  A point inside the

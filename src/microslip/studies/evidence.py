@@ -38,7 +38,8 @@ if TYPE_CHECKING:
 PAPER_VELOCITY = 0.005
 """Smallest velocity in the paper's maps for the two oscillating motions."""
 PAPER_SQUARES, PAPER_STEPS = 32, 100
-"""Number of squares along a side, as in the paper, and number of steps per period in our run."""
+"""Number of squares along a side (the same as in the paper), and number of steps per period in our
+run."""
 PAPER_TOLERANCE = 1e-3
 """Tolerance of the tractions in the paper."""
 STEADY_VELOCITIES = (0.1, 0.3, 0.5, 0.8, 1.2, 3.0)
@@ -86,7 +87,8 @@ def paper_run(motion: str, amplitude: float) -> dict:
 
 
 def periods(study: Claims) -> list[list[dict]]:
-    """Return the requests for periods of the oscillating bore close to the static limit."""
+    """Return the requests for periods of the oscillating bore at velocities close to the static
+    limit."""
     near_static = [v for v in velocities(study) if v <= NEAR_STATIC][-2:]
     sizes = study.cells, 2 * (study.cells // 4)
     return [
@@ -213,11 +215,11 @@ def point_of(row: Row) -> dict:
 
 
 def limit_of(closed: Row, rings: Row, squares: Row, own: Row) -> dict:
-    """Return the static limit from the closed form, from rings and from squares, and the result of
-    the paper's own run.
+    """Return four values for the static limit: from the closed form, from rings, from squares, and
+    from the paper's own run.
 
-    The error of the closed form is estimated independently, as the difference from the limit on
-    rings plus the error estimates of the closed form and of the limit on rings.
+    The error of the closed form is estimated independently: it is the difference from the limit on
+    rings, plus the error estimate of this limit, plus the rounding error of the closed form.
     """
     (value, rounding), (resolved, error) = friction(closed), friction(rings)
     return {
@@ -265,8 +267,8 @@ def flat_end_of(*rows: Row) -> dict:
 def both_of(read: Callable[[Row], tuple[float, float]], fine: Row, coarse: Row) -> dict:
     """Return a value of the fine run, the reference for this value, and an error estimate.
 
-    The error estimate is the change of the difference between value and reference if the number of
-    rings is halved.
+    The error estimate compares two runs: it is the change of the difference between value and
+    reference if the number of rings is halved.
 
     read: function that reads the value and the reference from a run.
     """
@@ -281,14 +283,14 @@ def both_of(read: Callable[[Row], tuple[float, float]], fine: Row, coarse: Row) 
 
 
 def traction_ratio(row: Row) -> tuple[float, float]:
-    """Return the smallest ratio of traction to friction bound, and the reference 0."""
+    """Return two values: the smallest ratio of traction to friction bound, and the reference 0."""
     size = np.hypot(row["traction_lateral"], row["traction_forward"])
     return float((size / np.asarray(row["bound"], float)).min()), 0.0
 
 
 def traction_angle(row: Row) -> tuple[float, float]:
-    """Return the largest angle in degrees between a traction and the traction of Eq 15, and the
-    reference 0."""
+    """Return two values: the largest angle in degrees between a traction and the traction of Eq 15,
+    and the reference 0."""
     across, along, lateral, forward = (
         np.asarray(row[name], float)
         for name in ("lateral_position", "forward_position", "traction_lateral", "traction_forward")
@@ -306,11 +308,10 @@ def least_stick(row: Row) -> tuple[float, float]:
 
 
 def lead(row: Row) -> tuple[float, float]:
-    """Return the difference between the stick areas of the two sides when the total stick area is
-    smallest, and the reference 0.
-
-    The difference is divided by the total stick area.  Each side must be larger in one half of the
-    period; the smaller of the two differences is returned.
+    """Return the difference between the stick areas of the two sides, and the reference 0.  The
+    difference is computed when the total stick area is smallest, and is divided by this total.
+    Each side must be larger in one half of the period; the smaller of the two differences is
+    returned.
     """
     right, left = (np.asarray(row[f"stick_{side}"][1:], float) for side in ("right", "left"))
     half = right.size // 2

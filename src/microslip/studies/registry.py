@@ -2,15 +2,15 @@
 
 A study is a module with three functions and two strings:
 
-- requests(settings): yields pairs of a job and a request.  A job is a tuple.  Jobs whose first
-  number is smaller start earlier;
+- requests(settings): yields pairs of a job and a request.  A job is a tuple.  Jobs with a smaller
+  first number start earlier;
 - values(settings, answers): returns the values of the dataset's variables, computed from answers;
 - report(dataset): yields lines of text that summarise the dataset;
 - TITLE and COMMENT: attributes of the dataset.
 
 The variables of all datasets are listed in variables.csv, and the groups in groups.csv.  The column
-`source` is the entry of a row from which the values are taken (see answers.columns).  If `source`
-is empty, the entry has the name of the variable.
+`source` names the entry of a row from which the values are taken (see answers.columns).  If
+`source` is empty, the entry has the name of the variable.
 
 The workflow imports these modules at every start, so they do not import the solver or xarray at
 module level.
@@ -48,7 +48,7 @@ def pieces(study: str, settings: Settings) -> list[list[dict]]:
 def build(
     configuration: Configuration, study: str, records: Iterable[dict]
 ) -> tuple[xr.Dataset, dict[str, xr.Dataset]]:
-    """Build the dataset of a study, and the datasets of its groups by name.
+    """Build the dataset of a study, and a dict of the datasets of its groups.
 
     The settings are stored as an attribute in JSON.
 

@@ -84,9 +84,9 @@ OF_OTHER_METHODS = {"radial": 5, "polar": 4, "cartesian": 3}
 """Number of levels of each model for methods other than the shipped one.  These methods can be slow
 or use dense matrices."""
 COARSEST_TOLERANCE, TOLERANCE_POWER = 3e-5, 1.5
-"""Tolerance of the periodic state (force divided by mu F_z) at the first level, and the exponent in
-its dependence 1 / steps^TOLERANCE_POWER.  At every level, the tolerance is below the discretisation
-error (1e-4 to 1e-6 for rings at nu = 0)."""
+"""Tolerance of the periodic state at the first level, as a force divided by mu F_z.  At other
+levels, the tolerance is proportional to 1 / steps^TOLERANCE_POWER.  At every level, the tolerance
+is below the discretisation error (1e-4 to 1e-6 for rings at nu = 0)."""
 
 
 # Models and resolutions
@@ -120,7 +120,8 @@ def models_for(method: str, motion: str, poisson: float) -> list[str]:
 
 
 def ladder(model: str, method: str, count: int) -> list[tuple[int, Level, float]]:
-    """Return at most `count` tuples (level number, Level, tolerance) for a method."""
+    """Return a list of tuples (level number, Level, tolerance) for a method.  `count` is the
+    largest length of the list."""
     name, _ = split(method)
     if (own := declared(name, "resolution")) is not None:
         return [(0, Level(*own), COARSEST_TOLERANCE)]

@@ -26,12 +26,12 @@ if TYPE_CHECKING:
 TRUTH_SHARE = 0.1
 """Tolerance of the references, divided by the tolerance of the probes."""
 MOST_WORK = 5_000_000
-"""Work budget of a probe, in step solves times unknowns.  It is several times the work that the
-shipped method needs."""
+"""Work budget of a probe: number of step solves times number of unknowns.  The budget is several
+times the work that the shipped method needs."""
 BLOCKS_PER_JOB = 5
 """Number of blocks in one job."""
 UNSOLVED = "a step was left unsolved"
-"""First words of `reason` if a run reached the iteration limit when a step was nearly solved."""
+"""First words of `reason` if the step solver reached its iteration limit with a small residual."""
 OUTCOMES = ("not_applicable", "converged", "slow", "wrong", "diverged")
 NOT_APPLICABLE, CONVERGED, SLOW, WRONG, DIVERGED = range(len(OUTCOMES))
 
@@ -49,7 +49,7 @@ def cases(study: Stability) -> list[tuple[str, Block, float]]:
 
 
 def _place(block: Block, value: float) -> tuple[Point, dict[str, Any]]:
-    """Return the point of a case and the imposed resolution."""
+    """Return the point of a case, and the resolution that the case imposes."""
     names = ("velocity", "amplitude", "poisson", "cells", "steps")
     first = {name: values[0] for name in names if (values := getattr(block, name))}
     at = first | {block.quantity: value}
@@ -58,7 +58,8 @@ def _place(block: Block, value: float) -> tuple[Point, dict[str, Any]]:
 
 
 def probe(study: Stability, method: str, block: Block, value: float) -> dict | None:
-    """Return the request that runs a method in a case, or None if the block does not apply to it.
+    """Return the request that runs a method in a case, or None if the block does not apply to the
+    method.
 
     A block that varies `step` applies to methods with this parameter and, for comparison, to the
     shipped method.
@@ -97,7 +98,7 @@ def requests(study: Stability) -> Iterator[tuple[tuple, dict]]:
 def outcome(
     result: Row | None, reference: float, reference_error: float, imposed: bool = False
 ) -> int:
-    """Return the outcome of a probe, an index into OUTCOMES.
+    """Return the outcome of a probe as an index into OUTCOMES.
 
     - not applicable: the method was not run.
     - converged: the run converged, and its result differs from the reference by at most the sum of

@@ -65,8 +65,8 @@ class Part(NamedTuple):
     text: str
 
     def checks(self, tables: dict[str, pd.DataFrame]) -> pd.DataFrame:
-        """Return the lines of evidence for this part, with the added columns against, margin and
-        outcome.
+        """Return the lines of evidence for this part, with the additional columns `against`,
+        `margin` and `outcome`.
 
         tables: tables of evidence by name.
         """

@@ -28,7 +28,7 @@ FORMULAS = {
     "transverse": {"slider": "mu_static_slider", "zone": "mu_static_stick_zone"},
     "bore": {"zone": "mu_static_stick_zone", "zone_printed": "mu_static_stick_zone_printed"},
 }
-"""Names in datasets.catalogue of the paper's formulas for each motion."""
+"""Names of the paper's formulas for each motion, as in datasets.catalogue."""
 CURVE_POINTS = 501
 SHARE_AMPLITUDES = {"transverse": (0.1, 0.25, 0.5, 0.75), "bore": (0.25, 0.5, 1.0, 2.0)}
 """Amplitudes at which the fractions of the friction bound are drawn."""
@@ -45,9 +45,9 @@ def remainder() -> float:
 def asymptote(amplitude: ArrayLike) -> np.ndarray:
     """Return the static limit of the oscillating bore for large amplitudes (small stick zones).
 
-    The radius of the stick zone is c = (4/e) exp(-D(1/2) amplitude), and the rotation uses the
-    fraction (2/pi) arcsin(r/c) of the friction bound.  For comparison, Eq 33 tends to 3/2 c^2.  The
-    result is dimensionless and positive.  The amplitude can be an array of any shape.
+    The radius of the stick zone is c = (4/e) exp(-D(1/2) amplitude).  At the radius r, the rotation
+    uses the fraction (2/pi) arcsin(r/c) of the friction bound.  For comparison, Eq 33 tends to 3/2
+    c^2.  The result is dimensionless and positive.  The amplitude can be an array of any shape.
     """
     radius = 4.0 / np.e * np.exp(-hertz.D_half() * np.asarray(amplitude, float))
     return remainder() * radius**2

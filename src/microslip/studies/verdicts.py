@@ -1,5 +1,5 @@
-"""Decide whether each statement is true, from the margins and the errors of the checks of the
-statement.
+"""Decide whether each statement is true.  Every check of a statement has a margin and an error, and
+these determine the verdict.
 
 A statement of the paper has parts, and each part is judged by checks.  A check has a margin with an
 error.  A check holds if the margin is larger than the error.  A check fails if the margin is
@@ -28,7 +28,7 @@ WORDS = tuple(name.replace("_", " ") for name in VERDICTS)
 
 
 def outcomes(margin: ArrayLike, error: ArrayLike) -> np.ndarray:
-    """Return the outcome of each check, an index into OUTCOMES.
+    """Return the outcome of each check as an index into OUTCOMES.
 
     margin, error: arrays of the same shape.  A positive margin means that the part holds.
     """
@@ -38,7 +38,8 @@ def outcomes(margin: ArrayLike, error: ArrayLike) -> np.ndarray:
 
 
 def of_part(outcome: Iterable[int]) -> int:
-    """Return the verdict on a part from the outcomes of its checks, an index into VERDICTS."""
+    """Return the verdict on a part as an index into VERDICTS, computed from the outcomes of its
+    checks."""
     distinct = set(outcome)
     return _verdict(HOLDS in distinct, FAILS in distinct)
 
@@ -77,8 +78,8 @@ def shown_by(checks: pd.DataFrame) -> str:
     """Return the name of the run that best shows the verdict on a part, or "" if all checks are
     open.
 
-    If checks fail, the run of the check that fails most clearly is returned.  Otherwise, the run of
-    the check that holds most narrowly is returned.
+    If checks fail, the run of the failing check with the most negative margin is returned.
+    Otherwise, the run of the check with the smallest positive margin is returned.
 
     checks: table with the columns outcome, margin and run.
     """

@@ -1,4 +1,5 @@
-"""Batch files, which contain the records of a batch, and journals of the jobs that compute records.
+"""Batch files and journals.  A batch file contains the records of a batch, and a journal contains
+the records that a job has computed so far.
 
 The first line of a batch file lists the names of the rows to which its requests belong.  Each of
 the following lines is a record, and the last line is a checksum.  The file is written atomically.

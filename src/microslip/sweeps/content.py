@@ -1,4 +1,4 @@
-"""Files that are named by their content, and links with plain names to these files.
+"""Files whose names depend on their content, and links with plain names to these files.
 
 The name of a file contains a hash of everything that the file is made from.  A file that exists and
 is undamaged is therefore up to date.
@@ -15,8 +15,8 @@ from microslip.foundation.files import writing_beside
 from microslip.sweeps import batch
 
 GAPS = ".gaps"
-"""Ending of the marker file of a dataset with failed points. Each run makes such a dataset
-again."""
+"""Ending of the marker file beside a dataset with failed points.  Each run of the workflow makes
+such a dataset again."""
 
 
 def is_whole(path: Path) -> bool:

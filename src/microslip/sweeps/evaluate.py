@@ -26,7 +26,8 @@ Answer = TypeVar("Answer")
 log = logging.getLogger(__name__)
 
 OTHER_KEYS = ("kind", "cpu")
-"""Keys of requests that are not arguments.  A measured time is valid for one CPU only."""
+"""Keys in requests that are not arguments of the function that computes the result.  A measured
+time is valid for one CPU only."""
 SHORTEST = 0.02
 """Shortest measured CPU time, in seconds.  A shorter run is repeated, and the repetitions are
 measured together."""
@@ -60,9 +61,9 @@ def computed(request: dict) -> dict:
 def timed(run: Callable[[], Answer], repeats: int) -> tuple[Answer, float]:
     """Call a function repeatedly, and return its result and the CPU time of one call in seconds.
 
-    The first call is not timed, because it may compile code.  The time is the median of `repeats`
-    readings, or of fewer if the readings take longer than LONG_ENOUGH.  CPU time excludes other
-    processes.
+    The first call is not timed, because it may compile code.  The time is the median of several
+    readings.  Their number is `repeats`, or less if the readings take longer than LONG_ENOUGH.  CPU
+    time excludes other processes.
     """
     result, timer, calls = run(), Timer(run, timer=time.process_time), 1
     while (took := timer.timeit(calls)) < SHORTEST:

@@ -3,11 +3,11 @@
 The axes of a map are velocity, amplitude and, optionally, Poisson's ratio.  A map of the static
 limit has no velocity axis.  A map is divided into patches at the known kinks of the motion
 (theory.exact).  Each patch is a box in scaled coordinates.  Below the velocity of the kink, the
-scaled velocity is proportional to velocity^(1/3), since the distance of friction from its static
-limit is proportional to velocity^(2/3).  For these velocities, the amplitude axis is divided at its
-kinks, and nodes are clustered at the kinks.  Above the velocity of the kink, the scaled velocity is
-logarithmic.  Where there are no kinks, the scaled amplitude is log(1 + 2 A), where A is the
-amplitude.
+scaled velocity is proportional to velocity^(1/3).  The difference between friction and its static
+limit is proportional to velocity^(2/3), the square of this coordinate.  At these velocities, the
+amplitude axis is divided where friction has a kink, and nodes are clustered at the kinks.  Above
+the velocity of the kink, the scaled velocity is logarithmic.  Where there are no kinks, the scaled
+amplitude is log(1 + 2 A), where A is the amplitude.
 """
 
 from __future__ import annotations
@@ -30,7 +30,7 @@ is closer to an end does not divide the map."""
 SLOW_POWER = 1.0 / 3.0
 """Exponent of the velocity in the scaled coordinate below the kink."""
 FAST = 2.0
-"""Scaled velocity just above the kink.  Just below the kink, it is 1."""
+"""Scaled velocity just above the kink.  Just below the kink, the scaled velocity is 1."""
 FAST_PATCHES = 2
 """Number of patches along the velocity above the kink.  With fewer patches, the nodes may not
 resolve a steep rise of friction."""
@@ -52,8 +52,8 @@ class Scale(NamedTuple):
     back: Callable
 
     def between(self, ends: Sequence) -> Scale:
-        """Return a copy of this scale, mapped linearly so that its function is 0 at the first end
-        and 1 at the second end."""
+        """Return a linearly mapped copy of this scale.  The function of the copy is 0 at the first
+        end and 1 at the second end."""
         low, high = map(self.forward, ends)
         return Scale(
             lambda value: np.clip((self.forward(value) - low) / (high - low), 0.0, 1.0),
@@ -72,8 +72,8 @@ CLUSTERS = {
         lambda s: 0.5 - np.sin(np.arcsin(1.0 - 2.0 * s) / 3.0), lambda x: x * x * (3.0 - 2.0 * x)
     ),
 }
-"""Scales of relative positions.  The keys state whether nodes are clustered at the lower and at the
-upper end."""
+"""Scales of relative positions.  A key is a pair of flags: whether nodes are clustered at the lower
+end, and whether they are clustered at the upper end."""
 
 
 class MapCoordinates(NamedTuple):
@@ -108,7 +108,7 @@ class MapCoordinates(NamedTuple):
 
     @property
     def patches(self) -> list[Box]:
-        """Boxes in scaled coordinates that cover the map, ordered from slow to fast velocities."""
+        """Boxes in scaled coordinates that cover the map, ordered from low to high velocity."""
         boxes = [((0.0, float(y)), (1.0, y + 1.0)) for y in range(len(self._rows))]
         if self._cut:
             ends = np.linspace(FAST, FAST + 1.0, FAST_PATCHES + 1).tolist()
@@ -176,9 +176,9 @@ class MapCoordinates(NamedTuple):
 
     @property
     def _cut(self) -> Callable | None:
-        """Function that returns the velocity of the kink at an amplitude.  This velocity differs
-        from both ends of the velocity range by a factor of at least CLEAR.  None if no kink divides
-        the map."""
+        """Function that returns the velocity of the kink at an amplitude.  This velocity is at
+        least CLEAR times the lower end of the velocity range, and at most the upper end divided by
+        CLEAR.  The value is None if no kink divides the map."""
         if not (self.velocity and self.kinks.velocity):
             return None
         low, high = CLEAR * self.velocity[0], self.velocity[1] / CLEAR

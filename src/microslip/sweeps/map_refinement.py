@@ -2,12 +2,12 @@
 
 A cell is a box in scaled coordinates (map_coordinates) with equally spaced nodes: 5 along the
 velocity, 5 along the amplitude and 3 along Poisson's ratio.  Friction in a cell is interpolated by
-the polynomial through its nodes.  The surplus along a direction is computed from the largest finite
-differences of the highest order in this direction.  This surplus equals the error of a polynomial
-whose degree is lower by one.  The error of the cell's own polynomial is estimated as a fraction of
-the surplus.  The fraction was calibrated on points that are not nodes.  A cell whose error is too
-large is halved along the direction with the largest surplus.  Both halves reuse the nodes of the
-cell.
+the polynomial through the nodes of the cell.  The surplus along a direction is computed from the
+largest finite differences of the highest order in this direction.  This surplus equals the error of
+a polynomial whose degree is lower by one.  The error of the cell's own polynomial is estimated as a
+fraction of the surplus.  The fraction was calibrated on points that are not nodes.  A cell whose
+error is too large is halved along the direction with the largest surplus.  Both halves reuse the
+nodes of the cell.
 
 The cells depend only on the results at the nodes, not on the order of the requests.
 """
@@ -35,14 +35,15 @@ from microslip.theory.exact import kinks_of
 SHARE = 0.1
 """Ratio of a cell's interpolation error to its surplus, calibrated by benchmarks/certified.py."""
 LOWER_ORDER = 0.35
-"""Weight of third differences in the surplus.  They matter in cells where the fourth differences
-cancel by chance."""
+"""Weight of third differences in the surplus.  Third differences matter in cells where the fourth
+differences cancel by chance."""
 LOW_DEGREE = 2.0
 """Weight of second differences in the surplus.  The error of a polynomial of degree 2 is a
 larger fraction of the surplus than that of a polynomial of degree 4."""
 RESOLVED = 0.05
 """Largest surplus of a cell that need not be halved.  Above this value, the error can be much
-larger than SHARE times the surplus, so the cell is halved even if its error bound is small."""
+larger than the assumed fraction of the surplus (SHARE).  The cell is then halved even if its error
+bound is small."""
 SMALLEST = 2.0**-9
 """Smallest width of a cell, as a fraction of a patch's width."""
 
@@ -180,8 +181,8 @@ def refine(sweep: Sweep, ask: Callable[[list[dict]], Iterable[dict]]) -> tuple[A
 
 
 def _request(sweep: Sweep, coordinates: MapCoordinates, node: Node) -> dict:
-    """Return the request for a node.  This request equals the request of an ordinary sweep for the
-    same point."""
+    """Return the request for a node.  This request is identical to the request of an ordinary sweep
+    for the same point."""
     place = dict(zip(coordinates.directions, coordinates.place(node), strict=True))
     point = {"velocity": (0.0,)} | {name: (value,) for name, value in place.items()}
     (request,) = points_of(sweep.model_copy(update=point)).requests

@@ -67,8 +67,8 @@ class Batch(NamedTuple):
 
 
 def request_of(kind: str, **arguments: Any) -> dict:
-    """Return a request with the arguments of the function that computes its result. Numbers are
-    converted to canonical strings."""
+    """Return a request.  It contains the arguments of the function that computes the result.
+    Numbers are converted to canonical strings."""
     texts = {name: number(v) for name, v in arguments.items() if name in REALS and v is not None}
     return {"kind": kind} | arguments | texts
 
@@ -125,8 +125,7 @@ def points_of(sweep: Sweep) -> Batch:
 
 
 def runs_of(configuration: Configuration, name: str) -> list[dict]:
-    """Return the requests for the single runs in the dataset of the sweep `name`.
-
+    """Return the requests for the single runs that are stored in the dataset of the sweep `name`.
     Figures of the kinds history, field and transients show these runs.
     """
     requests = []

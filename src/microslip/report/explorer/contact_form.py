@@ -28,7 +28,7 @@ LARGEST = 65535
 OF_NUMBERS = "by E and ν"
 """Entry in the list of materials that lets the user enter Young's modulus and Poisson's ratio."""
 ADHESION = ("adhesion", "range", "short", "rubbery")
-"""Lower-case names of the constants in si.warnings that the rules on adhesion use."""
+"""Constants of si.warnings that the rules on adhesion use; the names are in lower case."""
 PRESSURES = ("GPa", "MPa", "kPa", "Pa", "psi")
 FIELDS = {
     "radius": ("radius of the sphere", "radius", ("mm", "um", "m", "inch"), "5"),
@@ -80,11 +80,11 @@ def table(dataset: xr.Dataset) -> dict:
     """Pack the friction and the error bound of a certified map on a regular grid.
 
     The page interpolates linearly in the logarithm of the velocity, in the amplitude and in
-    Poisson's ratio. The error bound of a cell is the largest error bound of the map in the cell
-    plus twice the largest difference between this interpolation and the map. The differences are
-    computed at the centre of the cell and at the midpoints of its edges and faces. For a parabola
-    and for a function with a kink, twice the difference at a midpoint bounds the interpolation
-    error.
+    Poisson's ratio. The error bound of a cell is a sum of two terms: the largest error bound of the
+    map in the cell, and twice the largest difference between this interpolation and the map. The
+    differences are computed at the centre of the cell and at the midpoints of its edges and faces.
+    If the function is a parabola or has a kink, the interpolation error is at most twice the
+    difference at a midpoint.
     """
     ends = {name: (float(dataset[name].min()), float(dataset[name].max())) for name in COUNTS}
     axes = {
@@ -116,7 +116,7 @@ def table(dataset: xr.Dataset) -> dict:
 
 
 def _with_midpoints(values: np.ndarray, axis: int) -> np.ndarray:
-    """Insert the mean of any two neighbouring values between them, along an axis."""
+    """Between any two neighbouring values along an axis, insert their mean."""
     rows = np.moveaxis(values, axis, 0)
     result = np.repeat(rows, 2, axis=0)[:-1]
     result[1::2] = (rows[1:] + rows[:-1]) / 2.0

@@ -19,10 +19,10 @@ SCRIPTS = "data charts disc sweeps contact form link page"
 ASSETS = ("page.html", "style.css", *(f"{name}.js" for name in SCRIPTS.split()))
 """Files of the page, besides the data and plotly.js. The scripts run in this order."""
 CELLS, ANGLES, STEPS = 10, 12, 32
-"""Resolution of a stored period: number of rings, of points on half a ring, and of steps. It is
-sufficient for a picture 300 pixels wide."""
+"""Resolution of a stored period: number of rings, number of points on half a ring, and number of
+steps. It is sufficient for a picture 300 pixels wide."""
 PERIODS_PER_JOB = 150
-"""Number of periods in one job, which takes a few seconds."""
+"""Number of periods in one job. Such a job takes a few seconds."""
 MOST_PERIODS = 1200
 """Maximum number of periods on a page, which limits its size to 15 MB. A period takes about 7.6
 kB."""
@@ -43,8 +43,9 @@ def maps_of(configuration: Configuration, figure: Figure) -> list[str]:
 def period_requests(configuration: Configuration, *maps: str, name: str) -> list[dict]:
     """Return the requests for the periods of the map `name` at the smallest Poisson's ratio.
 
-    The velocity varies fastest. If the number of points exceeds `MOST_PERIODS` divided by the
-    number of maps, periods are computed only at every n-th value along each axis (n = 2, 3, ...).
+    The velocity varies fastest. The maps of a page share the maximum number of periods
+    (`MOST_PERIODS`) equally. If a map has more points than its share, periods are computed only at
+    every n-th value along each axis (n = 2, 3, ...).
     """
     sweep = configuration.sweeps[name]
     most = MOST_PERIODS // len(maps)

@@ -5,8 +5,8 @@ and sweeps with a drive, are shown as lines: the abscissa is the longest axis, a
 for each combination of values along the other axes.
 
 Numbers from datasets are stored exactly. The forces, phases, radii and bounds of periods are
-rounded. Tractions, slip flags and densities are the strings of sweeps.period_codec, which the page
-decodes.
+rounded. Tractions, slip flags and densities are strings encoded by sweeps.period_codec; the page
+decodes them.
 """
 
 from __future__ import annotations
@@ -113,7 +113,7 @@ def _values(dataset: xr.Dataset, **names: str) -> dict:
 
 
 def _map(dataset: xr.Dataset, records: Sequence[dict]) -> dict:
-    """Pack a map. `records` contains the records of the periods of points."""
+    """Pack a map. `records` contains the records of the stored periods."""
     shown = dataset.transpose("amplitude", "velocity", ...)
     motion = MOTIONS.get(dataset.attrs["motion"])
     return {

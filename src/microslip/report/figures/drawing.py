@@ -87,8 +87,9 @@ def draw(kind: str, datasets: Mapping[str, xr.Dataset]) -> Figure:
 def import_matplotlib() -> None:
     """Import matplotlib, even if the environment variable MPLBACKEND has an unknown value.
 
-    With such a value, a plain import would fail. Figures of this package need no backend. Other
-    figures in the process use the backend of the variable if matplotlib knows this backend.
+    If the variable has such a value, an ordinary import would fail. Figures of this package need no
+    backend. Other figures in the process use the backend of the variable if matplotlib knows this
+    backend.
     """
     if "matplotlib" in sys.modules:
         return

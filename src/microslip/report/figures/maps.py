@@ -39,8 +39,9 @@ BARE: look.Ink = {"marker": "o", "s": 22.0, "edgecolors": look.BLACK, "linewidth
 BARE |= {"clip_on": False, "zorder": 6, "gid": "bare-points"}
 """Style of points beside cells without a colour. The colour of such a point shows its value."""
 NEAR, FAR = 0.8, 2.5
-"""Smallest distance of a contour's number from other contours (NEAR), and from the ends of its own
-contour and other numbers (FAR), both divided by the height of the number."""
+"""Smallest distances of the number on a contour, divided by the height of the number. NEAR is the
+distance from other contours. FAR is the distance from other numbers and from the ends of the same
+contour."""
 HATCHED: look.Ink = {"fc": (1.0, 1.0, 1.0, 0.45), "ec": look.BLACK, "lw": 0.0, "hatch": 6 * "/"}
 REST: look.Ink = {"facecolor": look.PALE, "label": "comes to rest", "gid": "rest"}
 THRESHOLD: look.Ink = {"color": look.BLACK, "label": "static limit: threshold", "gid": "mu_static"}
@@ -57,7 +58,7 @@ FINE = 193
 
 
 class Panel(NamedTuple):
-    """A map, with its dataset at one Poisson's ratio, the drawn variable, and the heading.
+    """A map: its dataset at one Poisson's ratio, the drawn variable, and the heading.
 
     points: velocities and amplitudes of the computed points of a certified map, or None for other
     maps.
@@ -191,8 +192,8 @@ def fill(axes: Axes, panel: Panel, scale: Scale) -> ContourSet:
 
     Contours end where the interpolation is too uncertain (see `Surface.supported`). If a contour
     ends in this way, or if the map is coarse, the computed points are drawn as well. Points beside
-    a cell without a colour are always drawn, in the colour of their value. Returns the bands, which
-    a colour bar needs.
+    a cell without a colour are always drawn; the colour of such a point shows its value. Returns
+    the bands for the colour bar.
     """
     shown = panel.dataset.transpose("amplitude", panel.across, ...)
     x, amplitude, values = columns(shown, panel.across, "amplitude", panel.variable)
@@ -285,20 +286,21 @@ def _rest(axes: Axes, shown: xr.Dataset, scale: Scale) -> None:
 # Scales: colours, contours and ticks of the quantities
 
 BELOW = "Reds_r"
-"""Colour map for friction from 0 to -1. At 0, it is as dark as `style.COLOURMAP`."""
+"""Colour map for friction from 0 to -1. At the value 0, this map is as dark as
+`style.COLOURMAP`."""
 DARK = 0.5
 """Lines are white on a band whose luminance is below this value. On lighter bands, lines are
 black."""
 BEYOND = 0.01
-"""Largest distance of friction from the range 0 to 1 that is attributed to the errors of the
+"""Friction outside the range 0 to 1 by at most this distance is attributed to the errors of the
 points."""
 DIVERGING = "PuOr"
 """Colour map for differences. It is pale in the middle."""
 MOST_BANDS = 12
 """Maximum number of bands on each side of 0 in a map of differences."""
 FEW_BANDS = 6
-"""Largest number of bands on each side of 0 at which the labels of the two levels next to 0 do not
-overlap."""
+"""Largest number of bands on each side of 0. With more bands, the labels of the two levels next to
+0 would overlap."""
 SLOWEST = 1e-3
 """Lower end of the scale of velocities."""
 
@@ -336,8 +338,8 @@ class Scale(NamedTuple):
         return Normalize(*self.fills[[0, -1]])
 
     def contours(self) -> look.Ink:
-        """Return the colours, which contrast with the bands, and the line styles of the
-        contours."""
+        """Return the colours and the line styles of the contours. The colours contrast with the
+        bands."""
         weights = (0.2126, 0.7152, 0.0722)  # luminance by Rec. 709
         shades = [np.dot(weights, to_rgb(self.colours(self.norm(level)))) for level in self.lines]
         return {
@@ -350,7 +352,7 @@ class Scale(NamedTuple):
 def friction(datasets: Sequence[xr.Dataset]) -> Scale:
     """Return the scale of friction from 0 to 1, extended to the smallest and the largest value.
 
-    The colours for 0 to 1 are the same for all datasets, unless the largest value is above 1.
+    All datasets use the same colours from 0 to 1, except datasets with values above 1.
     """
     low = min(float(dataset["mu_macro"].min()) for dataset in datasets)
     high = max(float(dataset["mu_macro"].max()) for dataset in datasets)

@@ -1,9 +1,9 @@
 """Draw the figures of the studies.
 
-The figures of `accuracy` are performance profiles, plots of error against cost, and maps of the
-cheapest model. The figure of `stability` is a table with a coloured square for the outcome of each
-method in each case. The figures of `claims` show static limits, fractions of the friction bound,
-and stick zones.
+The figures of the study `accuracy` are performance profiles, plots of error against cost, and maps
+of the cheapest model. The figure of the study `stability` is a table. A coloured square shows the
+outcome of each method in each case. The figures of the study `claims` show static limits, fractions
+of the friction bound, and stick zones.
 """
 
 from __future__ import annotations
@@ -46,7 +46,8 @@ of a legend line, all in inches."""
 MOST = 1e6
 """Largest ratio of the upper to the lower end of the axis of errors."""
 EDGE = 0.06
-"""A value outside the range is drawn at this distance from the range, divided by the range."""
+"""Distance from the range at which a value outside the range is drawn, as a fraction of the
+range."""
 FRONT: look.Ink = {"color": "#EBD9A0", "lw": 5.0, "solid_capstyle": "round", "zorder": 1}
 AUTO: look.Ink = {"color": look.BLACK, "marker": "D", "lw": 0.8, "ms": 4.2, "zorder": 7}
 PAPER: look.Ink = {"color": look.BLACK, "marker": "*", "ls": "none", "ms": 9.0, "zorder": 8}
@@ -155,7 +156,7 @@ versus_work = partial(_versus, cost="effort")
 
 def _beyond(low: float, high: float, share: float) -> tuple[float, float]:
     """Return a value below and a value above a logarithmic range. The distance of both values from
-    the range is `share` times the range."""
+    the range is a fraction of the range, `share`."""
     factor = (high / low) ** share
     return low / factor, high * factor
 

@@ -172,7 +172,7 @@ def prefixed(values: np.ndarray | float, unit: str) -> tuple[float, str]:
 
 
 def conditions(motion: str, values: Mapping[str, float]) -> str:
-    """Format values of axes as mathtext, such as "v = 0.1, A = 2". NaN is omitted."""
+    """Format the values on axes as mathtext, such as "v = 0.1, A = 2". NaN is omitted."""
     finite = {dim: value for dim, value in values.items() if np.isfinite(value)}
     return ", ".join(f"${symbol(motion, dim)} = {number(finite[dim])}$" for dim in finite)
 
@@ -270,7 +270,7 @@ def html(formula: str) -> str:
 
 
 def _symbol(match: re.Match[str]) -> str:
-    """Return the LaTeX symbol of a match of _WORD, or "" for a word."""
+    """Return the LaTeX symbol for a match of the pattern _WORD, or "" if the match is a word."""
     letters, number, index = match.groups()
     if letters not in GREEK and len(letters) > 1:
         return ""
@@ -288,15 +288,15 @@ def _in_words(match: re.Match[str]) -> str:
 # Parts of panels
 
 VISIBLE_ERROR = 0.01
-"""Smallest error estimate that is drawn, divided by the largest value. Smaller error bars would be
-hidden by the markers."""
+"""Smallest error estimate that is drawn, as a fraction of the largest value. Smaller error bars
+would be hidden by the markers."""
 PIXELS = 401
 """Number of pixels along each side of a contact's image."""
 
 
 def grid(figure: Any, count: int, across: int, **shared: Any) -> list[Axes]:
-    """Return `count` new panels in rows of `across` panels. `shared` contains arguments of
-    `subplots`."""
+    """Return a list of new panels. `count` is the number of panels, `across` is the number of
+    panels in a row, and `shared` contains arguments of `subplots`."""
     axes = list(figure.subplots(-(-count // across), across, squeeze=False, **shared).flat)
     for empty in axes[count:]:
         empty.remove()
@@ -418,8 +418,8 @@ def disc(
 
 
 def unit_range(axes: Axes) -> None:
-    """Set the vertical range of a panel to 0 to 1, extended to include all points and lines with an
-    id."""
+    """Set the vertical range of a panel. It extends from 0 to 1, or further to include all lines
+    and points that have an id."""
     lines = [np.ravel(line.get_ydata()) for line in axes.get_lines() if line.get_gid()]
     values = np.concatenate([np.array([0.0, 1.0]), *lines])
     values = values[np.isfinite(values)]
@@ -430,8 +430,8 @@ def unit_range(axes: Axes) -> None:
 
 
 def closed_form(axes: Axes, x: Any, y: Any, name: str, label: str) -> None:
-    """Draw a closed form in its colour and line style. `name` is the variable of the closed form in
-    datasets."""
+    """Draw a closed form in its colour and line style. `name` is the name of the closed form's
+    variable in datasets."""
     color, ls = LIMITS[name]
     axes.plot(x, y, color=color, ls=ls, label=label, gid=name)
 
