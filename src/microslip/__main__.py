@@ -8,9 +8,9 @@ import signal
 import sys
 
 OBJECTS = 200_000
-"""Number of new objects between two garbage collections.  It exceeds the number of objects that the
-imports create.  With Python's default of 700, garbage collection takes a tenth of the run time of
-`microslip point`."""
+"""Number of new objects between two garbage collections.  This number exceeds the number of objects
+that the imports create.  With Python's default of 700, garbage collection takes a tenth of the run
+time of `microslip point`."""
 
 
 def main() -> int:

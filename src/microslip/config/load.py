@@ -39,7 +39,7 @@ class ConfigError(ValueError):
 class Loader(yaml.SafeLoader):
     """YAML loader that reads numbers by the rules of YAML 1.2: 1e-3 is a number, and 010 is 10.
 
-    It refuses keys that occur twice, and files with too many values.
+    The loader refuses keys that occur twice, and files with too many values.
     """
 
     yaml_implicit_resolvers = {
@@ -240,7 +240,7 @@ def refuse_unsolvable(
     """Raise ConfigError if the solver refuses a sweep.
 
     Motions, pressures, models and drives are checked at the ends of all axes.  This function
-    imports the solver, which takes half a second.
+    imports the solver.  The import takes half a second.
 
     names: names of the sweeps to check; the default is all sweeps.
     """

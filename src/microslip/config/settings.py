@@ -40,7 +40,7 @@ STATIC_AMPLITUDES = {"transverse": 1.0, "bore": 5.0}
 AXES = ("mass", "damping", "stiffness", "poisson", "amplitude", "velocity", "force")
 """Axes of a sweep, in the order of a dataset's dimensions."""
 STUDIES = ("accuracy", "stability", "claims")
-"""Keys of the studies. They are also the names of the datasets."""
+"""Keys of the studies. These keys are also the names of the datasets."""
 SOLVING = ("all", "solve_batch", "solve_map")
 MAKING = ("make_products", "make_dataset", "draw_figure", "make_page", "link_file")
 """Names of the workflow's rules. These names are not allowed for datasets and figures."""
@@ -310,13 +310,13 @@ class Sweep(Settings):
     """Name of a normal pressure, optionally with parameters as in "power:exponent=1"; or file:FILE
     for a data file; or the path of a Python file."""
     title: Title = None
-    """Title of the dataset, also used in figures. It is plain text: $ and \\ have no special
+    """Title of the dataset, also used in figures. The title is plain text: $ and \\ have no special
     meaning."""
     velocity: Axis = ()
     """Forward velocity in the unit of the motion. The value 0 requests the static limit. If a
     stiffness is given, the velocity is that of the far end of the spring."""
     force: Axis = ()
-    """Prescribed force P divided by mu times the mean normal load. It is given instead of a
+    """Prescribed force P divided by mu times the mean normal load. A force is given instead of a
     velocity."""
     amplitude: Axis = ()
     """Amplitude in the unit of the motion. An amplitude is required unless the motion is steady."""
@@ -353,7 +353,7 @@ class Sweep(Settings):
 
     @property
     def dims(self) -> tuple[str, ...]:
-        """Dimensions of the dataset, which are the names of the axes with more than one value."""
+        """Dimensions of the dataset: the names of the axes with more than one value."""
         return tuple(name for name, values in self.axes.items() if len(values) > 1)
 
     @property
@@ -401,9 +401,9 @@ class Figure(Settings):
     """A figure.  The key `kind` determines what the figure shows."""
 
     kind: Annotated[str, _one_of(*KINDS)]
-    """Kind of figure. The kind map shows friction over two axes. The kind curves shows friction
-    along one axis, with a panel for each sweep. The kinds history, field and transients show a
-    single run. The kind explorer is an interactive page."""
+    """Kind of figure. The kind `map` shows friction over two axes. The kind `curves` shows friction
+    along one axis, with a panel for each sweep. The kinds `history`, `field` and `transients` show
+    a single run. The kind `explorer` is an interactive page."""
     sweep: Annotated[
         tuple[str, ...], _list(_SWEEP, f"{_SWEEP.text}, or a list of names", True)
     ] = ()

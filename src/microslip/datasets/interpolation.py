@@ -60,8 +60,8 @@ Points = dict[str, np.ndarray]
 class Axis:
     """One axis of a grid, with ascending coordinates.
 
-    The axis is logarithmic if the ratios of neighbouring coordinates vary less than their
-    differences.
+    The axis is logarithmic if the ratios of neighbouring coordinates vary less than the differences
+    of neighbouring coordinates.
 
     Attributes
     ----------
@@ -310,11 +310,11 @@ def of_map(dataset: xr.Dataset, name: str) -> Grid | Cells:
 
 
 def parts_of(dataset: xr.Dataset) -> tuple[dict[str, np.ndarray], dict[str, str]]:
-    """Return the parts of a certified map as flat arrays, ordered by the numbers of cells, nodes
-    and points, and the checksums of these arrays and of the scaled coordinates.
+    """Return the parts of a certified map, and the checksums of the parts and of the scaled
+    coordinates.  The parts are flat arrays, ordered by the numbers of cells, nodes and points.
 
-    A checksum is computed from the values in single precision.  It therefore does not depend on the
-    type of the numbers.
+    A checksum is computed from the values in single precision, so the type of the numbers has no
+    effect.
     """
     names = [name for name in PARTS if name in dataset.variables]
     numbers = [name for name in NUMBERS if name in dataset.dims]

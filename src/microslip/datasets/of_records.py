@@ -25,7 +25,7 @@ ROW_ERRORS = {
     "force_lateral": "force_error",
     "torque": "torque_error",
 }
-"""Column of the error estimate, for each force and for the torque of a response."""
+"""Name of the column with the error estimate, for each force and for the torque of a response."""
 ROUNDING = 1e-9
 """Largest ratio of a force's absolute value to its error estimate at which the force is printed as
 0."""

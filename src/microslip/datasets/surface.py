@@ -100,7 +100,7 @@ def _cells(axis: Axis, coordinates: np.ndarray) -> list[np.ndarray]:
 
 
 def largest_around(values: np.ndarray) -> np.ndarray:
-    """Return the largest entry at the nodes around each cell of a table.
+    """For each cell of a table, return the largest entry at the surrounding nodes.
 
     The nodes around a cell form a window with four nodes along each side.  The table is padded with
     its edge entries.  The result has the shape (n - 1, m - 1), but it has at least one entry along

@@ -10,9 +10,9 @@ from typing import Any
 from microslip.foundation.canonical import canonical_json
 
 Row = dict[str, Any]
-"""An answer, as a dict.  It contains the entries of a request, the entries of the result, the name
-of the result (`key`), the number of time steps in a period, and the index of the computer.  If the
-request and the result have an entry of the same name, the entry of the result is used."""
+"""An answer, as a dict.  An answer contains the entries of a request, the entries of the result,
+the name of the result (`key`), the number of time steps in a period, and the index of the computer.
+If the request and the result have an entry of the same name, the entry of the result is used."""
 MOTIONS = ("transverse", "bore")
 """Motions that are inserted for {motion} in the tables of variables and groups."""
 

@@ -185,8 +185,8 @@ def tables_of(study: Claims, answers: Answers) -> dict[str, pd.DataFrame]:
 
 
 def beside_previous(points: pd.DataFrame, *by: str) -> pd.DataFrame:
-    """Return all points except the first of each group, and add the value of the previous point to
-    each.
+    """Return all points except the first of each group.  The value of the previous point is added
+    to each row as the column `other`.
 
     by: names of the columns whose values identify a group.
     """

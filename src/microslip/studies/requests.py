@@ -28,8 +28,8 @@ if TYPE_CHECKING:
     from microslip.config.settings import StudyPoint
 
 RINGS_TOLERANCE, TOLERANCE = 1e-6, 3e-5
-"""Tolerances of references computed with rings and with angular points.  Rings are cheap, so that
-their tolerance is tighter."""
+"""Tolerances of references computed with rings and with angular points.  Rings are cheap, so the
+tolerance for rings is tighter."""
 ROTATIONS = ("bore", "continuous-bore")
 """Motions with a rotation.  Only a few models apply to them."""
 OF_ROTATIONS = ("rigid", "polar", "cartesian")

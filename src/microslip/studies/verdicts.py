@@ -113,8 +113,8 @@ def where(checks: pd.DataFrame) -> str:
 
 
 def _stretches(labels: Iterable[tuple[float, object]]) -> Iterable[tuple]:
-    """Yield the label and the range, such as "1 to 3", of each group of consecutive values with the
-    same label.
+    """For each group of consecutive values with the same label, yield the label and the range, such
+    as "1 to 3".
 
     labels: pairs of a value and its label.
     """

@@ -47,7 +47,7 @@ Compute = Callable[[Sequence[dict]], Iterable[tuple[dict, float]]]
 
 
 class SourcesEdited(CacheError):
-    """Error raised if the code on disk differs from the running code, so that a result could come
+    """Error raised if the code on disk differs from the running code.  A result could then come
     from either of the two."""
 
     def __init__(self, file: str):

@@ -62,8 +62,8 @@ def timed(run: Callable[[], Answer], repeats: int) -> tuple[Answer, float]:
     """Call a function repeatedly, and return its result and the CPU time of one call in seconds.
 
     The first call is not timed, because it may compile code.  The time is the median of several
-    readings.  Their number is `repeats`, or less if the readings take longer than LONG_ENOUGH.  CPU
-    time excludes other processes.
+    readings.  The number of readings is `repeats`, or less if they take longer than LONG_ENOUGH.
+    CPU time excludes other processes.
     """
     result, timer, calls = run(), Timer(run, timer=time.process_time), 1
     while (took := timer.timeit(calls)) < SHORTEST:

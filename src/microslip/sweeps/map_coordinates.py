@@ -35,7 +35,8 @@ FAST_PATCHES = 2
 """Number of patches along the velocity above the kink.  With fewer patches, the nodes may not
 resolve a steep rise of friction."""
 SPREAD = 2.0
-"""Coefficient of the scaled amplitude log(1 + SPREAD A), used where there are no kinks."""
+"""Coefficient c in the scaled amplitude log(1 + c A).  This scaling is used where there are no
+kinks."""
 DEGREES = {"velocity": 4, "amplitude": 4, "poisson": 2}
 """Degrees of the polynomials in a cell.  The degree along Poisson's ratio is low, because friction
 is nearly linear in Poisson's ratio."""

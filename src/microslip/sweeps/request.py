@@ -1,7 +1,7 @@
 """Requests, which are plain dicts with the physical and numerical settings of a computation.
 
 Numbers in a request are canonical strings.  The name of a result is the hash of its request and of
-the solver's code, so that a result is never outdated and never computed twice.
+the solver's code.  A result is therefore never outdated and never computed twice.
 """
 
 from __future__ import annotations
@@ -20,8 +20,8 @@ if TYPE_CHECKING:
     from microslip.config.settings import Configuration, Sweep
 
 FORMAT = 1
-"""Version of the content of records.  It must be increased if this content changes without a change
-of the solver."""
+"""Version of the content of records.  This version must be increased if the content changes without
+a change of the solver."""
 STARTS = ("stress-free", "full-rotation", "full-slip")
 """Names of the initial states in Figure 5 of the paper."""
 REALS = {"velocity", "amplitude", "poisson", "tolerance", "travel", *DRIVES}
@@ -62,12 +62,12 @@ class Batch(NamedTuple):
 
     @property
     def folder(self) -> str:
-        """Name of the folder of the batch, which is the name of the motion without parameters."""
+        """Name of the folder of the batch: the name of the motion without parameters."""
         return folder_of(self.rows[0].get("motion", "none"))
 
 
 def request_of(kind: str, **arguments: Any) -> dict:
-    """Return a request.  It contains the arguments of the function that computes the result.
+    """Return a request.  A request contains the arguments of the function that computes the result.
     Numbers are converted to canonical strings."""
     texts = {name: number(v) for name, v in arguments.items() if name in REALS and v is not None}
     return {"kind": kind} | arguments | texts

@@ -20,12 +20,12 @@ ASSETS = ("page.html", "style.css", *(f"{name}.js" for name in SCRIPTS.split()))
 """Files of the page, besides the data and plotly.js. The scripts run in this order."""
 CELLS, ANGLES, STEPS = 10, 12, 32
 """Resolution of a stored period: number of rings, number of points on half a ring, and number of
-steps. It is sufficient for a picture 300 pixels wide."""
+steps. This resolution is sufficient for a picture 300 pixels wide."""
 PERIODS_PER_JOB = 150
 """Number of periods in one job. Such a job takes a few seconds."""
 MOST_PERIODS = 1200
-"""Maximum number of periods on a page, which limits its size to 15 MB. A period takes about 7.6
-kB."""
+"""Maximum number of periods on a page. This number limits the size of a page to 15 MB. A period
+takes about 7.6 kB."""
 
 
 def maps_of(configuration: Configuration, figure: Figure) -> list[str]:

@@ -292,10 +292,10 @@ DARK = 0.5
 """Lines are white on a band whose luminance is below this value. On lighter bands, lines are
 black."""
 BEYOND = 0.01
-"""Friction outside the range 0 to 1 by at most this distance is attributed to the errors of the
-points."""
+"""Because of the errors of the points, friction may leave the range from 0 to 1 by at most this
+distance."""
 DIVERGING = "PuOr"
-"""Colour map for differences. It is pale in the middle."""
+"""Colour map for differences. This map is pale in the middle."""
 MOST_BANDS = 12
 """Maximum number of bands on each side of 0 in a map of differences."""
 FEW_BANDS = 6

@@ -418,8 +418,8 @@ def disc(
 
 
 def unit_range(axes: Axes) -> None:
-    """Set the vertical range of a panel. It extends from 0 to 1, or further to include all lines
-    and points that have an id."""
+    """Set the vertical range of a panel. This range extends from 0 to 1, or further to include all
+    lines and points that have an id."""
     lines = [np.ravel(line.get_ydata()) for line in axes.get_lines() if line.get_gid()]
     values = np.concatenate([np.array([0.0, 1.0]), *lines])
     values = values[np.isfinite(values)]
