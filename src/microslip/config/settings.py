@@ -419,7 +419,7 @@ class Figure(Settings):
     cells: Cells = None
     """Number of rings of the single run."""
     steps: Steps = None
-    """Number of time steps in a period, or in a run (transients)."""
+    """Number of time steps in a period. For transients: number of time steps in the run."""
 
     @property
     def run(self) -> dict[str, Any]:
@@ -514,7 +514,7 @@ class Accuracy(Settings):
     like its file in src/microslip/periodic/methods, but with hyphens; "shipped" is the method of
     microslip.solve. The default is all methods."""
     points: dict[Text, StudyPoint]
-    """Points at which all methods and models are run, by name. Each point has a panel."""
+    """Points at which all methods and models are run, keyed by name. Each point has a panel."""
     levels: Annotated[int, _number(1, 6, 1)] = 6
     """Number of resolutions of each method, starting with the coarsest one."""
     repeats: Annotated[int, _number(1, 100, 1)] = 5
@@ -575,7 +575,7 @@ class Stability(Settings):
     """Study of the failures of methods. Its dataset is stability.nc."""
 
     methods: Methods = method_names()
-    """Methods to compare, named as in `accuracy`."""
+    """Methods to compare, named as in the study `accuracy`."""
     tolerance: Tolerance = 1e-3
     """Largest accepted absolute error of mu_macro."""
     axes: dict[Text, Block]

@@ -70,10 +70,10 @@ def _form(function: str, arguments: str, properties: str, **more: Any) -> Closed
 
 
 FORMS: dict[str, dict[str, ClosedForm]] = {}
-"""Closed forms of friction and torque, by motion and name, in the order in which datasets list
-them."""
+"""Closed forms of friction and torque, keyed by motion and name, in the order in which datasets
+list them."""
 DRIFT_FORMS: dict[str, ClosedForm] = {}
-"""Closed forms of the mean velocity at a constant force, by motion."""
+"""Closed forms of the mean velocity at a constant force, keyed by motion."""
 for _row in rows(Path(__file__).with_suffix(".csv")):
     _motion = _row.pop("motion")
     _one = _form(**_row)

@@ -35,7 +35,8 @@ BORDERS = {
     "amplitude": ("cell_low", "cell_high"),
     "poisson": ("cell_poisson_low", "cell_poisson_high"),
 }
-"""Names of the variables that contain the lower and the upper ends of the cells, by direction."""
+"""Names of the variables that contain the lower and the upper ends of the cells, keyed by
+direction."""
 AXES = ("mass", "damping", "stiffness", "poisson", "amplitude", "velocity", "force")
 """Coordinates of maps, in the order of the dimensions of a result."""
 NUMBERS = ("cell", "node", "point")

@@ -24,7 +24,7 @@ ZONE = replace(
 
 
 STEADY = (("mu_forward_theory", "Eq 17", "mu_macro"), ("mu_torque_theory", "Eq 18", "mu_torque"))
-"""Name, equation and quantity of the closed forms of the steady bore.  The equations replace Eqs 21
+"""Name, equation and quantity of each closed form of the steady bore.  The equations replace Eqs 21
 and 22."""
 
 

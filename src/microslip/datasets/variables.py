@@ -23,8 +23,8 @@ from numpy.typing import ArrayLike
 ANCILLARY = "ancillary_variables"
 """Name of the attribute that states which variable contains the error of a variable."""
 TYPES: dict[str, type] = {"float": float, "int": np.int32, "bool": bool, "str": object}
-"""Types of values by their names in tables.  Any other entry in the column of types lists the
-meanings of the codes 0, 1, ..., separated by spaces."""
+"""Types of values, keyed by their names in tables.  Any other entry in the column of types lists
+the meanings of the codes 0, 1, ..., separated by spaces."""
 MISSING = {"float": np.nan, "str": ""}
 """Value that replaces a missing entry, keyed by the type of the variable.  For the other types,
 this value is 0."""

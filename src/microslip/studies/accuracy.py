@@ -73,7 +73,7 @@ def trials(study: Accuracy, point: AnyPoint) -> Iterator[tuple[int, dict]]:
 
 
 def map_requests(study: Accuracy, motion: str) -> Iterator[tuple[float, dict, list[dict]]]:
-    """Yield the amplitude, the reference request and the trial requests of each point of a map.
+    """For each point of a map, yield the amplitude, the reference request and the trial requests.
 
     The velocity varies fastest.
     """

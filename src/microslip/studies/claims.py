@@ -63,7 +63,7 @@ def report(dataset: xr.Dataset) -> Iterator[str]:
 def _verdicts(tables: dict[str, pd.DataFrame]) -> dict[str, Any]:
     """Return the variables of the statements, of their parts, and of the checks of the parts.
 
-    tables: tables of evidence by name.
+    tables: tables of evidence, keyed by name.
     """
     parts: list[Row] = []
     checks: list[Row] = []

@@ -101,7 +101,7 @@ def periods(study: Claims) -> list[list[dict]]:
 
 
 def sources(study: Claims) -> Iterator[tuple[str, Callable[..., dict], list[list[dict]]]]:
-    """Yield the name, the function and the requests of each table that is read from runs.
+    """For each table that is read from runs, yield the name, the function and the requests.
 
     The requests are a list of rows.  The function reads a line of evidence from the results of a
     row.
@@ -156,7 +156,7 @@ def sources(study: Claims) -> Iterator[tuple[str, Callable[..., dict], list[list
 
 
 def tables_of(study: Claims, answers: Answers) -> dict[str, pd.DataFrame]:
-    """Return all tables of evidence by name."""
+    """Return all tables of evidence, keyed by name."""
     import pandas as pd
 
     tables = {}

@@ -68,7 +68,7 @@ class Part(NamedTuple):
         """Return the lines of evidence for this part, with the additional columns `against`,
         `margin` and `outcome`.
 
-        tables: tables of evidence by name.
+        tables: tables of evidence, keyed by name.
         """
         checks = tables[self.evidence]
         checks = checks.query(self.lines) if self.lines else checks
@@ -120,8 +120,8 @@ MARGINS: dict[str, Numbers] = {
     "nearer than Eq 7": lambda c: _distance(c, FORMULAS["Eq 7"](c)) - _distance(c),
     "nearer than Eq 38": lambda c: _distance(c, FORMULAS["Eq 38"](c)) - _distance(c),
 }
-"""Functions that compute the margins of checks, by name.  A positive margin means that the part
-holds."""
+"""Functions that compute the margins of checks, keyed by name.  A positive margin means that the
+part holds."""
 
 
 def _part(row: dict[str, str]) -> Part:

@@ -54,7 +54,7 @@ def asymptote(amplitude: ArrayLike) -> np.ndarray:
 
 
 def used_share(motion: str, radius: np.ndarray, amplitude: np.ndarray) -> np.ndarray:
-    """Return the fraction of the friction bound that the oscillation uses at its turning points.
+    """Return the fraction of the friction bound that the oscillation uses at the turning points.
 
     The fraction is 1 outside the stick radius.  The arguments are broadcast.
     """
@@ -66,7 +66,7 @@ def used_share(motion: str, radius: np.ndarray, amplitude: np.ndarray) -> np.nda
 
 
 def left_share(motion: str, radius: np.ndarray, amplitude: np.ndarray) -> np.ndarray:
-    """Return how much of the friction bound is left for the forward direction, as a fraction.
+    """Return the fraction of the friction bound that is left for the forward direction.
 
     The fraction is averaged over the angle.
     """

@@ -42,7 +42,7 @@ DEGREES = {"velocity": 4, "amplitude": 4, "poisson": 2}
 is nearly linear in Poisson's ratio."""
 
 Box = tuple[tuple[float, ...], tuple[float, ...]]
-"""Lower and upper ends of a box in scaled coordinates, by direction."""
+"""Lower and upper ends of a box in scaled coordinates, for each direction."""
 
 
 class Scale(NamedTuple):

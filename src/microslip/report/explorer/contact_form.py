@@ -43,8 +43,8 @@ FIELDS = {
     "stroke": ("amplitude (half stroke)", "amplitude", ("um", "nm", "mm", "m"), "0.3"),
     "angle": ("amplitude (half angle)", "rotation_amplitude", ("mrad", "deg", "rad"), "1"),
 }
-"""Label, input in si.inputs, units and default number of each field, in the order of the form. The
-first unit is the default."""
+"""For each field, in the order of the form: the label, the input in si.inputs, the units and the
+default number. The first unit is the default."""
 
 
 def packed() -> dict:

@@ -40,7 +40,7 @@ ERRORS = {
     for name, row in TABLE.items()
     if name.startswith("error_")
 }
-"""Parts of the error of a point, with the source of each part."""
+"""The parts of a point's error, each with its source."""
 DECIMALS = 5
 """Number of decimals of the forces, phases, radii and bounds of periods."""
 PERIOD = ["phase", "radius", "bound", "tractions", "slips", "densities", "angles", "turned"]

@@ -50,7 +50,7 @@ RIGID = "rigid contact, same velocities"
 COLUMNS = {1: 1, 2: 2, 4: 2}
 """Number of columns for 1, 2 and 4 maps. Any other number of maps is drawn in 3 columns."""
 HEIGHT = {1: 3.6, 2: 2.6, 3: 2.0, 4: 1.75}
-"""Height of a row in inches, by the number of columns."""
+"""Height of a row in inches, keyed by the number of columns."""
 CUTS = 2.7
 """Height of the panels with cuts below a row of maps, in inches."""
 FINE = 193
@@ -237,9 +237,9 @@ def number_contours(axes: Axes, contours: ContourSet, filled: ContourSet, scale:
     """Write numbers on contours after the layout has determined the final size of the panel.
 
     A number is placed as far as possible from other contours and from the ends of its own contour,
-    because the end of a contour next to a number could be read as a minus sign. A contour that
-    lacks room for a number is left unnumbered. Behind each number is a box in the colour of the
-    band, so that the number is readable on top of points.
+    because the end of a contour next to a number could be read as a minus sign. If there is no room
+    for a number on a contour, the contour has no number. Behind each number is a box in the colour
+    of the band, so that the number is readable on top of points.
     """
     height = look.SMALLEST * look.DPI / 72.0
 
@@ -350,7 +350,8 @@ class Scale(NamedTuple):
 
 
 def friction(datasets: Sequence[xr.Dataset]) -> Scale:
-    """Return the scale of friction from 0 to 1, extended to the smallest and the largest value.
+    """Return the scale of friction. The scale covers the range from 0 to 1 and all values of the
+    datasets.
 
     All datasets use the same colours from 0 to 1, except datasets with values above 1.
     """
