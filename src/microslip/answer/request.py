@@ -265,7 +265,7 @@ def runs(
 
     every = problem, *problem.readings
     answer = refine(run, ladder, every, tolerance, name, energy_unit=unit, drive_work=work)
-    return answer.changed(reason=answer.reason or unresolved)
+    return answer if answer.reason or not unresolved else replace(answer, reason=unresolved)
 
 
 def second_attempt(

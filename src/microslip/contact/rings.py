@@ -122,13 +122,11 @@ def _focused(count: int, places: np.ndarray, strength: float) -> np.ndarray:
     widest in the middle.
     """
     edge = np.pi / 2
-
-    def spread(t: np.ndarray) -> np.ndarray:
-        return (1 - strength) * t + strength * t * t
-
     if len(places) == 1 and places[0] in (0.0, edge):
         t = np.linspace(0.0, 1.0, count + 1)
-        return edge * spread(t) if places[0] == 0.0 else edge * (1.0 - spread(1.0 - t))
+        t = t if places[0] == 0.0 else 1.0 - t
+        spread = (1 - strength) * t + strength * t * t
+        return edge * spread if places[0] == 0.0 else edge * (1.0 - spread)
     ends = [0.0, places[0]]
     for place in places[1:]:
         ends += [0.5 * (ends[-1] + place), place]
@@ -138,8 +136,9 @@ def _focused(count: int, places: np.ndarray, strength: float) -> np.ndarray:
         start, width = ends[piece], ends[piece + 1] - ends[piece]
         t = np.linspace(0.0, 1.0, last - first + 1)[1:]
         # every second piece ends at a place, and the other pieces begin at one
-        share = 1.0 - spread(1.0 - t) if piece % 2 == 0 else spread(t)
-        psi[first + 1 : last + 1] = start + width * share
+        t = 1.0 - t if piece % 2 == 0 else t
+        share = (1 - strength) * t + strength * t * t
+        psi[first + 1 : last + 1] = start + width * (1.0 - share if piece % 2 == 0 else share)
     psi[-1] = edge
     return psi
 

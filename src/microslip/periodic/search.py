@@ -267,13 +267,6 @@ class PeriodMap:
             held = self.weights[0] * advance**2
         return float(np.sqrt(force**2 + self.contact.stiffness * held)) if held else force
 
-    def gained(self, march: March, change: np.ndarray, residual: float) -> float:
-        """Return the change of the state by the plain map, as a force."""
-        if self.body is None:
-            return residual
-        advance, tractions = abs(march.body[-1, 0] - march.body[0, 0]), self.tractions(change)
-        return float(advance * self.contact.stiffness + energy_norm(self.contact, tractions))
-
 
 def find_periodic_state(
     period_map: PeriodMap, start: np.ndarray, goal: Goal, place: np.ndarray = AT_REST
@@ -337,8 +330,12 @@ def find_periodic_state(
         if path.end == 1.0:
             tractions = project(period_map.tractions(following), contact.bound)
             following = np.append(tractions, following[-2:]) if driven else tractions
-        distance = max(period_map.norm(following - state), residual)
-        distance = max(distance, rate.error(mean, period_map.gained(march, change, residual)))
+        distance, gained = max(period_map.norm(following - state), residual), residual
+        if driven:  # by the plain map, without scaled changes
+            advance = abs(march.body[-1, 0] - march.body[0, 0])
+            gained = energy_norm(contact, period_map.tractions(change))
+            gained = float(advance * contact.stiffness + gained)
+        distance = max(distance, rate.error(mean, gained))
         near_enough = distance <= goal.tolerance
         converged = solved and near_enough
         if near_enough:  # solve the steps of the next march to the final tolerance

@@ -278,6 +278,8 @@ class Motion(spec.Named):
         Raises InputError unless they are finite real numbers with the shape of `phase`.
         """
         parts = self.displacement(phase, velocity, amplitude, poisson)
+        if self._sines:
+            return np.array(parts)
         try:
             values = np.array(parts)
         except ValueError:  # arrays of different shapes
