@@ -54,7 +54,7 @@ MOST_VALUES = 2e7
 """Largest number of tractions in memory at the same time.  Longer paths are integrated in
 pieces."""
 PATH_STEPS = LOAD.steps / 2.0
-"""Ratio of the number of time steps for a path of length u_lim to the level.  With this value, the
+"""At level n, a path of length u_lim has n times this number of time steps.  With this value, the
 steps are as long as the steps of `LOAD`, the ladder for oscillating loads, at a stroke of u_lim.
 There, half a period is 2 u_lim long."""
 FORCES = ("force_forward", "force_lateral", "torque")

@@ -210,11 +210,12 @@ def fit(
 
     The result contains the coefficient of friction without vibration, and either the displacement
     u_lim at which the whole contact slides or the shear modulus.  Each row of the CSV file is a
-    measurement of friction under vibration.  The heading names the columns and their units:
-    friction [N] or mu; some of speed [mm/s], amplitude [um], frequency [kHz], load [N]; and
-    optionally friction_error [N] or mu_error.  If a column is missing, an option can give its value
-    for all rows.  Exit codes: 0 if both parameters are determined; 1 if only mu is determined, or
-    if unreadable lines are left out; 2 for bad input, or if neither parameter is determined.
+    measurement of friction under vibration.  The heading names the columns and their units.  One
+    column is friction [N] or mu.  The other columns are any of speed [mm/s], amplitude [um],
+    frequency [kHz] and load [N], and optionally friction_error [N] or mu_error.  If a column is
+    missing, an option can give its value for all rows.  Exit codes: 0 if both parameters are
+    determined; 1 if only mu is determined, or if unreadable lines are left out; 2 for bad input, or
+    if neither parameter is determined.
     """
     import microslip
 

@@ -187,8 +187,8 @@ class Results:
     def link(self) -> None:
         """Link the plain names of products to their files, if the files exist.
 
-        If the file does not exist, the date of the link is set far back, since Snakemake replaces a
-        link only if an input is newer.
+        If the file does not exist, the date of the link is set far back.  The reason is that
+        Snakemake replaces a link only if an input is newer.
         """
         for plain, (_, path) in self.plain().items():
             link = self.folder / plain
@@ -220,8 +220,8 @@ class Results:
         return [path.stem for path, b in self._needed.items() if (b is None) == certified]
 
     def new_points(self) -> int:
-        """Count the points and runs that jobs will compute, except those of certified maps, which
-        depend on the results."""
+        """Count the points and runs that jobs will compute.  Certified maps are not counted,
+        because their points depend on the results."""
         requests: dict[Path, list[dict]] = {}
         for path, block in self._needed.items():
             requests.setdefault(path.parent, []).extend(block.requests if block else [])

@@ -56,10 +56,10 @@ instructions.  With this option, matrix products take half the time."""
 OPTIONS = {"nogil": True, "error_model": "numpy"}
 """Numba options.  Sums are not reordered, and division by zero works as in NumPy."""
 ROOM = 16_000_000
-"""Free bytes that a folder needs.  The compiled code takes 5 MB."""
+"""Number of bytes that must be free on the disk of a folder.  The compiled code takes 5 MB."""
 SPELL = 1.0
-"""Seconds without compilation after which the next compilation is announced again.  Between the
-kernels of one solution, milliseconds pass."""
+"""The next compilation is announced again after this number of seconds without compilation.
+Between the kernels of one solution, milliseconds pass."""
 PAUSE = 0.05
 """Seconds between two attempts to lock the folder."""
 ATTEMPTS = iter(range(2400))

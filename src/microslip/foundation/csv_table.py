@@ -32,7 +32,7 @@ SEPARATORS = {",": "comma", ";": "semicolon", "\t": "tab"}
 LABELS = ("label", "name", "id", "sample", "comment")
 """Columns of text that are copied to the output."""
 PURE = ("", "1", "-")
-"""Units in a heading that mean a column of pure numbers."""
+"""Unit strings in a heading that denote pure numbers."""
 HEADING = re.compile(r"(\w+)\s*(?:\[([^\]]*)\]|\(([^()]*)\))?")
 NUMBER = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?|[+-]?(nan|inf|infinity)", re.I | re.A)
 NO_ROW = re.compile(r"[\s,;\"]*|\s*#(?!(N/A|NV|[A-Z/0]+[!?])).*")
@@ -305,8 +305,8 @@ def _rows(lines: list[str], index: int, separator: str) -> Rows:
 
 
 def _cells(text: str, separator: str) -> list[str]:
-    """Return the cells of a row.  The list is empty unless the quotes are in pairs, and each pair
-    encloses a whole cell."""
+    """Return the cells of a row.  The list is empty if a quote has no partner, or if a pair of
+    quotes does not enclose a whole cell."""
     rows = csv.reader([text], delimiter=separator, strict=True, skipinitialspace=True)
     try:
         return [cell.strip() for cell in next(rows, [])]

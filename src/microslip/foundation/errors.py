@@ -7,8 +7,8 @@ import errno
 import os
 
 NO_WRITING = (errno.ENOSPC, errno.EDQUOT, errno.EROFS)
-"""Error numbers of the operating system for which the message of the system makes the remedy
-clear."""
+"""Error numbers of the operating system.  For these errors, the message of the system makes the
+remedy clear."""
 
 LONGEST = 400
 """Largest length of a value in a message, in characters.  The middle of a longer value is

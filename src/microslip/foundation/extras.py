@@ -5,7 +5,7 @@ from __future__ import annotations
 from importlib.util import find_spec
 
 EXTRAS = {"matplotlib": "plot", "snakemake": "workflow"}
-"""Extra in pyproject.toml that installs a package, keyed by the package."""
+"""Extras in pyproject.toml.  The key of an extra is the package that it installs."""
 
 
 def missing(package: str) -> str:

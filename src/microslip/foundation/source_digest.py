@@ -29,8 +29,8 @@ PACKAGE = Path(__file__).parents[1]
 OUTER = {"app", "bundle", "config", "datasets", "foundation", "report", "si", "studies", "sweeps"}
 """Subpackages that do not compute results, except for the files in NUMBERS."""
 NUMBERS = {"foundation/compiled.py", "sweeps/evaluate.py", "sweeps/period_codec.py"}
-"""Files in `OUTER` on which results depend nevertheless.  They compile functions, and convert the
-output of the solver."""
+"""Files that influence results, although they are in the subpackages of `OUTER`.  They compile
+functions, and convert the output of the solver."""
 METHODS = "periodic/methods/"
 """Folder of comparison methods.  A file in this folder influences only the results of requests that
 use its method."""

@@ -153,8 +153,8 @@ NOT_SLOW = DriftRate()
 class PeriodMap:
     """Map from the state of a contact at the start of a path to its state at the end.
 
-    A state is the array of the tractions.  With a driven body, it is a row of all tractions, x and
-    x'.
+    A state is the array of the tractions.  With a driven body, a state is one row with all
+    tractions, followed by x and x'.
 
     Parameters
     ----------

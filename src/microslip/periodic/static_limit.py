@@ -400,8 +400,8 @@ def edge_focus(
     ring with two edges.  Under an oscillating load, the edges are computed for the static limit
     only.
 
-    The effort of a search is charged to every point that uses its result.  Therefore, the work that
-    remains in the budget of a point does not depend on earlier points.
+    The effort of a search is charged to every point that uses the result of the search.  Therefore,
+    the work that remains in the budget of a point does not depend on earlier points.
 
     Parameters
     ----------

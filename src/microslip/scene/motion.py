@@ -245,7 +245,8 @@ class Motion(spec.Named):
 
     @cached_property
     def _sines(self) -> bool:
-        """Whether the displacement is a sum of sines, so that closed forms for sines apply."""
+        """Whether the displacement is a sum of sines.  Closed forms for sines apply only in this
+        case."""
         sines = all(wave.form is np.sin for wave in self.components.values())
         return sines and type(self).displacement is Motion.displacement
 

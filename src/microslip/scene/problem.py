@@ -283,7 +283,7 @@ class Problem:
 
     @property
     def depth(self) -> Callable[[np.ndarray], np.ndarray] | None:
-        """Function that returns the indentation depth at a phase, divided by its reference value.
+        """Function that returns the indentation depth at a phase, divided by the reference depth.
 
         The property is None if the load is constant.
         """

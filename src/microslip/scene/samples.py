@@ -288,18 +288,19 @@ class Sampled(spec.NamedByText, _Samples):
 FEWEST_SAMPLES = 4
 """Smallest number of rows in a period, also for the motion through every second row."""
 ROUGHER = 2.0
-"""Ratio of the roughness with and without a last row that equals the first, above which this row is
-the end of the period.  The ratio is below 1.9 for waves without an end point, such as cosines and
-pulses of 4 to 64 rows, and 3 to 1e6 for a sine with its end point."""
+"""If the last row equals the first row, the roughness is compared with and without the last row.
+If the ratio is above this value, the last row is the end of the period.  The ratio is below 1.9 for
+waves without an end point, such as cosines and pulses of 4 to 64 rows.  For a sine with its end
+point, the ratio is 3 to 1e6."""
 FEWEST_LEVELS = 4
 """Smallest number of different values in a column with a value that marks missing samples.  Of n
 equally spaced values, the first is one step away from the second, and the values between both ends
-extend over n - 3 steps.  So with fewer than 4 equally spaced values, the ends would count as
+extend over n - 3 steps.  Therefore, both ends of fewer than 4 equally spaced values would count as
 marks."""
 ABSURD = 100.0
-"""Distance of a single value from all others, divided by their range, above which it is refused.
-In a motion of 1000 rows, neighbours of the top of a sharp pulse are at a hundredth of its
-height."""
+"""A single value is refused if its distance from all other values, divided by their range, is above
+this limit.  In a motion of 1000 rows, neighbours of the top of a sharp pulse are at a hundredth of
+its height."""
 NINES = re.compile(r"-?99(9+|9*\.9+)")
 """Pattern of a number of nines, such as -9999 or -99.99."""
 UNUSUAL = (
@@ -311,9 +312,9 @@ UNUSUAL = (
 def unusual_rows(values: np.ndarray, is_record: bool = False) -> np.ndarray:
     """Return the rows of values that probably mark missing samples.
 
-    The distance of these values from all others exceeds the range of the others.  In addition,
-    they consist of nines, with noise or without, or they are equal and repeated in a record.
-    Values without a neighbour in time are also returned if their distance is ABSURD times the
+    The distance of these values from all others exceeds the range of the others.  In addition, the
+    values either consist of nines (with or without noise), or are equal and repeated in a record.
+    A value without a neighbour in time is also returned if its distance is `ABSURD` times the
     range.
     """
     levels = np.unique(values)
@@ -330,8 +331,9 @@ def unusual_rows(values: np.ndarray, is_record: bool = False) -> np.ndarray:
 
 
 def _ends_with_first(values: np.ndarray) -> bool:
-    """Return whether the last row is the end of the period: it equals the first row, and without
-    it the motion is smoother.  values: array of shape (rows, columns)."""
+    """Return whether the last row is the end of the period.  In this case, the last row equals the
+    first row, and the motion is smoother without the last row.  values: array of shape (rows,
+    columns)."""
     values = values / np.maximum(np.ptp(values, axis=0), np.finfo(float).tiny)
     longer, shorter = (
         np.sum(np.diff(np.concatenate([rows, rows[:4]]), n=4, axis=0) ** 2)

@@ -36,8 +36,8 @@ REFINEMENTS = 3
 """Number of corrections of the frequency.  The error that remains after a correction is due to the
 errors of the phases."""
 PARTS, MOST_PARTS, PERIODS_OF_PART = FEWEST_PERIODS, 20, 10
-"""Smallest and largest number of parts into which a record is divided, and number of periods in a
-part.  The median amplitude of 10 noisy periods is rarely below one half of the mean."""
+"""Smallest and largest number of parts of a record, and number of periods in each part.  The median
+amplitude of 10 noisy periods is rarely below one half of the mean."""
 STEADY = 0.5
 """Smallest amplitude of a part divided by the mean amplitude.  If the amplitude is below one half
 of the mean, it is nearer to 0 than to the mean.  A state of rest then describes the part better
@@ -255,7 +255,7 @@ def _check_repeats(frequency: float, parts: np.ndarray, order: int, column: int)
 
 def _change(sizes: np.ndarray) -> float:
     """Return the largest difference between the mean amplitudes of the quarters of a record,
-    divided by their mean; 0 within the noise."""
+    divided by their mean.  Return 0 if the difference is within the noise."""
     means = [float(one.mean()) for one in np.array_split(sizes, PARTS) if len(one)]
     noise = np.diff(sizes).std() / math.sqrt(2.0 * len(sizes) / PARTS)
     change = float(np.ptp(means))
@@ -280,8 +280,8 @@ def _phases(parts: np.ndarray) -> tuple[float, float, float, int, int]:
 
 
 def _checked(time: Any, columns: Mapping[str, Any]) -> tuple[float, float, list[str], np.ndarray]:
-    """Return the time step, the rounding of the times, the names of the columns, and their values,
-    an array of shape (samples, columns)."""
+    """Return the time step, the rounding of the times, the names of the columns, and the values of
+    the columns.  The values are an array of shape (samples, columns)."""
     known = ", ".join(COLUMNS)
     _refuse(not hasattr(columns, "keys"), "columns", columns, f"allowed is a mapping with {known}")
     _refuse("time" in columns, "columns", "time", f"unknown; allowed are {known}")

@@ -197,8 +197,8 @@ normal         || load_amplitude frequency \
   | while its normal load oscillates, alone or with a motion
 continuous-bore|| rotation            | | and spins steadily about the contact normal
 """)
-"""Kinds of the motions that need their own list of inputs.  All other motions have one amplitude or
-a rotation."""
+"""The `Kind` objects of the motions that need their own list of inputs.  All other motions have one
+amplitude or a rotation."""
 AT_REST = Kind("", "rests", needed=())
 """The `Kind` object of a contact without a motion."""
 

@@ -39,8 +39,8 @@ MARGIN = 0.8
 """Safety factor on the accepted error of a second run.  It is below 1 because the second velocity
 can be smaller than the first."""
 RUNS_AWAY = "runs away"
-"""The reason in the result of the solver begins with these words if the contact accelerates without
-limit."""
+"""If the contact accelerates without limit, the solver returns a reason that begins with these
+words."""
 MAP = "map"
 """Model name in a Result that comes from a map."""
 AMPLITUDES = 1e-6, 1e4
@@ -156,8 +156,8 @@ def largest_force(contact: Contact) -> float:
     """Return the smallest constant force at which the contact runs away, divided by mu times the
     mean load.
 
-    This force is 1 for a body with a mass.  Otherwise, it is the ratio of the smallest normal load
-    in a period to the mean load.
+    This force is 1 for a body with a mass.  Otherwise, the force is the ratio of the smallest
+    normal load in a period to the mean load.
     """
     return 1.0 if contact.inputs.mass else min(1.0, limits.least_load(problem_of(contact)))
 

@@ -32,9 +32,9 @@ from microslip.si.solve import NoSolutionError, answer_of, find_reduction, stati
 DRAWS = 2**15
 """Number of draws.  The error of a probability is about 1e-3."""
 LEVELS = (-3.0, -1.5, 1.5, 3.0)
-"""Points along a line at which the solver computes the result, in standard deviations.  Draws
-beyond the outermost points are replaced by these points.  This reduces a standard deviation by
-0.25 %.  With outermost points at 2.5, the reduction would be 1.1 %."""
+"""Positions of points along a line, in standard deviations.  The solver computes the result at
+these points.  Draws beyond the outermost points are replaced by these points.  This reduces a
+standard deviation by 0.25 %.  With outermost points at 2.5, the reduction would be 1.1 %."""
 STATIC_LEVELS = (-3.0, -1.96, -1.3, -0.65, 0.65, 1.3, 1.96, 3.0)
 """Points along a line at which the static limit is computed.  The bounds of a 95 % interval are at
 -1.96 and 1.96."""
@@ -47,8 +47,8 @@ number of points is added where the static limit is close to the force."""
 VANISHING = 1e-3
 """Largest static limit that counts as 0 in the bisection."""
 CLOSEST = 64
-"""The draws whose static limits are closest to the force count as close to it.  Their number is the
-number of draws divided by this value."""
+"""A draw counts as close to the force if its static limit is among the closest ones.  The fraction
+of such draws is 1 divided by this value."""
 NEGLIGIBLE = 1e-3
 """An axis is ignored if the standard deviation of the groups along it, divided by the standard
 deviation along the first axis, is at most this value.  Also, a standard uncertainty is infinite if
