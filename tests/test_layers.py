@@ -7,6 +7,7 @@ from functools import cache
 from pathlib import Path
 
 import microslip
+from microslip.foundation.source_digest import NUMBERS
 
 PACKAGE = Path(microslip.__file__).parent
 RULE = (
@@ -55,6 +56,11 @@ def test_imports_follow_the_rule():
             right = ROOMS[ROOMS.index(path.parts[0]) + 1 :]
             against |= {(str(path), *name) for name in imported(path)[0] if name[0] in right}
     assert not against
+
+
+def test_a_request_loads_no_room_outside_the_digest_of_its_result():
+    names = {name[0] for file in NUMBERS for name in imported(file)[0]}
+    assert names <= {*PHYSICS, "foundation", "config", "sweeps"}
 
 
 def test_no_modules_import_each_other_in_a_circle():

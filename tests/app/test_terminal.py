@@ -9,7 +9,6 @@ import time
 from pathlib import Path
 
 import pytest
-from stubs import in_process
 from stubs.in_process import ENVIRONMENT
 
 COMMAND = [sys.executable, "-m", "microslip"]
@@ -138,10 +137,3 @@ def test_an_answer_needs_no_more_than_its_output(tmp_path):
         process = shell(line, FOLDER=str(tmp_path / "gone"))
         assert (process.returncode, process.stderr) == (0, "")
         assert process.stdout.startswith("mu_macro = 0.883573\n")  # Eq 21 at 1: 0.88357
-
-
-@pytest.mark.parametrize(("words", "columns"), [("", "1"), ("point", "x"), ("sweep", "100000")])
-def test_help_fits_into_any_width(words, columns, monkeypatch):
-    monkeypatch.setenv("COLUMNS", columns)
-    process = in_process.run(*words.split(), "--help")
-    assert (process.returncode, process.stderr) == (0, "") and "usage:" in process.stdout

@@ -117,7 +117,6 @@ FILES = {
     "empty": (b"", "is empty"),
     "a list": (b"- 1\n- 2\n", "[1, 2] is not a mapping"),
     "not UTF-8": (b"# \xe9t\xe9\n" + GOOD.encode(), "line 1: not text: byte 0xe9"),
-    "nothing to merge": (b"sweeps:\n  <<: 5\n", "line 2"),
     "a number of 5000 digits": (b"results: " + b"9" * 5000 + b"\n", "int"),
     "a number nearer 0 than a float": (b"results: 1e-400\n", "nearer 0 than"),
     "tabs": (GOOD.replace("    ", "\t").encode(), "line 4"),
@@ -126,5 +125,4 @@ FILES = {
     "a tag": (b"results: !!python/object/apply:os.getcwd []\n", "line 1"),
     "itself inside": (b"sweeps: &s {transverse: *s}\n", "contains itself"),
     "very deep": (b"[" * 1000, "not valid YAML"),
-    "a list for a key": (b"? [1, 2]\n: 3\n", "line 1"),
 }

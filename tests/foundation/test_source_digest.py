@@ -1,12 +1,8 @@
 """Digests of sources: which edits change which names, and which files are read."""
 
 import ast
-import json
-import re
-from pathlib import Path
 
 import pytest
-from stubs.new_process import PACKAGE, output
 
 from microslip.foundation import source_digest
 from microslip.foundation.source_digest import Sources
@@ -65,14 +61,14 @@ FILES = {
     "periodic/methods/_shared.py": "from toy.periodic.methods import _deeper",
     "periodic/methods/_deeper.py": "",
     "periodic/methods/one.py": "from toy.periodic.methods._shared import D",
-    "scene/turns.py": "",
-    "scene/named.py": "",
     "report/figures/maps.py": "from toy.periodic import run\nfrom toy.datasets import query",
     "report/page.html": "",
     "datasets/query.py": "from toy.foundation import errors",
 }
 SOLVER = {"foundation/compiled.py", "sweeps/evaluate.py", "sweeps/period_codec.py"}
-SOLVER |= {"periodic/run.py", "periodic/shapes.js", "scene/turns.py", "scene/named.py"}
+PHYSICS = ("scene/turns.py", "theory/paper.py", "contact/rings.py", "answer/point.py")
+SOLVER |= {"periodic/run.py", "periodic/shapes.js", *PHYSICS}
+FILES |= dict.fromkeys(PHYSICS, "")
 
 
 @pytest.fixture
@@ -137,33 +133,3 @@ def test_damaged_parse_results_are_replaced(package):
     whole = cache.read_bytes()
     cache.write_bytes(whole[:-9])
     assert (Sources(package).digest(SOLVER), cache.read_bytes()) == (first, whole)
-
-
-# The package itself
-
-BORE = {"motion": "bore", "poisson": "0", "cells": 4, "angles": 4, "steps": 8}
-REQUESTS = [
-    {"kind": "point", "motion": "zigzag", "poisson": "0.3", "model": "auto", "tolerance": "0.1"},
-    {"kind": "period"} | BORE,
-    {"kind": "patches"} | BORE,
-    {"kind": "run", "motion": "transverse", "poisson": "0", "model": "radial", "tolerance": "0.01"}
-    | {"method": "euler", "cells": 8, "angles": 1, "steps": 16},
-]
-LOADED_BY = """
-import json, os, sys
-from microslip.sweeps import evaluate
-for request in json.loads(sys.argv[1]):
-    evaluate.computed(request)
-print(json.dumps([m.__file__ for n, m in sys.modules.items() if n.startswith("microslip.")]))
-"""
-
-
-@pytest.mark.long
-def test_all_modules_that_requests_load_count():
-    requests = [{"velocity": "0.5", "amplitude": "0.5"} | request for request in REQUESTS]
-    files = json.loads(output(LOADED_BY, json.dumps(requests)))
-    loaded = {Path(file).relative_to(PACKAGE).as_posix() for file in files}
-    assert "sweeps/evaluate.py" in loaded
-    outer = "(foundation|config|sweeps|periodic/methods)/"  # these read and write requests
-    sources = source_digest.LOADED
-    assert {f for f in loaded if not re.match(outer, f)} <= sources.solver | {"__init__.py"}

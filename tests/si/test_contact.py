@@ -42,13 +42,6 @@ def test_one_elastic_body_is_the_papers_contact(poisson):
     assert contact.G_star * a * contact.u_lim / (0.4 * 7.0) == pytest.approx(hertz.G_STAR)
 
 
-def test_both_lines_of_eq_24_agree():
-    c, contact = 0.37, contact_of(**BALL | {"radius": 0.01, "load": 50.0, "mu": 0.2})
-    a = contact.contact_radius
-    first = contact.mu * contact.E_star * a / (math.pi * contact.G * contact.radius) * hertz.D(c)
-    assert hertz.lubkin_angle(c, contact.poisson) * contact.u_lim / a == pytest.approx(first)
-
-
 def test_a_steel_ball_of_10_mm_on_steel_by_hand():
     """E* = 210/(2 * 0.91) GPa; a^3 = 3 * 10 * 0.005 / (4 E*); p0 = 3 F/(2 pi a^2)."""
     contact = contact_of(counterbody=STEEL, **BALL)

@@ -40,7 +40,7 @@ def stroke(folder, swing):
         (
             "a constant load",
             "normal",
-            STEEL | {"load_amplitude": "0.1 N", "forward_amplitude": "0.2 um"},
+            STEEL | {"load_amplitude": "5 mN", "forward_amplitude": "0.2 um"},
             {"motion": "longitudinal"},
         ),
         (
