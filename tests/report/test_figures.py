@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import re
+from itertools import product
+
 import numpy as np
 import pytest
 import xarray as xr
@@ -10,6 +13,8 @@ from matplotlib.patches import Rectangle
 from stubs import figures_stub as stub
 from stubs.figures_stub import artists, draw, words
 
+from microslip.config.load import ConfigError, from_mapping
+from microslip.report.explorer import page
 from microslip.report.figures import runs
 
 pytestmark = [pytest.mark.slow, pytest.mark.usefixtures("without_layout")]
@@ -148,7 +153,34 @@ def test_the_points_of_all_drives_are_drawn_over_velocity_and_over_mass():
 def test_each_of_many_lines_has_its_own_colour_and_marker():
     (axes,) = draw("curves", stub.many_lines()).axes
     marks = [(one.get_color(), one.get_marker()) for one in artists(axes, "computed")]
-    assert len(set(marks)) == len(marks) == 14
+    assert len(set(marks)) == len(marks) == 12
+
+
+SPEEDS = [{"velocity": speed} for speed in (0, 1, [0, 1], [0.1, 1], [0, 0.1, 1])]
+FORCES = [{"force": force} for force in (0.6, [0.1, 0.9])]
+RATIOS, MAP = {"poisson": [0, 0.3]}, {"error": 0.05}
+OTHERS = [{}, RATIOS, MAP, RATIOS | MAP, {"stiffness": [1, 2]}]
+
+
+@pytest.mark.parametrize("kind", ["map", "curves", "explorer"])
+def test_a_figure_of_any_sweep_is_drawn_or_refused_when_the_configuration_is_read(kind):
+    full, drawn = {"motion": "bore", "velocity": [0.1, 1], "amplitude": [0.5, 1]}, 0
+    sweeps = ["map", "full"] if kind == "explorer" else ["map"]
+    figures = {"figure": {"kind": kind, "sweep": sweeps}}
+    for speed, amplitude, other in product(SPEEDS + FORCES, (1, [0.5, 1]), OTHERS):
+        one = {"motion": "bore", "amplitude": amplitude} | speed | other
+        try:
+            read = from_mapping({"sweeps": {"map": one, "full": full}, "figures": figures})
+        except ConfigError as error:
+            assert re.search(r"sweeps\.map|figures\.figure\.sweep: map .*required", str(error))
+            continue
+        dataset = stub.built(read)
+        if kind != "explorer":
+            draw(kind, dataset)
+        elif not read.sweeps["map"].is_certified:
+            page.build({"map": dataset}, {})
+        drawn += 1
+    assert drawn >= 10
 
 
 def test_a_contact_at_rest_under_every_force_is_counted():
@@ -185,7 +217,7 @@ def test_predictions_have_the_values_of_the_dataset():
     assert lower.get_xlabel() == "speed (mm/s)" and lower.get_xscale() == "log"
     assert "friction force (mN)" in lower.get_ylabel() and "dimensionless" in upper.get_ylabel()
     titles = [text.get_text() for text in upper.get_legend().get_texts()]
-    assert titles == ["load 50 mN", "not converged", "load 100 mN"]
+    assert titles == ["load 50 mN", "hollow: not converged", "load 100 mN"]
     for axes, name, factor in ((upper, "mu_apparent", 1.0), (lower, "friction_force_N", 1e3)):
         values = factor * dataset[name].values
         _, second = artists(axes, "computed")

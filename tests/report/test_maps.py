@@ -122,7 +122,7 @@ FINER = COARSE.interp(velocity=np.geomspace(0.011, 9, 20), amplitude=np.linspace
     ("dataset", "values", "note"),
     [
         *((stub.holed(*size), stub.holed(*size), "computed points") for size in ((7, 5), (15, 13))),
-        (COARSE, FINER, "contours only where certain"),
+        (COARSE, FINER, "no contour is certain"),
     ],
 )
 def test_every_value_of_a_map_is_visible_as_colour_or_marker(dataset, values, note, ratios):

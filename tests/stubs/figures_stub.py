@@ -8,8 +8,10 @@ from matplotlib.text import Text
 from stubs import certified_stub, claims_stub, studies_stub
 
 from microslip.config.kinds import KINDS
+from microslip.datasets import sweep_dataset
 from microslip.datasets.catalogue import DRIFT_FORMS, FORMS
 from microslip.report.figures import drawing
+from microslip.sweeps import request
 from microslip.theory import paper
 
 VELOCITY = "v0 / (omega u_lim)"
@@ -134,8 +136,26 @@ def static(title="", velocity=(0.0, 1e-3)) -> xr.Dataset:
 
 
 def many_lines():
-    """Friction against amplitude at seven velocities and two Poisson's ratios."""
-    return at_ratios(static("", np.geomspace(1e-3, 1e-2, 7)), 0.0, 0.3)
+    """Friction against amplitude at six velocities and two Poisson's ratios."""
+    return at_ratios(static("", np.geomspace(1e-3, 1e-2, 6)), 0.0, 0.3)
+
+
+def built(configuration) -> xr.Dataset:
+    """Dataset of the sweep "map" of a configuration. Contacts under small forces are at rest."""
+
+    def answer(one):
+        at = {name: float(one.get(name) or 0.0) for name in ("velocity", "force", "amplitude")}
+        speed = at["velocity"] + max(at["force"] - 0.5, 0.0)
+        mu = (speed + 0.1) / (speed + 0.1 + at["amplitude"])
+        speeds = {"velocity": speed, "velocity_error": 0.1}
+        record = certified_stub.record(one, mu)
+        return record | {"result": record["result"] | speeds}
+
+    sweep = configuration.sweeps["map"]
+    if sweep.is_certified:
+        return certified_stub.built(configuration, answer)
+    records = map(answer, request.points_of(sweep).requests)
+    return sweep_dataset.build(configuration, "map", records)[0]
 
 
 def labelled(dataset, formula):

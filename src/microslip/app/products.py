@@ -32,6 +32,7 @@ def make_products(job: Any) -> None:
         try:
             make(plan, name, folder / "data" / stem, [folder / path for path in inputs])
         except Exception as error:
+            error.add_note(f"while making {name}")
             errors.append(error)
             if len(errors) > 1:
                 log.error("%s: %s: %s", name, type(error).__name__, error)

@@ -15,14 +15,11 @@ class Kind(NamedTuple):
         Study whose dataset is drawn; empty for figures of sweeps.
     run : dict
         Default settings of the single run that is drawn; empty if sweeps or studies are drawn.
-    motion : str
-        Motion required of the sweep; empty if every motion is allowed.
     """
 
     draw: str
     study: str = ""
     run: dict[str, Any] = {}
-    motion: str = ""
 
 
 _SIZES = {"cells": None, "steps": None}
@@ -31,9 +28,9 @@ _APPROACH = {"velocity": 0.8, "travel": 5.0, **_SIZES}
 KINDS = {
     "history": Kind("runs.history", run=_FIRST),
     "map": Kind("maps.draw"),
-    "field": Kind("runs.field", "", {"velocity": 0.5, "cells": None}, "continuous-bore"),
+    "field": Kind("runs.field", run={"velocity": 0.5, "cells": None}),
     "curves": Kind("curves.draw"),
-    "transients": Kind("runs.transients", "", _APPROACH, "continuous-bore"),
+    "transients": Kind("runs.transients", run=_APPROACH),
     "explorer": Kind(""),
     "accuracy_profile": Kind("studies.profile", "accuracy"),
     "accuracy_vs_cost": Kind("studies.versus_cost", "accuracy"),

@@ -367,9 +367,15 @@ class Sweep(Settings):
         return self.error is not None
 
     @property
+    def several(self) -> set[str]:
+        """Names of the axes with two or more values. The velocity 0 is not counted."""
+        counted = self.axes | {"velocity": [value for value in self.velocity if value > 0]}
+        return {name for name, values in counted.items() if len(values) > 1}
+
+    @property
     def spans_a_map(self) -> bool:
         """True if there are at least two amplitudes and two velocities above 0."""
-        return len(self.amplitude) > 1 and sum(v > 0 for v in self.velocity) > 1
+        return {"amplitude", "velocity"} <= self.several
 
     def model_post_init(self, context: Any, /) -> None:
         """Raise Refusal if settings contradict each other. Only checks that do not need the solver
@@ -402,8 +408,8 @@ class Figure(Settings):
 
     kind: Annotated[str, _one_of(*KINDS)]
     """Kind of figure. The kind `map` shows friction over two axes. The kind `curves` shows friction
-    along one axis, with a panel for each sweep. The kinds `history`, `field` and `transients` show
-    a single run. The kind `explorer` is an interactive page."""
+    along one axis. The kinds `history`, `field` and `transients` show a single run. The kind
+    `explorer` is an interactive page."""
     sweep: Annotated[
         tuple[str, ...], _list(_SWEEP, f"{_SWEEP.text}, or a list of names", True)
     ] = ()
@@ -601,6 +607,26 @@ class Claims(_Grid):
             refuse(values[0] > largest, problem, f".amplitude_{motion}")
 
 
+def _required(kind: str, sweep: Sweep) -> str:
+    """Return what a kind of figure requires of a sweep, or "" if the sweep can be drawn."""
+    several, line = sweep.several, "two velocities above 0, or two values of another axis"
+    is_map = sweep.spans_a_map or {"amplitude", "force"} <= several
+    is_map = is_map and several <= {"amplitude", "velocity", "force", "poisson"}
+    plane = "two amplitudes, and two velocities above 0 or two forces, at one stiffness and mass"
+    is_line = several & {"force"} if sweep.force else several
+    is_steady = sweep.motion == "continuous-bore"
+    is_run = not (is_steady or sweep.is_certified)
+    needs = {
+        "map": (is_map, plane),
+        "curves": (is_line, f"{line}; with a force, two forces"),
+        "history": (is_run, "an oscillation, and no key error"),
+        "explorer": ({*sweep.dims} - {"poisson"}, "two values of an axis except poisson"),
+    }
+    needs |= dict.fromkeys(("field", "transients"), (is_steady, "the motion continuous-bore"))
+    is_enough, text = needs[kind]
+    return "" if is_enough else text
+
+
 class Configuration(Settings):
     """A configuration of points to compute and figures to draw."""
 
@@ -656,9 +682,9 @@ class Configuration(Settings):
         key = f"{key}.sweep"
         for name in figure.sweep:
             refuse_unknown(name, self.sweeps, f"{shown(name)} is no sweep", key)
-            motion = self.sweeps[name].motion
-            problem = f"{name} has the motion {motion}; allowed: {kind.motion}"
-            refuse(kind.motion not in ("", motion), problem, key)
+            required = _required(figure.kind, self.sweeps[name])
+            problem = f"{name} cannot be drawn as {figure.kind}; required: {required}"
+            refuse(required != "", problem, key)
         if figure.kind == "explorer":
             sweeps = [one for name in figure.sweep if not (one := self.sweeps[name]).is_certified]
             points = sum(math.prod(map(len, sweep.axes.values())) for sweep in sweeps)

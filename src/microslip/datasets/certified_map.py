@@ -20,6 +20,7 @@ from microslip.config.settings import Configuration
 from microslip.datasets import sweep_dataset
 from microslip.datasets.interpolation import BORDERS, CHECKSUMS, COORDINATES, NUMBERS, parts_of
 from microslip.datasets.variables import TABLE, described
+from microslip.foundation import named_files
 from microslip.foundation.canonical import canonical_json
 from microslip.sweeps import map_refinement
 from microslip.sweeps.batch import lookup
@@ -72,8 +73,9 @@ def build(
     dataset = xr.Dataset(every, axes)
     sweep_dataset.describe_axes(dataset, sweep)
     motion, pressure = solver_names(sweep)
+    file = named_files.base_name(motion)
     about = sweep_dataset.provenance(
-        sweep.title or f"Certified friction of a vibrated contact, motion {motion}",
+        sweep.title or f"Certified friction of a vibrated contact, motion {file or motion}",
         {"sweep": sweep.model_dump(mode="json")},
         {canonical_json(record["versions"]) for record in records},
         motion=motion,

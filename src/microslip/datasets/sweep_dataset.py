@@ -79,7 +79,8 @@ def build(
         about["single_runs_failed"] = "; ".join(reasons)
     if sweep.drives:
         about["drive"] = ", ".join(sweep.drives)
-    title = sweep.title or f"Friction of a vibrated Hertz contact, motion {motion}"
+    shown = about.get("motion_file", motion)
+    title = sweep.title or f"Friction of a vibrated Hertz contact, motion {shown}"
     settings = {"sweep": sweep.model_dump(mode="json"), "runs": requests}
     coords: dict[str, tuple] = {
         axis: (axis, np.array(values)) if axis in sweep.dims else ((), values[0])

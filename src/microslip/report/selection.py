@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from dataclasses import replace
 from itertools import product
 from typing import Any
@@ -12,6 +13,8 @@ import xarray as xr
 from microslip.datasets.catalogue import FORMS, ClosedForm
 
 PLANE = "velocity", "amplitude"
+RANKS = {"velocity": -2, "amplitude": -1, "poisson": 1}
+"""Ranks of axes as the abscissa, if they are equally long. The rank of any other axis is 0."""
 WIDE = 10.0
 """Ratio of the largest to the smallest value above which an axis is logarithmic."""
 
@@ -26,6 +29,13 @@ def at_each_poisson(dataset: xr.Dataset) -> list[xr.Dataset]:
     if "poisson" not in dataset.dims:
         return [dataset]
     return [dataset.sel(poisson=nu) for nu in np.sort(dataset["poisson"].values)]
+
+
+def own_title(dataset: xr.Dataset) -> str:
+    """Return the title from the configuration of a sweep, or "" if the dataset has a default
+    title."""
+    settings = json.loads(dataset.attrs.get("configuration", "{}"))
+    return settings.get("sweep", {}).get("title") or ""
 
 
 def moving(dataset: xr.Dataset) -> xr.Dataset:
@@ -47,29 +57,39 @@ def lines(
     variable : str
         Variable of the ordinate.
     along : str
-        Axis along the lines. The default is the force if it is an axis, or else the longest axis.
+        Axis along the lines. The default is the force if it is an axis, or else the axis with the
+        most values, without the velocity 0. Among axes of equal length, the velocity comes first,
+        then the amplitude, and Poisson's ratio last.
 
     Returns
     -------
     tuple
         The axis along the lines, and a list with the other coordinates and the dataset of each
-        line.
+        line. Lines that differ only in Poisson's ratio are neighbours.
     """
     sizes = {str(dim): size for dim, size in dataset[variable].sizes.items()}
-    along = along or ("force" if "force" in sizes else max(sizes, key=sizes.__getitem__))
-    others = [dim for dim in sizes if dim != along]
+    order = sorted(sizes, key=lambda dim: RANKS.get(dim, 0))
+    along = along or ("force" if "force" in sizes else max(order, key=moving(dataset).sizes.get))
+    others = sorted((dim for dim in sizes if dim != along), key=lambda dim: dim == "poisson")
     places = product(*(range(sizes[dim]) for dim in others))
     parts = [dataset.isel(dict(zip(others, place, strict=True))) for place in places]
     return along, [({dim: float(part[dim]) for dim in others}, part) for part in parts]
 
 
-def resampled(dataset: xr.Dataset, **coordinates: Any) -> xr.Dataset:
-    """Return a certified map at the given coordinates. Values outside unsolved cells count as
-    converged."""
-    fine = dataset.microslip.at(**coordinates).squeeze().assign_attrs(dataset.attrs)
+def resampled(dataset: xr.Dataset, fine: int, coarse: int = 0, **others: Any) -> xr.Dataset:
+    """Return a certified map on a grid with `fine` velocities and `coarse` amplitudes.
+
+    The default is `fine` amplitudes, also for static friction, which has no axis of velocities.
+    Values outside unsolved cells count as converged. others: further coordinates.
+    """
+    ends = [(float(dataset[dim].min()), float(dataset[dim].max())) for dim in PLANE]
+    still = ends[0][1] == 0.0
+    others["velocity"] = 0.0 if still else np.geomspace(*ends[0], fine).clip(*ends[0])
+    others["amplitude"] = np.linspace(*ends[1], fine if still else coarse or fine)
+    grid = dataset.microslip.at(**others).squeeze().assign_attrs(dataset.attrs)
     for name in PLANE:
-        fine[name].attrs = dataset[name].attrs
-    return fine.assign(converged=np.isfinite(fine["mu_macro"]))
+        grid[name].attrs = dataset[name].attrs
+    return grid.assign(converged=np.isfinite(grid["mu_macro"]))
 
 
 def closed_forms(dataset: xr.Dataset) -> list[ClosedForm]:

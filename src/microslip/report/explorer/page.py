@@ -23,6 +23,7 @@ from plotly.offline import get_plotlyjs
 from microslip.config.quantities import MU_MACRO
 from microslip.datasets.variables import TABLE
 from microslip.foundation.canonical import number, plain
+from microslip.report import selection
 from microslip.report.explorer import contact_form
 from microslip.report.explorer.explorer import ASSETS
 from microslip.report.figures import style as look
@@ -78,12 +79,8 @@ def build(datasets: dict, periods: dict, certified: Sequence = ()) -> dict:
     """
     sweeps = []
     for name, dataset in datasets.items():
-        settings = json.loads(dataset.attrs.get("configuration", "{}")).get("sweep", {})
-        about = {
-            "name": name,
-            "title": settings.get("title") or name.replace("_", " ").capitalize(),
-        }
-        about |= {"motion": dataset.attrs["motion"]}
+        title = selection.own_title(dataset) or name.replace("_", " ").capitalize()
+        about = {"name": name, "title": title, "motion": dataset.attrs["motion"]}
         about |= {"pressure": dataset.attrs.get("pressure", "hertz")}
         for index, part in enumerate(at_each_poisson(dataset)):
             plane = set(PLANE) <= set(part.dims) and "drive" not in dataset.attrs

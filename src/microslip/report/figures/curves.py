@@ -2,7 +2,8 @@
 
 The figure has a panel for each abscissa, and a line for each combination of values along the other
 axes of a sweep. In a sweep over forces, the abscissa is the mean velocity that each force causes.
-Figures of maps contain similar panels for the edges of a map.
+A certified map is drawn over the velocity at some amplitudes, or over the amplitude if it contains
+static friction. Figures of maps contain similar panels for the edges of a map.
 """
 
 from __future__ import annotations
@@ -21,16 +22,19 @@ from microslip.report.figures import style as look
 from microslip.report.selection import PLANE, closed_forms, columns, limit, moving
 
 FORCE_AND_TORQUE = f"force  {FORCE_FORWARD.math}\ntorque  {TORQUE.math}"
-JOINING = 0.5
+JOINING = 0.7
 """Width of the lines that join markers, in points."""
+MARGIN = 1.3
+"""Ratio of the ends of an axis of velocities caused by forces to the ends of the points. The error
+bars of slow velocities can reach 0."""
 MOST_ABOVE = 4
 """Largest number of lines from one dataset for which the legend is above a narrow panel."""
 MANY = 12
 """Largest number of lines for which the legend is narrow."""
 ABOVE = 2.0
 """Smallest height of a narrow panel with its labels below the legend, in inches."""
-FINE = 201
-"""Number of amplitudes at which a certified map of static friction is drawn."""
+FINE, COARSE = 201, 5
+"""Numbers of points along a line of a certified map, and of amplitudes at which it is drawn."""
 
 
 class Line(NamedTuple):
@@ -57,7 +61,7 @@ class Line(NamedTuple):
 
 def draw(*datasets: xr.Dataset) -> Figure:
     """Draw one or several sweeps along one axis."""
-    shown = [_static_map(one) if "cell_error" in one else one.squeeze() for one in datasets]
+    shown = [_resampled(one) if "cell_error" in one else one.squeeze() for one in datasets]
     every = [line for one in shown for line in _lines(one, len(shown) > 1)]
     alone = len(shown) == 1 and len(every) <= MOST_ABOVE
     abscissae = list(dict.fromkeys(line.x for line in every))
@@ -67,7 +71,10 @@ def draw(*datasets: xr.Dataset) -> Figure:
         lines = [line for line in every if line.x == abscissa]
         _panel(axes, lines, alone)
         _references(axes, lines[0].points, shown)
-        look.logarithmic_if_wide(axes, np.concatenate([one.points[one.x] for one in lines]))
+        places = np.concatenate([one.points[one.x] for one in lines])
+        if places.size and any(one.y == "force" for one in lines):
+            axes.set_xlim(places.min() / MARGIN, places.max() * MARGIN)
+        look.logarithmic_if_wide(axes, places)
         still = [one for one in lines if one.limit is not None and one.x == "amplitude"]
         if velocities := {float(one.points["velocity"]) for one in still}:
             at = f"${look.number(velocities.pop())}$" if len(velocities) == 1 else "of the legend"
@@ -83,11 +90,9 @@ def draw(*datasets: xr.Dataset) -> Figure:
     return figure
 
 
-def _static_map(dataset: xr.Dataset) -> xr.Dataset:
-    """Return the values of a certified map of static friction on a fine axis."""
-    amplitude, ratios = dataset["amplitude"].values, np.unique(dataset["poisson"].values)
-    fine = np.linspace(amplitude.min(), amplitude.max(), FINE)
-    return selection.resampled(dataset, velocity=0.0, amplitude=fine, poisson=ratios)
+def _resampled(dataset: xr.Dataset) -> xr.Dataset:
+    """Return the values of a certified map along lines."""
+    return selection.resampled(dataset, FINE, COARSE, poisson=np.unique(dataset["poisson"].values))
 
 
 def _lines(dataset: xr.Dataset, titled: bool) -> Iterator[Line]:
@@ -104,13 +109,13 @@ def _lines(dataset: xr.Dataset, titled: bool) -> Iterator[Line]:
         _, parts = selection.lines(dataset, variable, dim)
     for at, points in parts:
         where = look.conditions(dataset.attrs.get("motion", ""), at)
-        text = ", ".join(filter(None, [title, where])) or "computed"
+        certified = "certified map" if "error" in dataset.attrs else "computed"
+        text = ", ".join(filter(None, [title, where])) or certified
         if over_force:
             moves = points.isel(force=points["velocity"].values > 0)
             # A contact at rest cannot be shown on a logarithmic axis of velocities.
             if at_rest := points.sizes["force"] - moves.sizes["force"]:
                 text = f"{text} ({at_rest} at rest: not drawn)"
-            moves = moves.assign(force_error=xr.zeros_like(moves["force"]))
             yield Line(moves, "velocity", "force", text)
             continue
         rest = still.sel({one: at[one] for one in at if one in still.dims}) if still else None
@@ -140,28 +145,31 @@ def _panel(axes: Axes, lines: Sequence[Line], alone: bool, joined: bool = True) 
     alone: if True, all lines come from one dataset. joined: if True, join the points of lines
     without a limit.
     """
-    shared = [_with_limit_of(line, lines) for line in lines]
+    limits = [one.limit and (*map(tuple, one.limit[:2]), one.limit[2]) for one in lines]
     for k, line in enumerate(lines):
         color, marker, ls = look.line(k)
-        room = 1.25 if alone else 1.6 if len(lines) <= MANY else 2.4
+        room = 1.1 if alone else 1.6 if len(lines) <= MANY else 2.4
         label = look.wrapped(line.title, room, 8.0)
         label = f" {label}" if label.startswith("_") else label  # a leading "_" would hide it
-        # Later markers are smaller and in front, so that all markers at one place can be seen.
-        behind = 0 if joined and len(lines) <= MOST_ABOVE else len(lines) - 1 - k
-        size = 3.4 + min(1.3, 3.0 / len(lines)) * behind
+        # Later markers are smaller and in front, so that neighbouring lines at one place can be
+        # seen.
+        overlaps = line.limit is None or len(lines) > MOST_ABOVE
+        size = 3.4 + 1.5 * overlaps * ((len(lines) - 1 - k) % 4)
         ink: look.Ink = {"color": color, "marker": marker, "ms": size}
-        joining: look.Ink = {"lw": JOINING, "ls": "-" if joined else "none", "label": label}
+        joining: look.Ink = {"lw": JOINING, "ls": ls if joined else "none", "label": label}
         if line.limit is not None:
             x, y, form = line.limit
-            common, first = len(shared[k]) > 1, shared[k][0]
+            common = limits.count(limits[k]) > 1
             # With several datasets, the points and the limit of a line share one legend entry.
             joint = not (alone or common)
             own: look.Ink = ink | {"label": label} if joint else {"color": color, "label": form}
-            if first is line:
+            if limits.index(limits[k]) == k:
                 axes.plot(x, y, ls=ls, gid="limit", markevery=[], **own)
             joining = {"ls": "none", "label": "" if joint else label}
-        names = line.x, line.y, f"{line.y}_error", "converged"
-        look.computed(axes, *columns(line.points, *names), clip_on=False, **ink | joining)
+        of = "x" if line.y == "force" else "y"
+        names = line.x, line.y, f"{getattr(line, of)}_error", "converged"
+        show = look.certified if "error" in line.points.attrs else look.computed
+        show(axes, *columns(line.points, *names), of=of, clip_on=False, **ink | joining)
     quantities = [look.quantity(one.points, one.x) for one in lines]
     several = len({one.unit for one in quantities}) > 1
     text = f"{quantities[0].text}, in the units of each motion"
@@ -170,16 +178,6 @@ def _panel(axes: Axes, lines: Sequence[Line], alone: bool, joined: bool = True) 
     axes.set_ylabel(FORCE_AND_TORQUE if torque else look.FRICTION)
     look.unit_range(axes)
     axes.margins(x=0.0 if alone else 0.02)
-
-
-def _with_limit_of(line: Line, lines: Sequence[Line]) -> list[Line]:
-    """Return all lines that have the same limit as the given line."""
-    if line.limit is None:
-        return []
-    x, y, form = line.limit
-    limits = [(one, one.limit) for one in lines if one.limit is not None]
-    same = ((one, np.array_equal([x, y], own[:2]) and own[2] == form) for one, own in limits)
-    return [one for one, equal in same if equal]
 
 
 def _references(axes: Axes, points: xr.Dataset, shown: Sequence[xr.Dataset]) -> None:

@@ -29,7 +29,7 @@ from microslip.config.quantities import MU_MACRO
 from microslip.datasets.surface import Surface
 from microslip.report.figures import curves
 from microslip.report.figures import style as look
-from microslip.report.selection import PLANE, at_each_poisson, columns, limit, moving, resampled
+from microslip.report.selection import at_each_poisson, columns, limit, moving, own_title, resampled
 
 FEW = 9
 """The points are drawn if an axis has fewer than this number of points."""
@@ -44,6 +44,10 @@ distance from other contours. FAR is the distance from other numbers and from th
 contour."""
 HATCHED: look.Ink = {"fc": (1.0, 1.0, 1.0, 0.45), "ec": look.BLACK, "lw": 0.0, "hatch": 6 * "/"}
 REST: look.Ink = {"facecolor": look.PALE, "label": "comes to rest", "gid": "rest"}
+DIVERGING = "PuOr"
+"""Colour map for differences. It is pale in the middle."""
+PALE: look.Ink = {"fc": matplotlib.colormaps[DIVERGING](0.5), "ec": look.GREY, "lw": 0.5}
+PALE |= {"label": "change within the errors"}
 THRESHOLD: look.Ink = {"color": look.BLACK, "label": "static limit: threshold", "gid": "mu_static"}
 RIGID = "rigid contact, same velocities"
 
@@ -60,14 +64,13 @@ FINE = 193
 class Panel(NamedTuple):
     """A map: its dataset at one Poisson's ratio, the drawn variable, and the heading.
 
-    points: velocities and amplitudes of the computed points of a certified map, or None for other
-    maps.
+    points: dataset of the computed points, which differs from the map if the map is certified.
     """
 
     dataset: xr.Dataset
     variable: str
     title: str
-    points: xr.Dataset | None = None
+    points: xr.Dataset
 
     @property
     def across(self) -> str:
@@ -82,7 +85,8 @@ def draw(*datasets: xr.Dataset) -> Figure:
     friction at larger ratios.  A certified map has a panel with its error estimates.  For a single
     sweep of friction that is not certified, cuts along two edges of the map are added.
     """
-    rows = [_panels(dataset, len(datasets) > 1) for dataset in datasets]
+    titles = [one.attrs.get("title", "") if datasets[1:] else own_title(one) for one in datasets]
+    rows = list(map(_panels, datasets, map(look.literal, titles)))
     drawn = [panel for row in rows for panel in row]
     widths = {len(row) for row in rows}
     aligned = len(widths) == 1 and widths < {2, 3, 4}
@@ -104,52 +108,40 @@ def draw(*datasets: xr.Dataset) -> Figure:
     return figure
 
 
-def _panels(dataset: xr.Dataset, titled: bool) -> list[Panel]:
-    """Return the panels of a dataset. If `titled` is True, the title of the dataset is above the
-    panels."""
-    title = look.literal(dataset.attrs.get("title", "")) if titled else ""
+def _panels(dataset: xr.Dataset, title: str) -> list[Panel]:
+    """Return the panels of a dataset. The title is above the first panel.
+
+    A certified map has two panels, friction and errors at the smallest Poisson's ratio.
+    """
+    ratios = np.unique(dataset["poisson"].values)
+
+    def headed(part: xr.Dataset, text: str = title) -> str:
+        ratio = look.ratio(part) if ratios.size > 1 or ratios[0] else ""
+        return ", ".join(filter(None, [text, ratio]))
+
     if "cell_error" in dataset:
-        return _certified(dataset, title)
-    parts = at_each_poisson(dataset)
+        grid = resampled(dataset, FINE, poisson=ratios[0])
+        here = np.broadcast_to(dataset["poisson"] == ratios[0], dataset.sizes["point"])
+        points = dataset.assign(converged=dataset["mu_macro"].notnull()).isel(point=here)
+        counts = f"{dataset.attrs['points']} points, {dataset.sizes['cell']} cells"
+        errors = Panel(grid, "mu_macro_error", headed(grid, counts), points)
+        return [Panel(grid, "mu_macro", headed(grid), points), errors]
     if "force" in dataset.dims:
-        title = title or look.axis(look.quantity(dataset, "velocity"))
-        slow = [part.assign(velocity=np.log10(part["velocity"].clip(SLOWEST))) for part in parts]
-        return [Panel(one, "velocity", _joined(title, look.ratio(one))) for one in slow]
-    first, *others = map(moving, parts)
-    ratio = look.ratio(first) if others or float(first["poisson"]) else ""
+        speed, title = dataset["velocity"], title or look.axis(look.quantity(dataset, "velocity"))
+        dataset = dataset.assign(velocity=np.log10(speed.clip(SLOWEST)), rest=speed == 0.0)
+        return [Panel(one, "velocity", headed(one, title), one) for one in at_each_poisson(dataset)]
+    first, *others = map(moving, at_each_poisson(dataset))
     less = f"less ${float(first['poisson']):g}$"
-    return [
-        Panel(first, "mu_macro", _joined(title, ratio)),
-        *(Panel(one, "mu_macro_change", f"{look.ratio(one)} {less}") for one in others),
-    ]
-
-
-def _joined(*texts: str) -> str:
-    return ", ".join(filter(None, texts))
-
-
-def _certified(dataset: xr.Dataset, title: str) -> list[Panel]:
-    """Return the two panels of a certified map, friction and errors at the smallest Poisson's
-    ratio."""
-    ends = [(float(dataset[dim].min()), float(dataset[dim].max())) for dim in PLANE]
-    velocity, amplitude = np.geomspace(*ends[0], FINE).clip(*ends[0]), np.linspace(*ends[1], FINE)
-    nu = float(dataset["poisson"].min())
-    grid = resampled(dataset, velocity=velocity, amplitude=amplitude, poisson=nu)
-    points, ratio = dataset, look.ratio(grid) if nu else ""
-    if "poisson" in dataset.coords and dataset["poisson"].ndim:
-        points = dataset.isel(point=dataset["poisson"].values == nu)
-        ratio = look.ratio(grid)
-    counts = f"{dataset.attrs['points']} points, {dataset.sizes['cell']} cells"
-    return [
-        Panel(grid, "mu_macro", _joined(title, ratio)),
-        Panel(grid, "mu_macro_error", _joined(counts, ratio), points),
-    ]
+    changes = [Panel(one, "mu_macro_change", f"{look.ratio(one)} {less}", one) for one in others]
+    return [Panel(first, "mu_macro", headed(first), first), *changes]
 
 
 def _fill(page: Any, drawn: list[Panel], across: int) -> None:
     """Draw all maps of a page, with labels, colour bars and a legend."""
     axes: list[Any] = look.grid(page, len(drawn), across)
-    room = page.get_figure(root=True).get_size_inches()[0] / across - 0.85
+    # A colour bar can be on the right of each column.
+    beside = 0.85 if len({panel.variable for panel in drawn}) == 1 else 1.35
+    room = page.get_figure(root=True).get_size_inches()[0] / across - beside
     room = np.inf if len(drawn) == 1 else room
     for one, panel in zip(axes, drawn, strict=True):
         look.heading(one, panel.title, room)
@@ -166,7 +158,10 @@ def _fill(page: Any, drawn: list[Panel], across: int) -> None:
     for one in axes:
         handles, labels = one.get_legend_handles_labels()
         entries |= dict(zip(labels, handles, strict=True))
-    flags = np.concatenate([panel.dataset["converged"].values.ravel() for panel in drawn])
+    if any(panel.variable == "mu_macro_change" for panel in drawn):
+        entries["pale"] = Patch(**PALE)
+    points = [panel.points for panel in drawn if panel.variable != "mu_macro_error"]
+    flags = np.concatenate([one["converged"].values.ravel() for one in points])
     if bad := np.count_nonzero(flags == 0):
         entries["unconverged"] = Patch(label=f"not converged ({bad} of {flags.size})", **HATCHED)
     ncols = 1 if len(drawn) == 1 else 3
@@ -174,15 +169,17 @@ def _fill(page: Any, drawn: list[Panel], across: int) -> None:
 
 
 def _label(axes: list[Axes], drawn: list[Panel], across: int, room: float) -> None:
-    """Label the axes. If all panels have the same label, write it once for each column or row,
-    otherwise on each panel."""
+    """Label the axes. If all panels have the same label and range, write the label once for each
+    column or row, otherwise on each panel."""
     for name, dims in (("x", [p.across for p in drawn]), ("y", len(drawn) * ["amplitude"])):
+        places = [panel.dataset[dim] for panel, dim in zip(drawn, dims, strict=True)]
+        ranges = {(float(place.min()), float(place.max())) for place in places}
         quantities = map(look.quantity, (panel.dataset for panel in drawn), dims)
         # On a small panel, a label with a symbol would be longer than the axis.
         texts = [look.axis(one, short=len(drawn) > 2) for one in quantities]
         for index, (one, text) in enumerate(zip(axes, texts, strict=True)):
             outer = index + across >= len(axes) if name == "x" else index % across == 0
-            if outer or len(set(texts)) > 1:
+            if outer or len(set(texts)) > 1 or len(ranges) > 1:
                 wide = look.wrapped(text, room if name == "x" else max(room, 1.5), look.LABEL)
                 one.set(**{f"{name}label": wide})
 
@@ -207,27 +204,29 @@ def fill(axes: Axes, panel: Panel, scale: Scale) -> ContourSet:
     if scale.lines.size:
         supported = surface.supported(scale.lines)
         complete = np.ma.count(supported) == np.ma.count(surface.values)
-        if not complete:
-            axes.plot([], [], color=look.BLACK, lw=0.7, label="contours only where certain")
         contours = axes.contour(*grid, supported, scale.lines, **scale.contours())
+        some = any(len(path) for path in contours.get_paths())
+        label = "contours only where certain" if some else "no contour is certain"
+        if not complete:
+            axes.plot([], [], color=look.BLACK, lw=0.7 * some, label=label)
         contours.set_gid("contours")
         number_contours(axes, contours, filled, scale)
     axes.set(ylim=amplitude[[0, -1]], xlim=x[[0, -1]], gid="map")
+    right, top = look.edges(x, panel.across == "velocity"), look.edges(amplitude, False)
     if panel.across == "velocity":
         look.logarithmic(axes)
     else:
-        _rest(axes, shown, scale)
+        _rest(axes, shown, scale, right, top)
     look.ticks_outside(axes)
     known = np.isfinite(values)
     row, column = np.nonzero(known)
-    if panel.points is not None:
+    if panel.variable == "mu_macro_error":
         axes.plot(*columns(panel.points, "velocity", "amplitude"), gid="points", **POINTS)
     elif min(values.shape) < FEW or not (complete and known.all()):
         axes.plot(x[column], amplitude[row], gid="points", **POINTS)
     bare = known & maximum_filter(~known, 3, mode="nearest")
     row, column = np.nonzero(bare)
     axes.scatter(x[column], amplitude[row], c=values[bare].clip(*ends), **colours, **BARE)
-    right, top = look.edges(x, panel.across == "velocity"), look.edges(amplitude, False)
     bad = shown["converged"].values == 0
     look.cells(axes, right, top, bad, gid="unconverged", zorder=4, **HATCHED)
     return filled
@@ -260,21 +259,26 @@ def number_contours(axes: Axes, contours: ContourSet, filled: ContourSet, scale:
                 places.append(line[room.argmax()])
                 (x, y), level = axes.transData.inverted().transform(places[-1]), scale.lines[k]
                 ink: look.Ink = {"color": contours.get_edgecolor()[k], "ha": "center"}
-                ink |= {"va": "center", "fontsize": look.SMALLEST}
+                ink |= {"va": "center", "fontsize": look.SMALLEST, "zorder": 5}
                 behind = {"facecolor": filled.to_rgba(level), "edgecolor": "none", "pad": 0.4}
                 axes.text(x, y, scale.text(level), bbox=behind, **ink)
 
     look.after_layout(axes.get_figure(root=True), write)
 
 
-def _rest(axes: Axes, shown: xr.Dataset, scale: Scale) -> None:
+def _rest(axes: Axes, shown: xr.Dataset, scale: Scale, x: np.ndarray, y: np.ndarray) -> None:
     """Draw the region in which a contact under a force comes to rest, and the velocities of a rigid
-    contact."""
+    contact. Without a closed form, the region consists of cells.
+
+    x, y: edges of the cells around the points.
+    """
     if "mu_static" in shown:
         line = limit(shown, "mu_static")
         across = line[line.dims[0]].values
         axes.plot(line.values, across, zorder=4, **THRESHOLD)
         axes.fill_betweenx(across, 0.0, line.values, zorder=3, **REST)
+    else:
+        look.cells(axes, x, y, shown["rest"].values, zorder=1.5, **REST)
     if "velocity_large_amplitude" in shown:
         force, amplitude, rigid = columns(shown, "force", "amplitude", "velocity_large_amplitude")
         color, ls = look.LIMITS["mu_large_amplitude"]
@@ -294,8 +298,6 @@ black."""
 BEYOND = 0.01
 """Because of the errors of the points, friction may leave the range from 0 to 1 by at most this
 distance."""
-DIVERGING = "PuOr"
-"""Colour map for differences. This map is pale in the middle."""
 MOST_BANDS = 12
 """Maximum number of bands on each side of 0 in a map of differences."""
 FEW_BANDS = 6
@@ -362,7 +364,7 @@ def friction(datasets: Sequence[xr.Dataset]) -> Scale:
     fills, values = (
         np.linspace(low, high, count) for count in (round(20 * (high - low)) + 1, 1024)
     )
-    ticks = fills[np.isclose(np.round(5 * fills), 5 * fills)]
+    ticks = np.round(fills[np.isclose(np.round(5 * fills), 5 * fills)], 1) + 0.0  # no "-0.0"
     lines = np.linspace(0.1, 0.9, 9 if len(datasets) == 1 else 5)
     lines = np.array([*-lines[::-1], 0.0, *lines]) if low else lines
     above, below = (matplotlib.colormaps[name] for name in (look.COLOURMAP, BELOW))
@@ -392,7 +394,7 @@ def error(datasets: Sequence[xr.Dataset]) -> Scale:
     most = [float(dataset["mu_macro_error"].where(np.isfinite).max()) for dataset in datasets]
     most += [dataset.attrs["error"] for dataset in datasets]
     fills = np.linspace(0.0, np.nanmax(most), 101)
-    return Scale("error estimate\n(dimensionless)", fills, fills[::25], "{:.2g}".format)
+    return Scale("error estimate\n(dimensionless)", fills, fills[::25], "{:.3g}".format)
 
 
 def drift(datasets: Sequence[xr.Dataset]) -> Scale:

@@ -54,9 +54,9 @@ LINES = tuple(zip(COLOURS, "os^DvPX*", STYLES, strict=True))
 
 def line(index: int) -> tuple[str, str, Any]:
     """Return the colour, marker and style of a line. The first 64 lines differ in colour or
-    marker."""
-    color, marker, ls = LINES[index % len(LINES)]
-    return color, LINES[(index + index // len(LINES)) % len(LINES)][1], ls
+    marker, and lines of the same colour in style."""
+    _, marker, ls = LINES[(index + index // len(LINES)) % len(LINES)]
+    return COLOURS[index % len(LINES)], marker, ls
 
 
 LIMITS: dict[str, tuple[str, Any]] = {
@@ -126,19 +126,22 @@ def new_figure(width: float, height: float) -> Figure:
 
 
 def quantity(dataset: xr.Dataset, dim: str) -> Quantity:
-    """Return the description of an axis of a dataset. Only drives and the axes of the paper have a
-    symbol."""
-    known = TABLE.get(dim, {}).get(dataset.attrs.get("motion", "")) or DRIVES.get(dim)
+    """Return the description of an axis of a dataset. Only drives, Poisson's ratio and the axes of
+    the paper have a symbol."""
     name = "forward velocity" if dim == "velocity" else dim
     formula = dataset[dim].attrs.get("formula", "") if dim in dataset else ""
-    return known or Quantity(name, "", formula)
+    return _known(dataset.attrs.get("motion", ""), dim) or Quantity(name, "", formula)
 
 
 def symbol(motion: str, dim: str) -> str:
     """Return the LaTeX symbol of an axis for a motion, or else the name of the axis."""
-    known = TABLE.get(dim, {}).get(motion) or DRIVES.get(dim)
-    name = rf"\mathrm{{{dim}}}" if dim != "poisson" else r"\nu"
-    return known.latex if known else name
+    known = _known(motion, dim)
+    return known.latex if known else rf"\mathrm{{{dim}}}"
+
+
+def _known(motion: str, dim: str) -> Quantity | None:
+    own = TABLE.get(dim, {})
+    return own.get(motion) or own.get("") or DRIVES.get(dim)
 
 
 def axis(one: Quantity, short: bool = False) -> str:
@@ -148,7 +151,7 @@ def axis(one: Quantity, short: bool = False) -> str:
     """
     ratio = mathtext(one.unit)
     if not one.latex or (short and ratio):
-        return f"{one.text}  {ratio or '(dimensionless)'}"
+        return f"{one.text}  {ratio if '/' in ratio else f'{ratio} (dimensionless)'.strip()}"
     return f"{one.text}  ${one.latex}{' = ' + ratio[1:-1] if ratio else ''}$"
 
 
@@ -290,6 +293,8 @@ def _in_words(match: re.Match[str]) -> str:
 VISIBLE_ERROR = 0.01
 """Smallest error estimate that is drawn, as a fraction of the largest value. Smaller error bars
 would be hidden by the markers."""
+HOLLOW = "hollow: not converged"
+"""Entry of the legend for the markers of all lines."""
 PIXELS = 401
 """Number of pixels along each side of a contact's image."""
 
@@ -436,24 +441,39 @@ def closed_form(axes: Axes, x: Any, y: Any, name: str, label: str) -> None:
     axes.plot(x, y, color=color, ls=ls, label=label, gid=name)
 
 
-def computed(axes: Axes, x: np.ndarray, *points: np.ndarray, label: str = "", **ink: Any) -> None:
+def computed(axes: Axes, x: np.ndarray, *points: np.ndarray, of: str = "y", **ink: Any) -> None:
     """Draw computed points with error bars. Points that did not converge are hollow.
 
-    points: values, error estimates, and flags that are nonzero for converged points.
+    points: values, error estimates, and flags that are nonzero for converged points. of: direction
+    of the error bars, "x" or "y".
     """
     values, errors, converged = points[0], points[1], points[2] != 0
     errors = np.where(np.isfinite(errors), errors, np.nan)
     marks: Ink = {"color": BLACK, "ls": "none", "marker": "o", "ms": 3.2, "mew": 0.7}
     marks |= {"zorder": 5, **ink}
     bars: Ink = {"fmt": "none", "ecolor": marks["color"], "elinewidth": 0.7, "capsize": 1.8}
-    if np.nanmax(errors, initial=0.0) >= VISIBLE_ERROR * np.nanmax(np.abs(values), initial=1e-300):
-        axes.errorbar(x, values, yerr=errors, **bars).lines[2][0].set_gid("error")
-    axes.plot(x[converged], values[converged], gid="computed", label=label, **marks)
+    bars[f"{of}err"] = errors
+    size = x if of == "x" else np.nanmax(np.abs(values), initial=1e-300)
+    if np.nanmax(errors / size, initial=0.0) >= VISIBLE_ERROR:
+        axes.errorbar(x, values, **bars).lines[2][0].set_gid("error")
+    axes.plot(x[converged], values[converged], gid="computed", **marks)
     if not converged.all():
         # A label that begins with "_" is not in the legend.
-        known = "not converged" in axes.get_legend_handles_labels()[1]
-        marks |= {"mfc": "white", "ls": "none", "label": "_" if known else "not converged"}
+        known = HOLLOW in axes.get_legend_handles_labels()[1]
+        marks |= {"mfc": "white", "ls": "none", "label": "_" if known else HOLLOW}
         axes.plot(x[~converged], values[~converged], gid="unconverged", **marks)
+
+
+def certified(axes: Axes, x: np.ndarray, *points: np.ndarray, **ink: Any) -> None:
+    """Draw a line of a certified map, with a band for the error estimate.
+
+    points: values, error estimates, and flags.
+    """
+    values, error, _ = points
+    axes.plot(x, values, gid="certified", **{name: ink[name] for name in ("color", "ls", "label")})
+    error = np.where(np.isfinite(error), error, np.nan)
+    label = "_" if axes.collections else "band: error estimate"
+    axes.fill_between(x, values - error, values + error, color=ink["color"], alpha=0.3, label=label)
 
 
 def after_layout(figure: Any, finish: Callable[[], None]) -> None:
