@@ -30,8 +30,8 @@ dissipation."""
 
 
 def no_vibration(problem: Problem) -> Exact | None:
-    """Return the closed form for amplitude 0, which applies to any model; None at other
-    amplitudes."""
+    """Return the closed form for amplitude 0.  It applies to any model.  At other amplitudes, the
+    result is None."""
     if not problem.motion.periodic or problem.amplitude != 0.0:
         return None
     work = _work(problem)

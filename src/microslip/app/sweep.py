@@ -48,12 +48,12 @@ def main(arguments: list[str]) -> int:
     The workflow runs in the current folder and writes datasets to results/, and figures to
     results/figures/.  Existing results are not computed again.  CONFIGURATION is the name of a file
     in the folder config of the current folder or of the package; the default is config/config.yaml.
-    A TARGET is a dataset or a figure of the configuration, such as bore, or a file, such as
-    results/bore.nc.  Without a TARGET, all datasets and figures are made.  All other options are
-    passed to Snakemake (see snakemake --help); default options are in profiles/default.  The exit
-    code is 2 for bad input, and otherwise the exit code of Snakemake. Examples: microslip sweep
-    --cores 2; microslip sweep extended --dry-run; microslip sweep --configfile mine.yaml --config
-    points_per_job=10.
+    A TARGET is a dataset or a figure of the configuration (for example bore), or a file (for
+    example results/bore.nc).  Without a TARGET, all datasets and figures are made.  All other
+    options are passed to Snakemake (see snakemake --help); default options are in profiles/default.
+    The exit code is 2 for bad input, and otherwise the exit code of Snakemake. Examples: microslip
+    sweep --cores 2; microslip sweep extended --dry-run; microslip sweep --configfile mine.yaml
+    --config points_per_job=10.
     """
     if {"-h", "--help"} & set(arguments):
         usage = "microslip sweep [CONFIGURATION | TARGET ...] [--dry-run] [options of Snakemake]"

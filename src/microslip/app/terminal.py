@@ -82,9 +82,9 @@ def _code_of(command: Callable[[], int]) -> int:
 def _open_closed_streams() -> None:
     """Open the standard streams that are closed, and buffer standard output until the end.
 
-    If a stream stays closed, a file that is opened later gets the number of the stream, and the
-    output of the stream is written to this file.  With the buffer, standard output is either
-    complete or missing, and only `_written` has to handle a full device.
+    If a stream stays closed, a file that is opened later gets the number of the stream.  The output
+    of the stream is then written to this file.  With the buffer, standard output is either complete
+    or missing, and only `_written` has to handle a full device.
     """
     missing = sys.stdout is None
     while (number := os.open(os.devnull, os.O_RDWR)) < 3:

@@ -70,8 +70,8 @@ class RigidContact(contact.Contact):
         return np.zeros_like(state)
 
     def mirrored(self, state: np.ndarray) -> np.ndarray:
-        """Return the mirror image of a state under lateral -> -lateral, with lateral tractions
-        negated."""
+        """Return the mirror image of a state under lateral -> -lateral.  The reflection negates
+        lateral tractions."""
         return state[:, ::-1, :] * contact.MIRROR
 
     def march(

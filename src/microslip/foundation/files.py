@@ -131,8 +131,8 @@ def clear_abandoned(folder: Path) -> list[Path]:
 def _advice(verb: str, path: Path) -> Iterator[None]:
     """Context manager that converts errors of the operating system to CacheError.
 
-    HDF5 reports a full disk as "Permission denied", "HDF error" or RuntimeError.  A second attempt
-    to write to the folder gives the true cause.
+    If a disk is full, HDF5 reports "Permission denied" or "HDF error", or raises RuntimeError.  A
+    second attempt to write to the folder gives the true cause.
     """
     try:
         yield

@@ -202,7 +202,8 @@ def remember(names: Iterable[str]) -> None:
 
 
 def problem_in_code(error: BaseException) -> str:
-    """Describe an error in one line if its traceback passes a user's Python file; "" otherwise."""
+    """Describe an error in one line if its traceback passes a user's Python file.  Otherwise,
+    return ""."""
     for path in PLACES.values():
         if path.suffix == ".py" and places_in(error, path):
             return f"{path}: {described(error, path)}"

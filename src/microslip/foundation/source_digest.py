@@ -101,8 +101,8 @@ class Sources:
         return self.closure(kernels, is_physics)
 
     def builder(self, *files: str) -> set[str]:
-        """Return the paths of the modules that make a product, without those of the physics and the
-        foundation.
+        """Return the paths of the modules that make a product.  The modules of the physics and of
+        the foundation are left out.
 
         A table that has the name of a module, such as variables.csv, belongs to the module.
 
@@ -228,13 +228,15 @@ def of_builder(*files: str) -> str:
 
 
 def workflow_file(name: str) -> Path:
-    """Return the path of a file of the workflow: in the folder `bundle` of an installed package, or
-    else at the top of a source tree.  The file may be missing at this path."""
+    """Return the path of a file of the workflow.  An installed package stores this file in the
+    folder `bundle`, and a source tree stores it at the top.  The file may be missing at this
+    path."""
     bundled = PACKAGE / "bundle" / name
     return bundled if bundled.is_file() else PACKAGE.parents[1] / name
 
 
 def of_script(name: str) -> str:
-    """Return the digest of a script of the workflow; empty if the script does not exist."""
+    """Return the digest of a script of the workflow.  If the script does not exist, the digest is
+    empty."""
     path = workflow_file(name)
     return parse(path.read_bytes(), messages=True)[0] if path.is_file() else ""

@@ -85,10 +85,10 @@ class Motion(spec.Named):
     """A prescribed motion.
 
     A subclass declares its waves, from which all symmetries are derived.  The fields of the class
-    are the parameters that can be given after the motion's name in a string such as
-    "elliptic:forward=0.5,phase=30"; `str` returns this string.  The motion's name is derived from
-    the class name: ContinuousBore has the name "continuous-bore".  A motion that is not a sum of
-    waves overrides `displacement` and the properties of the symmetries that it has.
+    are the parameters in a string such as "elliptic:forward=0.5,phase=30", where they follow the
+    name of the motion.  `str` returns this string.  The motion's name is derived from the class
+    name: ContinuousBore has the name "continuous-bore".  A motion that is not a sum of waves
+    overrides `displacement` and the properties of the symmetries that it has.
 
     Attributes
     ----------

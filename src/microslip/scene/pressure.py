@@ -41,7 +41,8 @@ from microslip.scene.grid import (
 )
 
 Units = tuple[float | None, float | None]
-"""Unit of the coordinates in m, and unit of the pressure in Pa; None for dimensionless values."""
+"""Unit of the coordinates in m, and unit of the pressure in Pa.  Both units are None for
+dimensionless values."""
 NO_UNITS: Units = None, None
 
 
@@ -49,8 +50,8 @@ NO_UNITS: Units = None, None
 class Pressure(spec.Named):
     """A distribution of the load over the contact, in working units (see the module pressure).
 
-    Each pressure is a subclass.  The fields of the subclass are the parameters that can be given
-    after the name in a string such as "power:exponent=1"; `str` returns this string.
+    Each pressure is a subclass.  The fields of the subclass are the parameters in a string such as
+    "power:exponent=1", where they follow the name.  `str` returns this string.
 
     Attributes
     ----------
@@ -354,7 +355,8 @@ class Measured(spec.NamedByText, Pressure):
 
     @property
     def load_N(self) -> float | None:
-        """Integral of the pressure over the contact, in N; None if the values have no units."""
+        """Integral of the pressure over the contact, in N. The integral is None if the values have
+        no units."""
         metre, pascal = self.units
         if metre is None or pascal is None:
             return None

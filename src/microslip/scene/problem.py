@@ -192,7 +192,8 @@ class Problem:
 
     @property
     def force(self) -> float | None:
-        """Prescribed force; None if the velocity is prescribed, directly or through a spring."""
+        """Prescribed force.  It is None if the velocity is prescribed directly, or if a spring
+        pulls the contact."""
         return None if self.drive is None else self.drive.force
 
     @property

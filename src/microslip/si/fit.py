@@ -560,8 +560,9 @@ class Profile:
         return max(low, default=-math.inf), min(high, default=math.inf)
 
     def second(self, allowed: float) -> float | None:
-        """Return the value of x at a second minimum whose sum of squares is at most `allowed`, or
-        None.  At this minimum, u_lim differs from its best value by more than a factor of 2."""
+        """Return the value of x at a second minimum of the sum of squares.  Return None unless the
+        sum at this minimum is at most `allowed`.  At this minimum, u_lim differs from its best
+        value by more than a factor of 2."""
         sums = np.pad(self.squares(self.x), 1, constant_values=np.inf)
         lowest = np.flatnonzero(sums[1:-1] <= np.minimum(np.minimum(sums[:-2], sums[2:]), allowed))
         far = [k for k in lowest if abs(self.x[k] - self.best) > math.log(2.0)]

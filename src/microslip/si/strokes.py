@@ -74,8 +74,8 @@ class Stroke:
 
 
 def scales(contact: Any, columns: dict[str, np.ndarray]) -> dict[str, float]:
-    """Return the unit of each column in `microslip.response` and `microslip.Sampled`, as a value in
-    SI units."""
+    """Return the unit of each column, converted to SI.  The units are those of `microslip.response`
+    and `microslip.Sampled`."""
     if "indentation" in columns and not math.isfinite(contact.indentation):
         allowed = "allowed is a load: the indentation under this pressure is not known"
         raise InputError("indentation", None, allowed)

@@ -1,4 +1,5 @@
-"""Predict many contacts, which form a table, a curve or a grid, and return a dataset or text."""
+"""Predict many contacts, and return a dataset or text.  The contacts form a table, a curve or a
+grid."""
 
 from __future__ import annotations
 

@@ -251,13 +251,14 @@ def measures(contact: Contact, speed: float) -> dict[str, float | None]:
 def _pull_off(contact: Contact) -> tuple[float | None, float | None]:
     """Return Tabor's number of a paraboloid, and the pull-off force in N.  Unknown values are None.
 
-    A paraboloid pulls off at the same force as a sphere whose radius is the geometric mean of its
-    two radii of relative curvature.  This is exact in the DMT theory (B. V. Derjaguin, Kolloid-Z.
-    69, 1934).  In the JKR theory it is an upper bound, which slender ellipses do not reach (K. L.
-    Johnson and J. A. Greenwood, J. Phys. D 38, 2005).  The pull-off force of another axisymmetric
-    indenter is the largest value of sqrt(8 pi E* w c^3) - F(c), where F(c) is the load without
-    adhesion at the contact radius c (D. Maugis, Contact, Adhesion and Rupture of Elastic Solids,
-    4.2).  For a flat punch, this is Kendall's force (J. Phys. D 4, 1971).
+    The pull-off force of a paraboloid is computed for an equivalent sphere.  The radius of this
+    sphere is the geometric mean of the paraboloid's two radii of relative curvature.  This is exact
+    in the DMT theory (B. V. Derjaguin, Kolloid-Z. 69, 1934).  In the JKR theory it is an upper
+    bound, which slender ellipses do not reach (K. L. Johnson and J. A. Greenwood, J. Phys. D 38,
+    2005).  The pull-off force of another axisymmetric indenter is the largest value of sqrt(8 pi E*
+    w c^3) - F(c), where F(c) is the load without adhesion at the contact radius c (D. Maugis,
+    Contact, Adhesion and Rupture of Elastic Solids, 4.2).  For a flat punch, this is Kendall's
+    force (J. Phys. D 4, 1971).
     """
     shape, crack = contact.shape, 8.0 * math.pi * contact.E_star * ADHESION
     if shape.hertzian:
