@@ -5,13 +5,13 @@ import os
 import signal
 import subprocess
 import sys
-import time
 from pathlib import Path
 
 import pytest
 from bad_input_tables.bad_configurations import FILES, GOOD, changed
 from stubs import in_process
 from stubs.in_process import ENVIRONMENT
+from stubs.workflow_project import wait_until
 
 ROOT = Path(__file__).parents[2]
 SWEEP = [sys.executable, "-m", "microslip", "sweep"]
@@ -144,21 +144,13 @@ def test_a_terminal_that_is_closed_ends_all_processes_and_leaves_no_lock(command
         start_new_session=True,
     ) as process:
         try:
-            wait_until(lambda: session(process.pid, b"solve.py"), "no job has started")
+            wait_until(lambda: session(process.pid, b"solve.py"))
             tell = os.killpg if command is SNAKEMAKE else os.kill
             tell(process.pid, signal.SIGHUP)
-            wait_until(lambda: process.poll() is not None, "it goes on")
-            wait_until(lambda: not session(process.pid), "a child goes on")
+            wait_until(lambda: process.poll() is not None)
+            wait_until(lambda: not session(process.pid))
         finally:
             with contextlib.suppress(ProcessLookupError):
                 os.killpg(process.pid, signal.SIGKILL)
     assert process.returncode == 1
     assert not list(tmp_path.glob(".snakemake/locks/*"))
-
-
-def wait_until(holds, otherwise):
-    for _ in range(1000):
-        if holds():
-            return
-        time.sleep(0.2)
-    pytest.fail(otherwise)

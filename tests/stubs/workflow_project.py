@@ -6,8 +6,10 @@ import re
 import shutil
 import subprocess
 import sys
+import time
 from pathlib import Path
 
+import pytest
 import yaml
 
 from microslip.foundation import compiled
@@ -64,6 +66,15 @@ def snakemake(arguments, folder, environment=ENVIRONMENT):
         text=True,
         timeout=900,
     )
+
+
+def wait_until(holds):
+    """Return once holds() is true; the test fails after some minutes."""
+    for _ in range(1000):
+        if holds():
+            return
+        time.sleep(0.2)
+    pytest.fail("it never happens")
 
 
 def jobs_in(message):

@@ -19,10 +19,12 @@ FOLDER = None
 # beginning of its message. Tests of all keys, by the same reader but without Snakemake, are in
 # tests/config/test_bad_input.py.
 IN_RESULTS = "given.yaml: results: "
+OWN = changed({"sweeps.transverse.motion": "own.py"})
 KEY = "sweeps.transverse.velocities"
 CASES = {
     "a misspelt key": (changed({KEY: "[1]"}), {}, "-n", f"given.yaml: {KEY}: "),
     "overridden": (GOOD, {}, "-j1 --config points_per_job=0", "given.yaml: points_per_job: 0 is "),
+    "an own motion": (OWN, {"own.py": b"1 / 0"}, "-n", "given.yaml: motion = 'own.py:sha256="),
     "tabs": (None, {DEFAULT: FILES["tabs"][0]}, "-n", f"{DEFAULT}: not valid YAML: "),
     "no default": (None, {}, "-j1", f"{DEFAULT}: cannot be read: No such file"),
     "a file": (GOOD, {"results": b"kept"}, "-n", IN_RESULTS + "results is not a folder; allowed: "),

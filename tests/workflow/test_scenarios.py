@@ -9,7 +9,7 @@ import time
 
 import pytest
 import xarray as xr
-from stubs.workflow_project import ENVIRONMENT, RUN, SNAKEMAKE, Project, jobs_in
+from stubs.workflow_project import ENVIRONMENT, RUN, SNAKEMAKE, Project, jobs_in, wait_until
 
 pytestmark = pytest.mark.long
 
@@ -107,14 +107,6 @@ def started(project, *arguments):
         stderr=subprocess.DEVNULL,
         start_new_session=True,
     )
-
-
-def wait_until(holds):
-    for _ in range(1000):
-        if holds():
-            return
-        time.sleep(0.1)
-    pytest.fail("it never happens")
 
 
 def is_alive(session):
