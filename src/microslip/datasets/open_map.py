@@ -18,7 +18,6 @@ import xarray as xr
 
 from microslip.datasets.netcdf import group_names, refuse_oversized
 from microslip.foundation.errors import CacheError, InputError
-from microslip.foundation.files import refuse_no_folder
 from microslip.foundation.spec import near_miss
 from microslip.sweeps.content import is_whole
 
@@ -60,18 +59,19 @@ def open_map(
     Raises
     ------
     InputError
-        If the name or the group is unknown.
+        If the name or the group is unknown, or `results` is not the name of a folder.
     CacheError
         If the file is missing, is damaged or is not the dataset of a sweep.  The message is one
         line.
     """
     if not (isinstance(name, str | os.PathLike) and isinstance(os.fspath(name), str)):
         raise InputError("name", name, "allowed is the name of a sweep, or a path")
-    if not isinstance(results, str | os.PathLike):
-        raise InputError("results", results, "is not allowed; allowed: the name of a folder")
-    refuse_no_folder(results)
-    if os.path.exists(results) and not os.path.isdir(results):
-        raise InputError("results", results, "is not a folder; allowed: the name of a folder")
+    folder = os.fspath(results) if isinstance(results, str | os.PathLike) else ""
+    is_name = isinstance(folder, str) and folder.strip() and "\0" not in folder
+    # only a shell replaces ~ by the home folder
+    if not is_name or Path(folder).parts[:1] == ("~",) or os.path.isfile(folder):
+        allowed = "allowed is the name of a folder, with that of the home folder in place of ~"
+        raise InputError("results", results, allowed)
     path = Path(name)
     try:
         if path.suffix != ".nc":

@@ -7,7 +7,7 @@ from collections.abc import Iterable, Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
 
-from microslip.foundation.errors import NO_WRITING, CacheError, shown
+from microslip.foundation.errors import NO_WRITING, CacheError
 
 MOST_BYTES = 100_000_000
 """Largest size of a file that is read, in bytes."""
@@ -27,18 +27,6 @@ def content_of(path: str | os.PathLike, most: int = MOST_BYTES) -> bytes:
     if len(content) > most:
         raise ValueError(f"larger than {most / 1e6:g} MB; allowed: at most that")
     return content
-
-
-def refuse_no_folder(folder: object) -> None:
-    """Raise CacheError if the name of a folder is empty or is not a string.  A name that begins
-    with ~ is also refused, because only a shell replaces ~ by the home folder."""
-    name = os.fspath(folder) if isinstance(folder, str | os.PathLike) else ""
-    problem = "allowed: the name of a folder"
-    if isinstance(name, str) and Path(name).parts[:1] == ("~",):
-        problem = "allowed: the name of a folder, with that of the home folder in place of ~"
-    elif isinstance(name, str) and name.strip() and "\0" not in name:
-        return
-    raise CacheError(f"{shown(folder)} is not allowed; {problem}")
 
 
 def refuse_unusable(folders: Iterable[str | Path], files: Iterable[str | Path]) -> None:
