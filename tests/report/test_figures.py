@@ -159,27 +159,27 @@ def test_each_of_many_lines_has_its_own_colour_and_marker():
 SPEEDS = [{"velocity": speed} for speed in (0, 1, [0, 1], [0.1, 1], [0, 0.1, 1])]
 FORCES = [{"force": force} for force in (0.6, [0.1, 0.9])]
 RATIOS, MAP = {"poisson": [0, 0.3]}, {"error": 0.05}
-OTHERS = [{}, RATIOS, MAP, RATIOS | MAP, {"stiffness": [1, 2]}]
+SHAPES = [
+    *product(SPEEDS + FORCES, (1, [0.5, 1]), ({}, RATIOS, MAP, RATIOS | MAP, {"mass": [1, 2]}))
+]
 
 
 @pytest.mark.parametrize("kind", ["map", "curves", "explorer"])
 def test_a_figure_of_any_sweep_is_drawn_or_refused_when_the_configuration_is_read(kind):
-    full, drawn = {"motion": "bore", "velocity": [0.1, 1], "amplitude": [0.5, 1]}, 0
-    sweeps = ["map", "full"] if kind == "explorer" else ["map"]
-    figures = {"figure": {"kind": kind, "sweep": sweeps}}
-    for speed, amplitude, other in product(SPEEDS + FORCES, (1, [0.5, 1]), OTHERS):
+    full = {"motion": "bore", "velocity": [0.1, 1], "amplitude": [0.5, 1]}
+    figures, drawn = {"figure": {"kind": kind, "sweep": ["map", "full"]}}, 0
+    for speed, amplitude, other in SHAPES:
         one = {"motion": "bore", "amplitude": amplitude} | speed | other
         try:
             read = from_mapping({"sweeps": {"map": one, "full": full}, "figures": figures})
         except ConfigError as error:
             assert re.search(r"sweeps\.map|figures\.figure\.sweep: map .*required", str(error))
             continue
-        dataset = stub.built(read)
+        dataset, drawn = stub.built(read), drawn + 1
         if kind != "explorer":
             draw(kind, dataset)
-        elif not read.sweeps["map"].is_certified:
+        elif "cell" not in dataset.dims:
             page.build({"map": dataset}, {})
-        drawn += 1
     assert drawn >= 10
 
 

@@ -71,9 +71,9 @@ def lines(
     order = sorted(sizes, key=lambda dim: RANKS.get(dim, 0))
     along = along or ("force" if "force" in sizes else max(order, key=moving(dataset).sizes.get))
     others = sorted((dim for dim in sizes if dim != along), key=lambda dim: dim == "poisson")
-    places = product(*(range(sizes[dim]) for dim in others))
-    parts = [dataset.isel(dict(zip(others, place, strict=True))) for place in places]
-    return along, [({dim: float(part[dim]) for dim in others}, part) for part in parts]
+    places = product(*(dataset[dim].values.tolist() for dim in others))
+    labels = [dict(zip(others, place, strict=True)) for place in places]
+    return along, [(place, dataset.sel(place)) for place in labels]
 
 
 def resampled(dataset: xr.Dataset, fine: int, coarse: int = 0, **others: Any) -> xr.Dataset:

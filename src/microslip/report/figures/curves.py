@@ -101,12 +101,10 @@ def _lines(dataset: xr.Dataset, titled: bool) -> Iterator[Line]:
     variable = "velocity" if over_force else "mu_macro"
     title, still = look.literal(dataset.attrs.get("title", "")) if titled else "", None
     dim, parts = selection.lines(dataset, variable)
-    if dim in PLANE and "velocity" in dataset[variable].dims:
-        if dim == "amplitude" and 0.0 in dataset["velocity"]:
+    if dim in PLANE:
+        if dim == "amplitude" and 0.0 in dataset.indexes.get("velocity", ()):
             still = dataset.sel(velocity=0.0)
-        dataset = moving(dataset)
-        dataset = dataset.squeeze("velocity") if dataset.sizes["velocity"] == 1 else dataset
-        _, parts = selection.lines(dataset, variable, dim)
+        _, parts = selection.lines(moving(dataset).squeeze(), variable, dim)
     for at, points in parts:
         where = look.conditions(dataset.attrs.get("motion", ""), at)
         certified = "certified map" if "error" in dataset.attrs else "computed"
@@ -146,6 +144,8 @@ def _panel(axes: Axes, lines: Sequence[Line], alone: bool, joined: bool = True) 
     without a limit.
     """
     limits = [one.limit and (*map(tuple, one.limit[:2]), one.limit[2]) for one in lines]
+    ratios = {str(one.points["poisson"].values) for one in lines}
+    group = len(ratios) if len(ratios) > 1 else len(lines)
     for k, line in enumerate(lines):
         color, marker, ls = look.line(k)
         room = 1.1 if alone else 1.6 if len(lines) <= MANY else 2.4
@@ -154,7 +154,7 @@ def _panel(axes: Axes, lines: Sequence[Line], alone: bool, joined: bool = True) 
         # Later markers are smaller and in front, so that neighbouring lines at one place can be
         # seen.
         overlaps = line.limit is None or len(lines) > MOST_ABOVE
-        size = 3.4 + 1.5 * overlaps * ((len(lines) - 1 - k) % 4)
+        size = 3.4 + overlaps * min(1.5, 3.0 / group) * ((len(lines) - 1 - k) % group)
         ink: look.Ink = {"color": color, "marker": marker, "ms": size}
         joining: look.Ink = {"lw": JOINING, "ls": ls if joined else "none", "label": label}
         if line.limit is not None:

@@ -17,7 +17,7 @@ import numpy as np
 import xarray as xr
 from matplotlib.artist import Artist
 from matplotlib.axes import Axes
-from matplotlib.colors import Colormap, ListedColormap, Normalize, to_rgb
+from matplotlib.colors import Colormap, ListedColormap, Normalize
 from matplotlib.contour import ContourSet
 from matplotlib.figure import Figure
 from matplotlib.patches import Patch
@@ -205,9 +205,9 @@ def fill(axes: Axes, panel: Panel, scale: Scale) -> ContourSet:
         supported = surface.supported(scale.lines)
         complete = np.ma.count(supported) == np.ma.count(surface.values)
         contours = axes.contour(*grid, supported, scale.lines, **scale.contours())
-        some = any(len(path) for path in contours.get_paths())
-        label = "contours only where certain" if some else "no contour is certain"
         if not complete:
+            some = any(len(path) for path in contours.get_paths())
+            label = "contours only where certain" if some else "no contour is certain"
             axes.plot([], [], color=look.BLACK, lw=0.7 * some, label=label)
         contours.set_gid("contours")
         number_contours(axes, contours, filled, scale)
@@ -342,10 +342,10 @@ class Scale(NamedTuple):
     def contours(self) -> look.Ink:
         """Return the colours and the line styles of the contours. The colours contrast with the
         bands."""
-        weights = (0.2126, 0.7152, 0.0722)  # luminance by Rec. 709
-        shades = [np.dot(weights, to_rgb(self.colours(self.norm(level)))) for level in self.lines]
+        weights = (0.2126, 0.7152, 0.0722, 0.0)  # luminance by Rec. 709
+        shades = self.colours(self.norm(self.lines)) @ weights
         return {
-            "colors": ["white" if luminance < DARK else "black" for luminance in shades],
+            "colors": [*np.where(shades < DARK, "white", "black")],
             "linestyles": ["dashed" if self.signed and one < 0 else "solid" for one in self.lines],
             "linewidths": [1.1 if self.signed and one == 0 else 0.7 for one in self.lines],
         }
