@@ -11,7 +11,7 @@ import pytest
 from bad_input_tables.bad_configurations import FILES, GOOD, changed
 from stubs import in_process
 from stubs.in_process import ENVIRONMENT
-from stubs.workflow_project import wait_until
+from stubs.workflow_project import is_alive, started, wait_until
 
 ROOT = Path(__file__).parents[2]
 SWEEP = [sys.executable, "-m", "microslip", "sweep"]
@@ -117,38 +117,18 @@ points_per_job: 2
 """
 
 
-def session(leader, part=b""):
-    """Running processes of a session whose command contains a part, according to /proc."""
-    result = []
-    for stat in Path("/proc").glob("[0-9]*/stat"):
-        with contextlib.suppress(OSError):
-            state, _, _, of = stat.read_text().rpartition(")")[2].split()[:4]
-            command = (stat.parent / "cmdline").read_bytes()
-            if int(of) == leader and state not in "ZX" and part in command:
-                result.append(stat.parent)
-    return result
-
-
 @pytest.mark.long
-@pytest.mark.skipif(not Path("/proc/self/stat").exists(), reason="needs Linux")
 @pytest.mark.parametrize("command", [SWEEP, SNAKEMAKE], ids=["microslip sweep", "snakemake"])
 def test_a_terminal_that_is_closed_ends_all_processes_and_leaves_no_lock(command, tmp_path):
     """A terminal signals the first process of a session, and a shell all of its processes."""
     (tmp_path / "slow.yaml").write_text(SLOW)
-    with subprocess.Popen(
-        [*command, "-c1", "--configfile", "slow.yaml"],
-        cwd=tmp_path,
-        env=ENVIRONMENT,
-        stdout=subprocess.DEVNULL,
-        stderr=subprocess.DEVNULL,
-        start_new_session=True,
-    ) as process:
+    with started(tmp_path, *command, "-c1", "--configfile", "slow.yaml") as process:
         try:
-            wait_until(lambda: session(process.pid, b"solve.py"))
+            wait_until(lambda: [*tmp_path.glob("results/logs/bore/*.log")])
             tell = os.killpg if command is SNAKEMAKE else os.kill
             tell(process.pid, signal.SIGHUP)
             wait_until(lambda: process.poll() is not None)
-            wait_until(lambda: not session(process.pid))
+            wait_until(lambda: not is_alive(process.pid))
         finally:
             with contextlib.suppress(ProcessLookupError):
                 os.killpg(process.pid, signal.SIGKILL)

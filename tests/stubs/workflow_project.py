@@ -68,6 +68,27 @@ def snakemake(arguments, folder, environment=ENVIRONMENT):
     )
 
 
+def started(folder, *command):
+    """Start a command as the leader of a session."""
+    return subprocess.Popen(
+        command,
+        cwd=folder,
+        env=ENVIRONMENT,
+        stdout=subprocess.DEVNULL,
+        stderr=subprocess.DEVNULL,
+        start_new_session=True,
+    )
+
+
+def is_alive(session):
+    """True if a process of the session runs, or may not be looked at."""
+    try:
+        os.killpg(session, 0)
+    except ProcessLookupError:
+        return False
+    return True
+
+
 def wait_until(holds):
     """Return once holds() is true; the test fails after some minutes."""
     for _ in range(1000):
@@ -111,6 +132,9 @@ class Project:
 
     def snakemake(self, *arguments):
         return snakemake(arguments, self.folder)
+
+    def started(self, *arguments):
+        return started(self.folder, SNAKEMAKE, *arguments, *RUN)
 
     def run(self, *targets):
         done = self.snakemake(*targets, *RUN)

@@ -4,12 +4,11 @@ import os
 import random
 import shutil
 import signal
-import subprocess
 import time
 
 import pytest
 import xarray as xr
-from stubs.workflow_project import ENVIRONMENT, RUN, SNAKEMAKE, Project, jobs_in, wait_until
+from stubs.workflow_project import RUN, Project, is_alive, jobs_in, wait_until
 
 pytestmark = pytest.mark.long
 
@@ -97,27 +96,6 @@ def test_a_grown_axis_solves_its_new_points_alone(axis, values, batches, new, pr
     assert len(project.values("velocity")) == 3
 
 
-def started(project, *arguments):
-    """Start a run as the leader of a session."""
-    return subprocess.Popen(
-        [SNAKEMAKE, *arguments, *RUN],
-        cwd=project.folder,
-        env=ENVIRONMENT,
-        stdout=subprocess.DEVNULL,
-        stderr=subprocess.DEVNULL,
-        start_new_session=True,
-    )
-
-
-def is_alive(session):
-    """True if a process of the session runs, or may not be looked at."""
-    try:
-        os.killpg(session, 0)
-    except ProcessLookupError:
-        return False
-    return True
-
-
 @pytest.fixture
 def emptied(project):
     """A project without results."""
@@ -136,7 +114,7 @@ def test_kills_of_all_processes_lose_the_points_in_flight_at_most(finished, empt
     draw = random.Random(1)
     for _ in range(3):
         count = len(emptied.solved())
-        running = started(emptied, DATASET, "--nolock")
+        running = emptied.started(DATASET, "--nolock")
         wait_until(lambda before=count: len(emptied.solved()) > before)
         time.sleep(draw.uniform(0.0, 0.3))
         os.killpg(running.pid, signal.SIGKILL)
@@ -165,7 +143,7 @@ def test_one_run_makes_every_file_after_a_kill_of_snakemake_alone(
     """The jobs of the killed process go on, and end before the next run begins or during it."""
     hold = emptied.folder / "hold"
     hold.touch()
-    running = started(emptied, DATASET, FIGURE)
+    running = emptied.started(DATASET, FIGURE)
     try:
         wait_until(emptied.solved)
         running.kill()

@@ -98,9 +98,7 @@ def _run(arguments: list[str]) -> int:
         signal.signal(signal.SIGINT, interrupt)
     try:
         snakemake(words)
-    except KeyboardInterrupt:  # Snakemake does not catch it during planning
-        pass
-    except SystemExit:  # at an interrupt of its jobs, with the exit code 1
+    except (KeyboardInterrupt, SystemExit):  # an interrupt of planning, or of the jobs
         if not interrupts:
             raise
     if interrupts:
