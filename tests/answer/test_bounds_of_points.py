@@ -30,6 +30,9 @@ def test_the_time_limit_ends_a_point_and_says_so():
     assert not result.converged and result.exhausted == "time"
     assert result.reason.startswith("the time limit of 1e-09 s is over")
     assert microslip.solve("transverse", 0.3, 1.0, time_limit=1e9).converged
+    calls, place = [], ("transverse", 0.5, 0.3)
+    assert not microslip.shakedown(*place, time_limit=1e-9, progress=calls.append).converged
+    assert len(calls) == 1  # the limit is checked inside a run to rest, too
 
 
 @pytest.mark.long

@@ -189,8 +189,7 @@ class PeriodMap:
         self.contact, self.path, self.drift_rate, self.mirror = contact, path, drift_rate, mirror
         self.shape, self.body = (2, *contact.forward_position.shape), body
         self.budget = budget or Budget()
-        scale = np.broadcast_to(contact.weight * contact.compliance, self.shape)
-        self.metric = np.sqrt(scale).ravel()
+        self.metric = np.full(self.shape, np.sqrt(contact.weight * contact.compliance)).ravel()
         if body is not None:
             self._scale_body(body, slope)
             self.metric = np.append(self.metric, np.sqrt(self.weights))

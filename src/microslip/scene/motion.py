@@ -299,6 +299,8 @@ class Motion(spec.Named):
         The drift is proportional to the velocity.  The drift is computed at velocity 1 and scaled,
         because at small velocities the rounding error of the oscillation would exceed the drift.
         """
+        if self._sines and not self.edge_velocity and "forward" not in self.components:
+            return velocity
         fast, still = (self.moved(ENDS, one, amplitude, poisson)[0] for one in (1.0, 0.0))
         return float(np.diff(fast - still)[0]) / (2.0 * np.pi) * velocity
 

@@ -180,12 +180,12 @@ class Problem:
 
     # Symmetries shared by the motion and the pressure
 
-    @cached_property
+    @property
     def half_period_mirror(self) -> bool:
         """Whether the second half of a period is the mirror image of the first half; see Motion."""
         return self.motion.half_period_mirror and self.pressure.mirrored
 
-    @cached_property
+    @property
     def straight(self) -> bool:
         """Whether the oscillation alone follows a straight line; see Motion."""
         return self.motion.straight and not self.follows
@@ -203,12 +203,12 @@ class Problem:
 
     # Kinematics
 
-    @cached_property
+    @property
     def size(self) -> float:
         """Amplitude of the motion, or 0 for a steady motion."""
         return 0.0 if self.amplitude is None else self.amplitude
 
-    @cached_property
+    @property
     def _sign(self) -> float:
         return -1.0 if self.backward else 1.0
 
