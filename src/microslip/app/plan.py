@@ -39,6 +39,10 @@ BUILDERS = {
 MAP_CODE = ("sweeps/map_refinement.py", "sweeps/map_coordinates.py")
 """Modules that choose the points of a certified map."""
 
+MOST_COUNTED = 50_000
+"""Largest number of points that are looked up in stored results to count the new ones.  The records
+of more points would fill the memory."""
+
 
 class Product(NamedTuple):
     """Files that a job makes from batches or datasets.
@@ -219,13 +223,17 @@ class Results:
         is false, these are all other batches."""
         return [path.stem for path, b in self._needed.items() if (b is None) == certified]
 
-    def new_points(self) -> int:
-        """Count the points and runs that jobs will compute.  Certified maps are not counted,
-        because their points depend on the results."""
+    def new_points(self) -> str:
+        """Return the number of points and runs that jobs will compute.  Certified maps are not
+        counted, because their points depend on the results."""
+        blocks = [(path.parent, block) for path, block in self._needed.items() if block]
+        most = sum(len(block.rows) * max(len(block.values), 1) for _, block in blocks)
+        if most > MOST_COUNTED:
+            return f"at most {most}"
         requests: dict[Path, list[dict]] = {}
-        for path, block in self._needed.items():
-            requests.setdefault(path.parent, []).extend(block.requests if block else [])
-        return sum(len(Job(folder / "new").missing(own)) for folder, own in requests.items())
+        for folder, block in blocks:
+            requests.setdefault(folder, []).extend(block.requests)
+        return str(sum(len(Job(folder / "new").missing(own)) for folder, own in requests.items()))
 
     def order_of_batch(self, folder: str, name: str) -> str:
         """Return the JSON text that describes a batch for the job that solves this batch.  For a
