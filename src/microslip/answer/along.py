@@ -387,8 +387,9 @@ def _marched(
 ) -> np.ndarray:
     """Integrate along a path, and return the values at every row as an array of shape (rows, 6).
 
-    The columns are the forward force, the lateral force, the torque, the dissipated energy, a bound
-    on the sum of the residuals since the start, and the stick fraction.
+    The six columns are the forward force, the lateral force, the torque, the dissipated energy, the
+    residual bound, and the stick fraction.  The residual bound limits the sum of all residuals
+    since the start.
     """
     path = problem.motion
     assert isinstance(path, SampledPath)
@@ -446,15 +447,15 @@ def _stick_fraction(contact: Contact, tractions: np.ndarray, bounds: np.ndarray)
 
 
 TOLERANCE = 1e-3
-"""Default largest error due to the number of elements.  It is also the tolerance of the full
+"""Default limit on the error due to the number of elements.  It is also the tolerance of the full
 contact in the comparison."""
 BEYOND_FULL_SLIP = 1.2
-"""In the comparison, the loop reverses at plus and minus this displacement, in u_lim.  At nu = 0.5,
-the force at this displacement is within 2e-4 of full friction."""
+"""In the comparison, the loop reverses when the magnitude of the displacement reaches this value,
+in u_lim.  At nu = 0.5, the force at this displacement is within 2e-4 of full friction."""
 ROWS = 13
-"""Number of rows in the initial loading of the comparison, one for every 0.1 u_lim.  A branch of
-the loop has twice as many intervals as the initial loading.  With 49 rows, the computed difference
-is up to 7 % larger."""
+"""Number of rows in the initial loading of the comparison.  There is one row for every 0.1 u_lim.
+A branch of the loop has twice as many intervals as the initial loading.  With 49 rows, the computed
+difference is up to 7 % larger."""
 
 
 def iwan(
@@ -513,11 +514,11 @@ def iwan(
 
 
 def _poisson_error(pressure: Pressure, poisson: float) -> float:
-    """Return the largest force difference between the full contact and the model that is exact at
-    nu = 0.
+    """Return the largest difference between two forces: the force of the full contact, and the
+    force of the model.
 
-    The path consists of an initial loading, followed by a loop that reaches full slip in each
-    direction.
+    The model is exact at nu = 0.  The path consists of an initial loading, followed by a loop that
+    reaches full slip in each direction.
     """
     rise = np.linspace(0.0, BEYOND_FULL_SLIP, ROWS)
     # Half the displacement since a turning point.

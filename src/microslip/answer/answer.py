@@ -22,7 +22,7 @@ QUANTITIES = {
     "mu_torque": "torque",
     "dissipated_energy": "dissipation",
 }
-"""Names of the estimates of a Result, keyed by the names of their values in JSON and datasets."""
+"""A dict that maps names of values in JSON and datasets to names of the estimates of a Result."""
 ERRORS = {source: f"error_{source}" for source in SOURCES}
 """Names of the error sources in JSON and datasets."""
 EFFORT = {"iterations": "iterations", "work": "work", "updates": "effort", "retried": "retried"}

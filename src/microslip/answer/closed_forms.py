@@ -16,8 +16,9 @@ QUADRATURE = 1e-7
 kinks."""
 WHOLE_ROUNDING = 1e-9
 OF_RECORD = 1e-8
-"""Errors of closed forms with a quadrature.  The first is for a sphere, where the quadrature is
-over the motion only; the second is for other indenters, where it is also over the pressure."""
+"""Errors of closed forms with a quadrature.  The first value is for a sphere, where only the motion
+is integrated numerically.  The second value is for other indenters, where the pressure is
+integrated numerically as well."""
 ROUNDING = 1e-12
 """Error of closed forms that need no quadrature."""
 ON_A_SPRING = ("transverse", "bore")
@@ -25,8 +26,8 @@ ON_A_SPRING = ("transverse", "bore")
 the spring does the work of the mean force, a mass does no work, and a dashpot dissipates energy."""
 
 Exact = dict[str, Estimate]
-"""Estimates by name, as in a Result: friction, and either torque (steady motions) or
-dissipation."""
+"""Estimates by name, as in a Result.  The names are `friction` and either `torque` (for steady
+motions) or `dissipation`."""
 
 
 def no_vibration(problem: Problem) -> Exact | None:
@@ -42,8 +43,8 @@ def closed_form(problem: Problem, tolerance: float) -> Exact | None:
     """Return the estimates of a closed form, or None if no closed form applies.
 
     Closed forms exist in four cases.  The first case is the steady state of a motion without
-    oscillation, where every point slips in the direction of its rigid velocity.  The second case is
-    the limit of vanishing velocity, and the third case is motion along one line at nu = 0.  The
+    oscillation.  There, every point slips in the direction of its rigid velocity.  The second case
+    is the limit of vanishing velocity.  The third case is motion along one line at nu = 0.  The
     fourth case is fast sliding.  There, the midpoint of the bounds in theory/exact.py is used if it
     is accurate to within the tolerance.
 

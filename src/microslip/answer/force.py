@@ -40,27 +40,30 @@ from microslip.scene.problem import Force, Problem
 
 FIRST_DRIFT, FACTOR = 0.1, 4.0
 SLOWEST, FASTEST = 1e-6, 1e6
-"""Parameters of the search for the velocity: first drift per radian of phase, factor between the
-drifts of two runs, and bounds."""
+"""Parameters of the search for the velocity.  FIRST_DRIFT: first drift per radian of phase.
+FACTOR: ratio of the drifts of two successive runs.  SLOWEST, FASTEST: bounds on the drift."""
 FLATTEST = 1e-6
 """Smallest slope of the friction in the search: the rise between two runs, divided by the relative
 increase in velocity."""
 HALVINGS = 2
-"""Number of bisections of the last velocity interval, on a logarithmic scale."""
+"""Number of bisections of the last velocity interval.  The bisections are on a logarithmic
+scale."""
 STEADY_ERROR = 1e-9
-"""Error estimate of the velocity v of a steady motion under a force, divided by max(1, v)."""
+"""Error estimate of the velocity under a force, for steady motions.  For a velocity v, the error
+estimate is this value times max(1, v)."""
 COARSE_TOLERANCE = 1e-2
 """Tolerance of the coarse runs that estimate the velocity under a force."""
 FIRST_VELOCITY = 0.1
 """Velocity at which the resolution of the coarse runs is chosen."""
 SLOWEST_SHARE = 0.3
-"""Smallest accepted velocity of the coarse run under the force, as a fraction of the estimate from
-coarse runs at prescribed velocities.  A slower run is not resolved and is not used."""
+"""Smallest accepted ratio of two velocities.  The first is the velocity of the coarse run under the
+force.  The second is the estimate from coarse runs at prescribed velocities.  If the ratio is
+smaller, the coarse run under the force is not resolved, and is not used."""
 SCALE_SHARE = 0.9
 """The relative tolerance refers to this fraction of the velocity in the coarse run."""
 ROUGH_TOLERANCE = 3e-2
-"""First tolerance of the static limit.  It is divided by 10 until the difference between the force
-and the limit exceeds the error of the limit."""
+"""First tolerance of the static limit.  The tolerance is divided by 10 until the error of the
+static limit is smaller than the difference between the force and the limit."""
 STATIC_TOLERANCE = 1e-3
 """Largest accepted error of the static limit when the force is close to it.  The SI layer uses the
 same value, so both agree on which forces are below the threshold."""
@@ -68,7 +71,8 @@ GAP_MARGIN = 2.0
 """A force certainly moves the contact if it exceeds the static limit by this factor times the error
 of the limit."""
 AT_REST, UNBOUNDED = Estimate(0.0, {"model": 0.0}), Estimate(math.nan, {"model": math.inf})
-"""Velocity of a contact at rest, and velocity of a contact without a mean velocity."""
+"""AT_REST: velocity of a contact at rest.  UNBOUNDED: velocity of a contact that has no mean
+velocity."""
 
 
 def under_force(request: Request) -> Result:
@@ -263,12 +267,12 @@ def _velocity_near(request: Request) -> tuple[float, float]:
 REST_TOLERANCE = 1e-2
 """Default tolerance of the displacement, in u_lim."""
 REST_SHARE = 0.2
-"""Ratio of the tolerance of a shakedown run to that of a search for a periodic state.  The step
-residuals accumulate over all periods.  Near the static limit, a run takes several hundred periods
-(tests/answer/test_shakedown.py)."""
+"""Ratio of two tolerances: the tolerance of a shakedown run, and the tolerance of a search for a
+periodic state.  The step residuals accumulate over all periods.  Near the static limit, a run takes
+several hundred periods (tests/answer/test_shakedown.py)."""
 PLANNED_VELOCITY = 0.1
-"""Velocity for which the time steps are chosen.  It is above 0, because the ladder for velocity 0
-has no time steps."""
+"""Velocity for which the time steps are chosen.  This velocity is above 0, because the ladder for
+velocity 0 has no time steps."""
 SHARED = ("model", "tolerance", "cells", "angles", "steps_per_period", "periods", "solve_time_s")
 """Names of the values that a Shakedown has in common with a Result."""
 

@@ -42,10 +42,10 @@ MOST_MASS_STEPS = 8192
 """Largest number of steps in half a period for a body with mass.  Runs with 24 rings and this
 number of steps take seconds."""
 FREQUENCY_ERROR = (3.0 * np.sqrt(2.0) - 4.0) / 6.0
-"""Relative error of the integrator path.SDIRK2 in the frequency of an undamped oscillation, divided
-by the square of the step s in radians.  A step multiplies the amplitude by R(i s), where R(z) =
-(1 + (1 - 2 g) z) / (1 - g z)^2 and g = 1 - sqrt(1/2).  R(z) differs from exp(z) by
-(3 g^2 - 2 g^3 - 1/6) z^3."""
+"""Coefficient of the frequency error of the integrator path.SDIRK2.  For an undamped oscillation
+and a step of s radians, the relative error of the frequency is this coefficient times s^2.  A step
+multiplies the amplitude by R(i s).  Here R(z) is (1 + (1 - 2 g) z) / (1 - g z)^2 with g = 1 -
+sqrt(1/2).  R(z) differs from exp(z) by (3 g^2 - 2 g^3 - 1/6) z^3."""
 COARSEST = Resolution(cells=8, angles=4, steps=4)
 """Resolution at which the stiffness of the contact is computed for a body with mass."""
 
@@ -101,8 +101,8 @@ class Ladder:
     def accuracy(self) -> float:
         """Tolerance for which an imposed resolution is suitable.
 
-        At this tolerance, `imposed` would be the first level.  Below the level `start`, this
-        tolerance follows from the second order of the method.
+        A ladder for this tolerance would begin at the level `imposed`.  Below the level `start`,
+        this tolerance follows from the second order of the method.
         """
         coarser = self.start / self.imposed
         return LOOSEST * coarser ** (ORDER if coarser > 1.0 else 1.0 / math.log10(RATIO))
@@ -133,15 +133,15 @@ class Kind(NamedTuple):
 
 
 TRANSLATION = Kind(start=12, steps=2)
-"""Translations.  Close to full sliding, levels coarser than `start` can agree by chance, see
-tests/answer/test_estimates.py."""
+"""Translations.  Close to full sliding, levels coarser than `start` can agree by chance.  For an
+example, see tests/answer/test_estimates.py."""
 LOOP = TRANSLATION._replace(start=16)
 """Slow motions without half-period symmetry.  The two halves of a period have different slip
 fronts."""
 ROTATION = TRANSLATION._replace(steps=1)
 WHOLE_DISC = ROTATION._replace(start=LOOP.start)
-"""Rotations combined with a lateral motion.  Their slip fronts differ between the halves of a
-period."""
+"""Rotations combined with a lateral motion.  In such motions, the slip fronts differ between the
+two halves of a period."""
 SQUARES = WHOLE_DISC
 """Contacts resolved by squares, which are not graded towards the slip front."""
 LOAD = Kind(start=24, steps=4)
@@ -149,9 +149,10 @@ LOAD = Kind(start=24, steps=4)
 STATIC = Kind(start=32, steps=0)
 """Static limits, computed at turning points.  There, slip fronts cut through the cells."""
 ANGLES_OF_ROTATION, ANGLES_OF_TRANSLATION = 0.5, 0.125
-"""Number of angles on half the disc, divided by the level.  A rotation needs more angles, because
-the centre of rotation is in the contact.  In a translation, the tractions depend on the angle only
-weakly, and only at nu > 0.  Both values are calibrated by `benchmarks/angles.py`."""
+"""Ratio of the number of angles on half the disc to the level, for rotations and for translations.
+A rotation needs more angles, because the centre of rotation is in the contact.  In a translation,
+the tractions depend on the angle only weakly, and only at nu > 0.  Both values are calibrated by
+`benchmarks/angles.py`."""
 
 
 def ladder_for(
@@ -208,8 +209,9 @@ def _kind(problem: Problem, model: str) -> Kind:
 def _imposing(ladder: Ladder, tolerance: float, cells: int | None, steps: int | None) -> Ladder:
     """Change a ladder so that its first level has the imposed resolution.
 
-    A number of cells or steps that is not imposed is chosen according to the tolerance or the
-    imposed number of cells.
+    If only the number of steps is imposed, the number of cells follows from the tolerance.  If only
+    the number of cells is imposed, the number of steps follows from the tolerance or from the
+    number of cells, whichever gives more steps.
     """
     cells, steps = cells if ladder.cells else None, steps if ladder.steps else None
     if cells is None and steps is None:

@@ -69,9 +69,9 @@ The units are those of `microslip.solve`; the travel is in u_lim."""
 RETURNED = 1e-12
 """A forward oscillation below this fraction of the amplitude is treated as a rounding error."""
 CLOSEST_FORCE = 0.9999
-"""Forces from this value up to 1, divided by mu times the mean normal load, are refused.  With a
-transverse oscillation, runs converged for forces up to 0.9998.  At this force, the contact already
-advances by 200 amplitudes per period."""
+"""Forces between this value and 1 are refused.  The forces are divided by mu times the mean normal
+load.  With a transverse oscillation, runs converged for forces up to 0.9998.  At this force, the
+contact already advances by 200 amplitudes per period."""
 CLOSEST_STEADY_FORCE = 1.0 - 1e-7
 """Largest force on a steady rotation, divided by mu times the mean normal load.  The rounding error
 of the friction, 1.1e-16, causes a relative error of 1.1e-16 / (2 (1 - force)) in the velocity.  At
@@ -83,7 +83,7 @@ STEPLESS = ("rigid", "dahl")
 def within(name: str, value: object, **changes: Any) -> Any:
     """Convert an argument to a number within its limits, or raise InputError.
 
-    `changes` replaces fields of the Limit in LIMITS.
+    The keyword arguments `changes` replace fields of the argument's entry in LIMITS.
     """
     low, high, kind = LIMITS[name]._replace(**changes)
     if kind == "real":
@@ -203,7 +203,8 @@ def without_forward_motion(problem: Problem) -> Problem:
 def is_even(problem: Problem) -> bool:
     """Return whether the oscillation alone exerts no forward force at any time.
 
-    If the oscillation exerts none, the force above which the contact moves equals the static limit.
+    If the oscillation exerts no forward force, the contact moves under every force above the static
+    limit, and under no smaller force.
     """
     motion, pressure = problem.motion, problem.pressure
     if oscillates_forward(problem) or not motion.half_disc:
@@ -241,8 +242,9 @@ def runs_away(problem: Problem) -> str:
 
 
 def choose_model(problem: Problem, model: str = "auto") -> str:
-    """Return the name of the model: the cheapest exact model for "auto", otherwise `model`.
+    """Return the name of the model.
 
+    For "auto", the result is the cheapest exact model.  Any other `model` is returned unchanged.
     Rings are chosen if the traction depends only on the radius (translation at nu = 0).  Angular
     modes are chosen for other motions of a round contact, and squares in all other cases.  Squares
     are also chosen for the static limit of a contact without symmetry, because its stick zone is

@@ -6,7 +6,7 @@ change during a period.  The contact exerts the force -mu(v) on the body.  The s
 never decreases with the velocity (theory/exact.py), so two velocities at which friction has
 opposite signs bracket the root.
 
-A body without mass under a constant load is not propelled: it follows the forward oscillation (see
+A body without mass under a constant load is not propelled.  It follows the forward oscillation (see
 limits.without_forward_motion).
 """
 
@@ -145,9 +145,9 @@ def _root(friction: Callable[[float], Result], first: float) -> tuple[float, flo
     """Find the velocity at which friction vanishes, with its error estimate.
 
     Brent's method finds a velocity at which the friction is 0 to within its error.  From this
-    velocity, steps of doubling length in both directions lead to two velocities that bracket the
-    root.  At these velocities, the friction has opposite signs and a magnitude larger than its
-    error.
+    velocity, the search takes steps of doubling length in both directions.  These steps lead to two
+    velocities that bracket the root.  At these two velocities, the friction has opposite signs, and
+    its magnitude exceeds its error.
 
     Parameters
     ----------

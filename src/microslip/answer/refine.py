@@ -11,23 +11,23 @@ The error estimate has four sources:
 - model: a pressure on a grid, or a motion given by samples, can be interpolated in several ways.
   The finest run is repeated for each interpolation; refinement does not reduce the differences.
 
-The methods are of second order, f(n) = f + C / n^2 + ..., and the difference D of the last two
-levels gives the correction D / 3.  Assume that the differences decrease with another order p.  The
-differences beyond the last level then add up to D / (2^p - 1).  Therefore, the extrapolated value
-is wrong by D (1 / (2^p - 1) - 1 / 3).  The error estimate is a safety factor times this error,
-evaluated at the observed order.  The estimate is at least the correction and at most D, each times
-the safety factor.
+The methods are of second order, so that f(n) is approximately f + C / n^2.  The difference D of the
+last two levels therefore gives the correction D / 3.  Assume that the differences decrease with
+another order p.  The differences beyond the last level then add up to D / (2^p - 1).  Therefore,
+the extrapolated value is wrong by D (1 / (2^p - 1) - 1 / 3).  The error estimate is a safety factor
+times this error, evaluated at the observed order.  The estimate is between the correction and D,
+both multiplied by the safety factor.
 
 Two levels can agree by chance.  Therefore D is at least a quarter of the difference of the first
-two levels, the value expected for second order.  This is the grid convergence index of Roache (J.
-Fluids Eng. 116, 1994), applied to both pairs of levels.  In two cases, the last two levels are
-taken to agree by chance: the differences change sign, or the observed order is far above 2.  The
-last level then need not be better than the second-to-last level.  Therefore, D is the difference of
-the first two levels.
+two levels.  At second order, D is expected to equal this quarter.  This is the grid convergence
+index of Roache (J. Fluids Eng. 116, 1994), applied to both pairs of levels.  In two cases, the
+last two levels are taken to agree by chance: the differences change sign, or the observed order is
+far above 2.  The last level then need not be better than the second-to-last level.  Therefore, D is
+the difference of the first two levels.
 
-If the differences increase, n/4 is too coarse for the leading term to dominate, and a slightly
-finer level is probably too coarse as well.  The next n is then a level whose coarser levels have
-already been computed.
+If the differences increase, n/4 is too coarse for the leading term to dominate.  A slightly finer
+level is probably too coarse as well.  The next level n is therefore chosen such that its two
+coarser levels have already been computed.
 """
 
 from __future__ import annotations
@@ -48,23 +48,25 @@ SAFETY = 1.5
 """Safety factor on the correction.  The value is calibrated by
 `benchmarks/error_estimates.py --seed 3 --safety FACTOR`."""
 CHANCE_ORDER = 2 * ORDER
-"""Observed order above which the last two levels count as agreeing by chance.  Above this order, D
-increases linearly as the last difference decreases, and equals the first difference if the last two
-levels are equal.  `benchmarks/attacks.py` searches for points that this rule does not cover."""
+"""If the observed order is above this value, the agreement of the last two levels counts as chance.
+Above this order, D increases linearly as the last difference decreases.  If the last two levels are
+equal, D equals the first difference.  `benchmarks/attacks.py` searches for points that this rule
+does not cover."""
 WEIGHTS = 0.0, -1.0 / (2**ORDER - 1), 2**ORDER / (2**ORDER - 1)
 """Weights of the levels n/4, n/2 and n in the extrapolated value."""
 READING_SAFETY = 2.5
-"""Safety factor on the differences between the interpolations (readings) of a pressure or a motion.
-No interpolation resolves a peak or an edge between the points."""
+"""A pressure or a motion from data can be interpolated in several ways (readings).  The differences
+between the results are multiplied by this safety factor.  No interpolation resolves a peak or an
+edge between the points."""
 SMALLEST_SHARE = 0.8
 """The error estimate for the resolution is at least this fraction of the tolerance.  At an imposed
 resolution, `Ladder.accuracy` takes the place of the tolerance.  The fraction is above 0 because
-three levels can agree by chance.  The calibration by benchmarks/error_estimates.py gave 0.7; the
-value was increased because benchmarks/attacks.py found errors of up to 0.75 times the tolerance
-where the levels agree."""
+three levels can agree by chance.  The calibration by benchmarks/error_estimates.py gave 0.7.  The
+value was then increased, because benchmarks/attacks.py found errors of up to 0.75 times the
+tolerance at points where the levels agree."""
 LARGEST_REST = 0.5
-"""Finer runs are started only if the errors from sources other than the resolution sum to at most
-this fraction of the tolerance."""
+"""Finer runs reduce only the error due to the resolution.  They are started only if the sum of all
+other errors is at most this fraction of the tolerance."""
 
 
 class Extrapolation(NamedTuple):

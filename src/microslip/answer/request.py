@@ -1,10 +1,10 @@
 """Requests for results, and the runs that compute these results.
 
 A run that does not converge is repeated.  The slower the forward motion, the longer its transients.
-In long transients, even small errors of the steps accumulate to a wrong state, and the search needs
-a better initial guess.  So the second attempt solves the steps to a tighter tolerance.  The second
-attempt first finds the periodic state at a higher velocity, where the search is easier.  Then it
-lowers the velocity step by step, and each run starts from the previous run's state.
+In long transients, even small errors of the steps accumulate until the state is wrong.  The search
+then needs a better initial guess.  So the second attempt solves the steps to a tighter tolerance.
+The second attempt first finds the periodic state at a higher velocity, where the search is easier.
+Then it lowers the velocity step by step, and each run starts from the previous run's state.
 """
 
 from __future__ import annotations
@@ -38,8 +38,9 @@ MOST_WORK_OF_OTHERS = 2e8
 unknowns.  The limits are more than ten times the work of the slowest points in the paper's range at
 a tolerance of 1e-4."""
 RUN_SHARE = 0.05
-"""Largest distance of a run from its periodic state, divided by the tolerance.  With the weights of
-the runs, these distances contribute at most a twelfth of the tolerance."""
+"""Largest distance of a run from its periodic state, divided by the tolerance.  The extrapolation
+multiplies these distances by the weights of the runs.  Together, the distances contribute at most a
+twelfth of the tolerance."""
 FACTOR, SMALLEST_FACTOR = 4.0, 1.15
 """Ratio of successive velocities in a second attempt.  After a failure, the ratio is replaced by
 its square root.  The smallest ratio is `SMALLEST_FACTOR`."""

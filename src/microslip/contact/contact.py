@@ -58,8 +58,8 @@ FORWARD, LATERAL, TORQUE = range(3)
 """Column indices of March.forces."""
 
 MIRROR = np.array([1.0, -1.0])[:, None, None]
-"""Signs of forward and lateral tractions under the reflection lateral -> -lateral, as an array of
-shape (2, 1, 1)."""
+"""Factors by which the reflection lateral -> -lateral multiplies forward and lateral tractions.
+The array has the shape (2, 1, 1)."""
 
 
 class March(NamedTuple):
@@ -237,8 +237,8 @@ def energy_norm(contact: Contact, change: np.ndarray) -> float:
 
 
 def full_slip(contact: Contact, forward: np.ndarray, lateral: np.ndarray) -> np.ndarray:
-    """Return tractions whose magnitude is the friction bound and whose direction is that of a
-    vector field.
+    """Return tractions whose magnitude is the friction bound.  Their direction is the direction of
+    a vector field.
 
     The tractions are 0 where the field is 0.
     """
@@ -294,10 +294,11 @@ def march_by_steps(
 ) -> March:
     """Integrate a contact along a path, step by step.
 
-    The `solver` has the method solve(b, guess), which returns a Step for the imposed displacement b
-    and an initial guess of the tractions.  If there is a driven body, the solver also has the
-    method balance(b, guess, stiffness, load), which returns a Step with stiffness d + forward force
-    = load.  For the other arguments, see contact.Contact and RingContact.march.
+    The `solver` has the method solve(b, guess), which returns a Step.  The argument b is the
+    imposed displacement, and `guess` is an initial guess of the tractions.  If there is a driven
+    body, the solver also has the method balance(b, guess, stiffness, load).  This method returns a
+    Step that satisfies the equation stiffness * d + forward force = load, where d is the
+    displacement of the body.  For the other arguments, see contact.Contact and RingContact.march.
     """
     stages, total, end = len(path.carry), len(path.motion) - 1, path.end
     guess = None if previous is None else previous.fields

@@ -4,11 +4,10 @@ The convolution gives the surface displacement due to tractions.
 
 Along an axis with n cells, the cell j has the coordinate x = j - (n - 1) / 2.  A field is a sum of
 cosines and sines of 2 pi k x / (2 n - 1) for k = 0 .. n - 1.  This period is long enough that the
-convolution does not wrap around.  The influence of forward tractions on forward displacements, and
-of lateral tractions on lateral displacements, is even along both axes: it multiplies each wave by a
-number.  The influence of forward tractions on lateral displacements, and of lateral tractions on
-forward displacements, is odd along both axes.  It multiplies each wave by a number, and exchanges
-cosine and sine.
+convolution does not wrap around.  The influence of tractions on displacements in the same direction
+(forward or lateral) is even along both axes.  It multiplies each wave by a number.  The influence
+of forward tractions on lateral displacements, and of lateral tractions on forward displacements, is
+odd along both axes.  It multiplies each wave by a number, and exchanges cosine and sine.
 
 If a symmetry determines the field at negative forward coordinates, only the cells with positive
 forward coordinates are resolved.  Each wave along the lateral axis is then either even or odd along
@@ -49,9 +48,9 @@ TURN, MIRROR = "half turn", "mirror image"
 class Convolution(NamedTuple):
     """Matrices of the convolution on R x C resolved cells.
 
-    Along the lateral axis, there are W waves for each of P parities, where P is 1 if only positive
-    coordinates are resolved, else 2; the last waves are padding.  Along the forward axis, there are
-    F waves, where F is n, or 2 n if both parities occur.
+    Along the lateral axis, there are W waves for each parity; the last waves are padding.  The
+    number of parities P is 1 if only cells with positive coordinates are resolved, and 2 otherwise.
+    Along the forward axis, there are F waves.  F is 2 n if both parities occur, and n otherwise.
 
     Attributes
     ----------
@@ -236,11 +235,11 @@ def convolve(operator: Convolution, scratch: tuple, q: np.ndarray, out: np.ndarr
 MOST_ITERATIONS = 5000
 """Largest number of iterations of a step."""
 PATIENCE = 60
-"""Number of iterations in which Barzilai-Borwein steps must halve the residual.  The value is
+"""Barzilai-Borwein steps must halve the residual within this number of iterations.  The value is
 calibrated by benchmarks/splitting.py."""
 SHORT_STEP_BELOW = 0.3
-"""Ratio of the two Barzilai-Borwein lengths below which the shorter one is used; usual values are
-0.1 to 0.5 (Zhou, Gao and Dai 2006)."""
+"""The shorter Barzilai-Borwein length is used if its ratio to the longer length is below this
+value.  Usual values are 0.1 to 0.5 (Zhou, Gao and Dai 2006)."""
 
 
 @kernel

@@ -31,22 +31,25 @@ EPSILON = float(np.finfo(float).eps)
 ACCURACY = 1e-10
 """Relative accuracy of the kernels, which is much better than that of the averages over rings."""
 MOST_GROWTH = np.log(ACCURACY / EPSILON)
-"""Logarithm of the largest growth of rounding errors in an upward recurrence."""
+"""Logarithm of the largest accepted growth of rounding errors in an upward recurrence."""
 HALF_PRECISION = np.sqrt(EPSILON)
-"""Relative difference of two numbers whose arithmetic and geometric means are equal except for
-rounding."""
+"""If the relative difference of two numbers is at most this value, their arithmetic and geometric
+means are equal except for rounding."""
 DECAY = -np.log(ACCURACY)
-"""Logarithm of the decay after which a downward recurrence no longer depends on its start value."""
+"""Logarithm of a decay.  After this decay, a downward recurrence no longer depends on its start
+value."""
 MOST_MODES = 1 + int(np.ceil(0.5 * DECAY))
 """Upper bound on the ratio of modes_for(r, s, n) to n + 2."""
 OUTER_POINTS = 8
 INNER_POINTS = 12
 CLUSTER_POWER = 4
-"""Numbers of Gauss points for the outer (averaging) and the inner (singular) ring integral, and
-exponent that clusters the inner points where the rings are closest.  At this point, the kernels
-have a logarithmic singularity."""
+"""OUTER_POINTS: number of Gauss points for the outer integral over a ring (averaging).
+INNER_POINTS: number of Gauss points for the inner, singular integral.  CLUSTER_POWER: exponent that
+clusters the inner points where the rings are closest.  There, the kernels have a logarithmic
+singularity."""
 APART_POINTS = 5
-"""Number of Gauss points on each ring of a pair whose distance is at least the width of a ring."""
+"""Number of Gauss points on each ring, for two rings that are at least the width of a ring
+apart."""
 
 
 class Averaging(NamedTuple):
@@ -104,13 +107,14 @@ def elliptic_integrals(kc: np.ndarray, big_k: np.ndarray, big_e: np.ndarray) -> 
 def toroidal_kernels(
     r: float, s: float, integrals: tuple[float, float], n: int, out: np.ndarray
 ) -> None:
-    """Compute out[m] = G_m(r, s) = Integral J_m(k r) J_m(k s) dk for m = 0 .. n - 1.
+    """Compute out[m] = G_m(r, s) for m = 0 .. n - 1.
 
-    The radii r and s must be positive and different.  The argument `integrals` contains K and E for
-    the complementary modulus |r - s| / (r + s).  G_m is Q_{m-1/2}(chi) / (pi sqrt(r s)) with chi =
-    (r^2 + s^2) / (2 r s).  Q is the decaying solution of a three-term recurrence in m.  An upward
-    recurrence loses accuracy if m times the decay rate is large.  In this case, the ratios of
-    consecutive values are computed by a downward recurrence (Miller's method).
+    G_m(r, s) is the integral of J_m(k r) J_m(k s) over k.  The radii r and s must be positive and
+    different.  The argument `integrals` contains K and E for the complementary modulus |r - s| / (r
+    + s).  G_m is Q_{m-1/2}(chi) / (pi sqrt(r s)) with chi = (r^2 + s^2) / (2 r s).  Q is the
+    decaying solution of a three-term recurrence in m.  An upward recurrence loses accuracy if m
+    times the decay rate is large.  In this case, the ratios of consecutive values are computed by a
+    downward recurrence (Miller's method).
     """
     big_k, big_e = integrals
     out[0] = 2.0 * big_k / (np.pi * (r + s))
@@ -138,9 +142,9 @@ def toroidal_kernels(
 
 @kernel
 def modes_for(r: float, s: float, n: int) -> int:
-    """Return the number of values G_m(r, s) from which `n` values C_m can be computed.
+    """Return the number of values G_m(r, s) that are needed to compute `n` values C_m.
 
-    The number is n + 2 if the upward recurrence is stable.  Otherwise the number is larger, but at
+    If the upward recurrence is stable, the number is n + 2.  Otherwise the number is larger, but at
     most `MOST_MODES` times n + 2.
     """
     growth = np.log(s / r)
@@ -149,13 +153,14 @@ def modes_for(r: float, s: float, n: int) -> int:
 
 @kernel
 def coupling_kernels(r: float, s: float, toroidal: np.ndarray, n: int, out: np.ndarray) -> None:
-    """Compute out[j] = C_{j+1}(r, s) = Integral J_{j+1}(k r) J_{j-1}(k s) dk for j = 0 .. n - 1.
+    """Compute out[j] = C_{j+1}(r, s) for j = 0 .. n - 1.
 
-    `toroidal` contains at least `modes_for(r, s, n)` values G_m(r, s).  Multiplying e^{2 i
-    alpha}/|z-z'| by conj(z - z') gives the recurrence r C_m - s C_{m-1} = r G_{m-2} - s G_{m-1},
-    with C_1 = -G_1.  The upward recurrence is stable if s < r or if (s/r)^m is of order one.
-    Otherwise the recurrence runs downward from an index at which C is negligible.  Modes below 1
-    follow from C_{2-m}(r, s) = C_m(s, r).
+    C_{j+1}(r, s) is the integral of J_{j+1}(k r) J_{j-1}(k s) over k.  `toroidal` contains at least
+    `modes_for(r, s, n)` values G_m(r, s).  Multiplying e^{2 i alpha}/|z-z'| by conj(z - z') gives
+    the recurrence r C_m - s C_{m-1} = r G_{m-2} - s G_{m-1}, with C_1 = -G_1.  The upward
+    recurrence is stable if s < r or if (s/r)^m is of order one.  Otherwise the recurrence runs
+    downward from an index at which C is negligible.  Modes below 1 follow from C_{2-m}(r, s) =
+    C_m(s, r).
     """
     out[0] = -toroidal[1]
     top = modes_for(r, s, n)
@@ -179,8 +184,8 @@ def _points_of_pair(averaging: Averaging, i: int, j: int, points: np.ndarray) ->
     """Fill `points` with quadrature points of a pair of rings, and return the number of points.
 
     A quadrature point consists of three numbers: a radius on ring i (outer rule), a radius on ring
-    j (inner rule), and a weight.  The weights include the traction profile s(r) of each ring,
-    normalised so that the integral of s(r) r dr is 1.
+    j (inner rule), and a weight.  The weights include the traction profile s(r) of each ring.  The
+    profile is normalised: the integral of s(r) r dr is 1.
     """
     psi = averaging.psi
     a0, a1 = psi[i], psi[i + 1]
@@ -256,8 +261,8 @@ def _weight(r: float) -> float:
 
 @kernel
 def _all_pairs(averaging: Averaging, near: np.ndarray, far: np.ndarray) -> None:
-    """Fill `near` and `far` with the averages over all pairs of rings.  Both arrays have the shape
-    (n_modes, rings, rings) and must be zero on entry."""
+    """Fill `near` and `far` with averages of the kernels over all pairs of rings.  Both arrays have
+    the shape (n_modes, rings, rings) and must be zero on entry."""
     width = averaging.psi[1:] - averaging.psi[:-1]
     points = np.empty((6, 2 * len(averaging.outer[0]) * len(averaging.inner[0])))
     for one in range(len(width)):

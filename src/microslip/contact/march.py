@@ -15,8 +15,8 @@ A body of mass m with a dashpot c, which is driven by a constant force or throug
 
 in working units.  x is the displacement of the contact relative to its path, and primes are
 derivatives with respect to the phase.  The far end of the spring follows the path.  The integrator
-of the contact also integrates the motion of the body.  Let d = g x' be the increment of x in a
-stage, where g is the length of the implicit part of the stage.  Then each stage adds the equation
+of the contact also integrates the motion of the body.  Let g be the length of the implicit part of
+a stage.  The increment of x in the stage is d = g x'.  Then each stage adds the equation
 
     stiffness d + f(q) = load,    stiffness = k + c / g + m / g^2,
 
@@ -75,8 +75,8 @@ def combine(out: np.ndarray, first: np.ndarray, factor: float, second: np.ndarra
 def pack(
     field: np.ndarray, kept: float, first: np.ndarray, factor: float, second: np.ndarray
 ) -> None:
-    """Set `field` to kept * field + first + factor * second, where `first` and `second` are
-    states."""
+    """Multiply `field` by `kept`, and add first + factor * second.  The arguments `first` and
+    `second` are states."""
     rows, cells = first.shape[1], first.shape[2]
     width = field.shape[1] // rows
     for c in range(2):

@@ -12,8 +12,8 @@ resolved.
 Coulomb's law applies at the points.  The influence operator is block-diagonal in the angular modes.
 At nu = 0, the forward tractions of a mode cause only forward displacements, and the lateral
 tractions cause only lateral displacements.  The ring matrix is the same for both directions.  At nu
-> 0, the complex waves e^{i m theta} of forward - i lateral are coupled in pairs m and 2 - m (see
-influence.py).
+> 0, consider the complex waves e^{i m theta} of forward - i lateral.  Influence couples the waves m
+and 2 - m (see influence.py).
 """
 
 from __future__ import annotations
@@ -34,8 +34,8 @@ FEWEST_PROLONGED = 16
 """In rotations with at least this number of rings, tractions from a coarser mesh are a better
 initial guess than the static limit."""
 SHARED_MODES = (9, 17, 33)
-"""Possible numbers of modes for which averages of the kernels are computed.  As a result, runs with
-4, 6 and 8 angles share the same averages."""
+"""Possible numbers of modes for which averages of the kernels are computed.  Because few numbers
+are possible, runs with 4, 6 and 8 angles share the same averages."""
 Wave = tuple[int, int]
 """Number m of a wave, and its part (0 or 1); see `_pairs`."""
 
@@ -50,10 +50,12 @@ def _single_waves(
     """Return the waves at nu = 0 as three arrays.
 
     The first array contains the number m of each wave.  The second and the third array contain the
-    forward and the lateral values of the waves at the points, and have the shape (waves, points).
+    values of the waves at the points, for the forward and the lateral component.  Both arrays have
+    the shape (waves, points).
 
-    For a rotation, forward tractions are cosines and lateral tractions are sines.  For a
-    translation, the tractions in both directions are cosines and sines with even numbers m.
+    For a rotation, the forward tractions are sums of cosines of multiples of the polar angle, and
+    the lateral tractions are sums of sines.  For a translation, the tractions in both directions
+    are cosines and sines with even numbers m.
     """
     numbers = np.arange(angles + 1)
     cosines, sines = np.cos(np.outer(numbers, theta)), np.sin(np.outer(numbers, theta))
@@ -70,9 +72,9 @@ def _pairs(angles: int, symmetry: str) -> tuple[list[tuple[Wave, Wave]], list[tu
     """Return two lists of pairs of waves at nu > 0.  The first list contains the coupled pairs, and
     the second list contains the pairs without coupling.
 
-    A wave is described by (m, part): part 0 is e^{i m theta}, and part 1 is i e^{i m theta}.  For a
-    whole disc and for rotations, the shortest waves are not coupled, because their cosine is 0 at
-    all points.
+    A wave is described by (m, part): part 0 is e^{i m theta}, and part 1 is i e^{i m theta}.  The
+    shortest waves of a whole disc or a rotation are not coupled, because the cosine of these waves
+    is 0 at all points.
     """
     step = 2 if symmetry == TRANSLATION else 1
     parts = (0,) if symmetry == ROTATION else (0, 1)
@@ -95,8 +97,11 @@ def _coupled_matrices(
     ratio: np.ndarray,
     kappa: float,
 ) -> np.ndarray:
-    """Return the matrices of coupled pairs and of pairs without coupling, as an array of shape
-    (pairs, 2, n, 2, n)."""
+    """Return the matrices of all pairs, first the coupled pairs, and then the pairs without
+    coupling.
+
+    The result is an array of shape (pairs, 2, n, 2, n).
+    """
     near, far = influence
     n = near.shape[1]
     out = np.zeros((len(pairs) + len(single), 2, n, 2, n))
@@ -223,8 +228,8 @@ class PolarContact(RingContact):
     def prolong(self, state: np.ndarray) -> np.ndarray | None:
         """Interpolate tractions from a coarser mesh to the points of this contact.
 
-        The tractions have the shape (2, angles, cells).  Returns None for whole discs, for changing
-        loads, and for rotations with fewer than FEWEST_PROLONGED rings.
+        The tractions have the shape (2, angles, cells).  Returns None in three cases: for whole
+        discs, for changing loads, and for rotations with too few rings (see FEWEST_PROLONGED).
         """
         few = self.rotates and len(self.bound) < FEWEST_PROLONGED
         on_rings = None if few or self.whole else super().prolong(state)

@@ -99,8 +99,8 @@ def transform(
 ) -> None:
     """Multiply rows of `source` by a matrix, and store the results in rows of `target`.
 
-    Row k of the argument is source[taken[0] + taken[1] k], and row k of the result is
-    target[filled[0] + filled[1] k].  Rows are computed in groups of four; the last group can
+    Row k of the argument is row taken[0] + taken[1] k of `source`.  Row k of the result is row
+    filled[0] + filled[1] k of `target`.  Rows are computed in groups of four; the last group can
     overlap the previous one.
     """
     (begin, stride), (at, step) = taken, filled

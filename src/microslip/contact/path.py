@@ -84,7 +84,7 @@ GRADED_STROKE = 2.0
 
 
 def turning_point_grading(drift: float, stroke: float) -> float:
-    """Return the grading g of the steps, from 0 to 0.8.
+    """Return the grading g of the steps, which is between 0 and 0.8.
 
     A step at a turning point is (1 - g) times as long as the mean step.
 
@@ -104,7 +104,7 @@ def turning_point_grading(drift: float, stroke: float) -> float:
 
 
 def turning_point_width(drift: float, stroke: float) -> float:
-    """Return the half-width, in phase, of the zone of equal steps at a turning point.
+    """Return half the width of the zone of equal steps at a turning point, as a phase.
 
     Outside the zone, steps are proportional to the distance from the turning point.  For strokes up
     to LONG_STROKE, the width is infinite, so that the steps follow the grading alone.  The slip

@@ -154,11 +154,11 @@ def load_on_springs(pressure: Pressure, edges: np.ndarray, depth: np.ndarray) ->
 def mdr_contact(
     cells: int, focus: Focus | float | None = None, pressure: Pressure = HERTZ
 ) -> RadialContact:
-    """Create a contact of `cells` springs on 0 < x < 1 and their mirror images, graded towards
-    `focus`.
+    """Create a contact of springs that are graded towards `focus`.
 
-    The attribute `bound` of the contact is a force per unit length.  The weight of a spring is the
-    length of the spring and its mirror image.
+    There are `cells` springs on 0 < x < 1.  Each spring has a mirror image.  The attribute `bound`
+    of the contact is a force per unit length.  The weight of a spring is the total length of the
+    spring and its mirror image.
     """
     edges = np.sin(make_rings(cells, focus).psi)
     length = np.diff(edges)

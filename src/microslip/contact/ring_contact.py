@@ -300,8 +300,8 @@ class RingContact(Contact):
         Rings join or leave the contact only at the last stage of a step, because the integrator
         would carry over a jump from an earlier stage to the later stages.  A ring that joins at the
         last stage is strained during the fraction 1 / (1 + carried) of the step.  On average, the
-        ring should be strained during half of the step.  The contact radius is therefore evaluated
-        at an earlier time, to make up for the difference.
+        ring should be strained during half of the step.  To make up for the difference, the contact
+        radius is evaluated at an earlier time.
         """
         assert path.depth is not None  # otherwise the bounds are constant
         stages = len(path.carry)

@@ -144,10 +144,10 @@ def _focused(count: int, places: np.ndarray, strength: float) -> np.ndarray:
 
 
 def _shared_out(count: int, ends: Sequence[float]) -> list[int]:
-    """Return the number of rings up to each of the angles `ends`, approximately proportional to
-    psi.
+    """Return the number of rings up to each of the angles `ends`.
 
-    Each interval between two successive angles contains at least a few rings.
+    The number is approximately proportional to the angle psi.  Each interval between two successive
+    angles contains at least a few rings.
     """
     least = max(count // (2 * len(ends) - 2), 1)
     before = [int(round(count * end / ends[-1])) for end in ends]

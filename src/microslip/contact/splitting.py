@@ -36,15 +36,16 @@ MOST_ITERATIONS = 4000
 RELAXATION = 1.7
 """Relaxation factor; 1.5 to 1.8 is usual (Eckstein and Bertsekas 1992)."""
 BETWEEN_BALANCES = 32
-"""Number of iterations between calls of `rebalance` in a step with a driven body.  The mean numbers
-of iterations per step printed by benchmarks/splitting.py are lower, so that `rebalance` is rarely
+"""Number of iterations between calls of `rebalance` in a step with a driven body.  The mean number
+of iterations per step is lower in benchmarks/splitting.py.  Therefore, `rebalance` is rarely
 called."""
 FIRST_ADVANCE, LONGEST_ADVANCE, HALVINGS = 1e-3, 1e6, 40
-"""Parameters of the search for the displacement at which the forces balance: first and largest
-trial value in u_lim (each trial value is four times the previous one), and number of bisections."""
+"""Parameters of the search for the displacement at which the forces balance.  FIRST_ADVANCE,
+LONGEST_ADVANCE: first and largest trial value, in u_lim.  Each trial value is four times the
+previous one.  HALVINGS: number of bisections."""
 BALANCED_RINGS = 12
-"""Number of rings for which the best penalty equals the self-influence of a ring if half of the
-points stick.  The value is calibrated by benchmarks/splitting.py."""
+"""At this number of rings, the best penalty equals the self-influence of a ring, provided that half
+of the points stick.  The value is calibrated by benchmarks/splitting.py."""
 LEVELS = 4
 """Number of penalties for which a resolvent is computed."""
 PENALTIES = 2.0 ** (np.arange(LEVELS) - 0.5 * (LEVELS - 1))
@@ -110,7 +111,7 @@ def respond(
     response: np.ndarray,
     slope: np.ndarray,
 ) -> None:
-    """For each penalty, compute the tractions v for d = 1 and the forward force of these tractions.
+    """Compute the tractions v for d = 1, and the forward force that they exert, for each penalty.
 
     `unit` is a scratch field.
     """
@@ -170,7 +171,8 @@ def imbalance(
     stiffness: float,
     advance: float,
 ) -> float:
-    """Return the residual of the equation of the body after an additional displacement, `advance`.
+    """Return the residual of the equation of the body after its displacement has grown by
+    `advance`.
 
     The advance is added to the slip of the points that slip.  `excess` is the residual for an
     advance of 0, without the forward force.
@@ -194,8 +196,8 @@ def rebalance(
 ) -> None:
     """Shift y, in place, to the displacement at which the forces on the body balance.
 
-    The splitting alone converges slowly if nearly all points slip and the drive is soft.  If the
-    shift would exceed LONGEST_ADVANCE, y remains unchanged.
+    The splitting alone converges slowly if nearly all points slip and the drive is soft.  The shift
+    is at most LONGEST_ADVANCE.  If a larger shift were needed, y remains unchanged.
     """
     residual = imbalance(points, bound, y, excess, stiffness, 0.0)
     if not abs(residual) > tolerance:

@@ -5,8 +5,8 @@ For a round contact, the cells are squares, as in the paper, and this model is t
 other models.
 
 Tractions have the symmetries that the rigid displacement, the pressure and the influence operator
-have in common.  Of each set of cells that are related by these symmetries, only one cell is
-resolved (see `_images`).
+have in common.  These symmetries divide the cells into sets.  Only one cell of each set is resolved
+(see `_images`).
 """
 
 from __future__ import annotations
@@ -170,7 +170,8 @@ class DescentSolver:
         """Solve a step for the imposed displacement b.
 
         share: factor by which the tolerance is multiplied.  Returns the tractions, the slip, the
-        number of iterations, the residual, and 0 for the displacement of a driven body.
+        number of iterations, the residual, and the displacement of a driven body.  This
+        displacement is 0 here.
         """
         contact, q, slip = self.contact, np.array(guess), np.empty_like(b)
         while True:
@@ -188,8 +189,8 @@ class DescentSolver:
     def balance(self, b: np.ndarray, guess: np.ndarray, stiffness: float, load: float) -> Step:
         """Solve a step of a driven body; see march.py.  Returns the same values as `solve`.
 
-        The displacement d at which the forces balance is found by the secant method.  The forward
-        force never decreases as d increases, and its slope is at most the stiffness of the contact.
+        The secant method finds the displacement d at which the forces balance.  The forward force
+        never decreases as d increases, and its slope is at most the stiffness of the contact.
         """
         steepest = stiffness + self.contact.stiffness
         place, slope, low, high, before, last_gap = 0.0, steepest, -np.inf, np.inf, np.nan, np.nan

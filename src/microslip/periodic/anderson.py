@@ -7,11 +7,12 @@ import numpy as np
 from microslip.foundation.compiled import kernel
 
 DEPTH = 12
-"""Number of stored differences.  Among 5, 8 and 12, this value needs the fewest marches for bores
-and loops."""
+"""Number of stored differences.  Of the values 5, 8 and 12, this one needs the fewest marches for
+bores and loops."""
 DEPENDENT = 1e-8
-"""A difference is dropped if the norm of its part orthogonal to newer differences is below this
-fraction of its full norm.  The value is about the square root of the rounding error."""
+"""Each difference is split into a linear combination of newer differences and an orthogonal part.
+The difference is dropped if the norm of the orthogonal part is below this fraction of the full
+norm.  The value is about the square root of the rounding error."""
 
 
 def remember(pairs: np.ndarray, count: int, image: np.ndarray, change: np.ndarray) -> int:

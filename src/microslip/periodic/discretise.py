@@ -28,7 +28,8 @@ from microslip.contact.rings import Focus
 from microslip.scene.problem import Problem
 
 WEAKEST_FOCUS, STRONGEST_FOCUS, STATIC_FOCUS = 0.3, 1.0 - 2.0**-6, 0.9
-"""Smallest and largest value of rings.Focus.strength, and the value for the static limit."""
+"""Values of rings.Focus.strength: the smallest value, the largest value, and the value for the
+static limit."""
 
 
 @dataclass(frozen=True, order=True)

@@ -69,4 +69,5 @@ OWN = {
     # opposite sign.
     "midpoint": Method("implicit midpoint rule, undamped", integrator=theta_method(0.5)),
 }
-"""Methods that replace at most the integrator, keyed by the names in methods.OWN."""
+"""Methods of the package that need no file, by name.  They replace the integrator of the shipped
+method, or nothing."""

@@ -26,14 +26,15 @@ FIRST_LOOK, MOST_INTERVALS = 16, 16384
 """FIRST_LOOK: number of (half) periods before the first check for rest.  MOST_INTERVALS: largest
 number of (half) periods."""
 LOOKS = 1.5, 4.0 / 3.0
-"""Factors, used alternately, by which the number of (half) periods grows from check to check.  The
-factors keep this number a multiple of four."""
+"""Factors by which the number of (half) periods grows from check to check.  The two factors
+alternate.  With these factors, the number of (half) periods remains a multiple of four."""
 STEP_SHARE = 1e-4
-"""Ratio of the tolerance of a step (as a force divided by mu F_z) to the tolerance of the
-displacement (in u_lim)."""
+"""Ratio of two tolerances.  The first is the tolerance of a step, as a force divided by mu F_z.
+The second is the tolerance of the displacement, in u_lim."""
 SLOWEST_RATIO = 0.9
-"""Let r be the ratio of the displacements in two successive doublings of the number of periods.
-The remaining displacement is extrapolated only if r is at most this value."""
+"""Each doubling of the number of periods adds a displacement.  Let r be the ratio of the
+displacements in two successive doublings.  The remaining displacement is extrapolated only if r is
+at most this value."""
 LONG, DRIFTING = 200, 1.8
 """If the ratio r is above DRIFTING after LONG (half) periods, the contact keeps drifting.  In a
 steady drift, r is 2.  On a coarse mesh, the threshold of drift can be below the force."""
@@ -128,7 +129,8 @@ def run_to_rest(
 
 
 class _Walk:
-    """Successive marches of a contact under a force, with the sums of effort and residuals."""
+    """Successive marches of a contact under a force.  The effort and the residuals of all marches
+    are added up."""
 
     def __init__(self, contact: RingContact, body: Body, step_tolerance: float, budget: Budget):
         self.contact, self.body, self.step_tolerance = contact, body, step_tolerance
@@ -160,11 +162,12 @@ def _still(problem: Problem) -> Path:
 
 
 def _remaining(ways: list[float], rounding: float) -> tuple[float, bool]:
-    """Return an upper bound on the remaining displacement, and whether the contact keeps drifting.
+    """Return two values: an upper bound on the remaining displacement, and True if the contact
+    keeps drifting.
 
-    The displacements between doublings of the number of intervals are extrapolated as a geometric
-    series.  The bound is infinite if the ratio of the last two displacements is above
-    SLOWEST_RATIO.
+    Each doubling of the number of intervals adds a displacement.  These displacements are
+    extrapolated as a geometric series.  The bound is infinite if the ratio of the last two
+    displacements is above SLOWEST_RATIO.
 
     Parameters
     ----------

@@ -122,7 +122,8 @@ SLOW_STEP_SHARE = 3e-4
 """Smallest ratio of the step tolerance to the tolerance of the periodic state.  The slower the
 motion, the longer its transients, and the more the errors of the steps accumulate."""
 TIGHTER = 0.1
-"""Smallest ratio of the step tolerance in a second attempt to the step tolerance in the first."""
+"""The step tolerance in a second attempt is at least this fraction of the step tolerance in the
+first attempt."""
 MARCH_SHARE = 0.16
 """Largest sum of the step tolerances in half a period, divided by the tolerance of the periodic
 state.  With two stages per step, the residuals add up to at most a third of the tolerance."""

@@ -43,10 +43,10 @@ NOISE = 1e-2
 march.  The rate at which an error of the state decays is at most the rate at which the state
 drifts."""
 DRIFTING, MOST_RETURNS = 0.5, 3
-"""DRIFTING: a state below the static limit is stuck if its residual exceeds this fraction of the
-force that the drift adds.  Such a state drifts without slip, so its change does not measure the
-distance to the periodic state.  The search then goes halfway back to the last state that was not
-stuck.  MOST_RETURNS: largest number of such returns in a row."""
+"""DRIFTING: in a march, the drift adds a certain force.  A state below the static limit is stuck if
+its residual exceeds this fraction of that force.  Such a state drifts without slip, so its change
+does not measure the distance to the periodic state.  The search then goes halfway back to the last
+state that was not stuck.  MOST_RETURNS: largest number of such returns in a row."""
 FORGETFUL = 0.2
 """The plain map is not accelerated if its contraction factor is below this value."""
 CAUTION = 0.3
@@ -116,9 +116,10 @@ class PeriodicState:
 class DriftRate:
     """Data for the error estimate of slow motions, whose states change little in a period.
 
-    If the plain map still changes the state by a force r, the velocity of the state has a relative
-    error of r / `gain`.  Only the difference between the force and the static limit depends on the
-    velocity.  So the error of the force is at most r / `gain` times this difference.
+    Let r be the force by which the plain map still changes the state.  Then the velocity of the
+    state has a relative error of r / `gain`.  Only the difference between the force and the static
+    limit depends on the velocity.  Therefore, the error of the force is at most r / `gain` times
+    the difference between the force and the static limit.
 
     Attributes
     ----------

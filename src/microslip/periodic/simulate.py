@@ -106,17 +106,17 @@ def steady_state(
 SLOW_EXCESS, LARGEST_EXCESS = 4.0, 0.6
 """A search starts from the static limit plus a forward traction.  This traction, divided by the
 friction bound, is `SLOW_EXCESS` times drift^(2/3), but at most `LARGEST_EXCESS`.  The rise of the
-friction is proportional to the same power of the drift.  The factor SLOW_EXCESS is so large that
-the search starts with too much forward traction, which makes an accelerated search converge
-faster."""
+friction is proportional to the same power of the drift.  SLOW_EXCESS is large enough that the
+search starts with too much forward traction.  An accelerated search converges faster from such a
+start."""
 MARCHES_FROM_COARSER = 50
-"""Largest number of marches in a search that starts from interpolated tractions.  If more are
-needed, a search from the usual start is faster."""
+"""Largest number of marches in a search that starts from interpolated tractions.  If more marches
+are needed, a search from the usual start is faster."""
 DRIVEN_MARCHES = 2 * MOST_MARCHES
 """Largest number of marches in a search for a driven contact, whose body can oscillate."""
 LOOSEST_START = 1e-4
-"""Largest tolerance of the state at a prescribed velocity from which the search for a driven
-contact starts, as a force divided by mu F_z."""
+"""A search for a driven contact starts from a state at a prescribed velocity.  This value is the
+largest tolerance of that state, as a force divided by mu F_z."""
 COARSENING, PREPARED_FROM = 6, 96
 """PREPARED_FROM: a run of a driven contact with at least this number of steps starts from a run
 with fewer steps.  COARSENING: ratio of these numbers of steps.  Runs with fewer than PREPARED_FROM
@@ -343,8 +343,10 @@ class _Search:
         return self.limit
 
     def _from_run(self, guess: Run) -> Iterator[Start]:
-        """Yield the initial state from a run that converged, if its tractions are known or can be
-        interpolated."""
+        """Yield the initial state that follows from a converged run.
+
+        No state is yielded if the tractions of the run are unknown or cannot be interpolated.
+        """
         contact = self.contact
         if guess.state is None or not guess.converged:
             return

@@ -1,10 +1,10 @@
 """The static limit: friction of a forward motion that is infinitely slow.
 
 The limit is a separate problem at every point.  Let q(t) be the periodic tractions of the
-oscillation alone, and g(t) the friction bound.  As the forward velocity vanishes, every point slips
-forward a little in each period when q(t) + s reaches the bound, where s is a constant traction.
-Such a slow drift does not change q(t).  By the flow rule, s has the largest forward component that
-the bound allows:
+oscillation alone, and g(t) the friction bound.  Consider a forward velocity that tends to 0.  In
+each period, every point slips forward a little when q(t) + s reaches the bound.  Here s is a
+constant traction.  Such a slow drift does not change q(t).  By the flow rule, s has the largest
+forward component that the bound allows:
 
     mu F_z mu_static = Integral { mean of q_forward
                                   + max s_forward : |q(t) + s| <= g(t) for all t } dA.
@@ -74,8 +74,8 @@ from microslip.scene.problem import Problem
 STEPS = 4
 """Number of steps from one turning point to the next.  Between turning points, the slip of each
 point grows in a constant direction, so backward Euler gives the same tractions for any number of
-steps.  A second-order method can end a step below the bound, and s depends on the square root of
-the distance from the bound."""
+steps.  A second-order method can end a step below the bound.  Even a small distance from the bound
+matters, because s depends on the square root of this distance."""
 SLOW_LOOP = 0.02
 """If the drift is below this value, the stick zone of the static limit determines the state on a
 loop.  The value is in u_lim per radian of phase."""
@@ -186,8 +186,9 @@ def loop_energy(
     u_lim.
 
     Each slipping point slips in a constant direction.  By Masing's rule, a point slips twice as far
-    between the turning points as in the initial loading.  So the energy is four times the friction
-    bound times the slip of the initial loading, summed over the points.
+    between the turning points as in the initial loading.  Therefore, each point contributes four
+    times its friction bound times its slip in the initial loading.  The energy is the sum over all
+    points.
 
     Parameters
     ----------
@@ -361,7 +362,8 @@ def limit_run(
 
 SLOW_LINE = 0.01
 """The stick zone of the static limit determines the state of a motion on a line if the drift is
-below this value, in u_lim per radian of phase.  For loops, see SLOW_LOOP."""
+small.  The drift must be below this value, in u_lim per radian of phase.  For loops, see
+SLOW_LOOP."""
 LOOP_RESOLUTION, SWEPT_RESOLUTION = Resolution(24, 4, 32), Resolution(24, 4, 96)
 TOLERANCE = 1e-3
 """Resolutions and tolerance of the search for motions on a loop.  Under an oscillating load, the
@@ -376,7 +378,8 @@ the search does not converge."""
 MOST_PASSES = 4
 """Largest number of runs in the search for the edges of the stick zone."""
 MOST_EDGES = 4
-"""Largest number of edges of the stick zone.  If there are more, they are treated as scatter."""
+"""Largest number of edges of the stick zone.  If a run has more edges, they are treated as
+scatter."""
 SLIVER = 1e-3
 """If the distance between two edges is below this fraction of the contact radius, both edges are
 treated as scatter.  If there is little slip, the shift is almost 0 in the rings on either side of
@@ -393,12 +396,12 @@ def edge_focus(
     budget: Budget | None = None,
     progress: Callable | None = None,
 ) -> Focus | None:
-    """Grade the rings for a slow motion towards the edges of the stick zone of the static limit.
+    """Choose the grading of the rings for a slow motion.
 
-    The stick zone of a circular motion is smaller than that of a linear motion of the same
-    amplitude, because slip on a circle never stops.  The stick zone of a contact with a hole is a
-    ring with two edges.  Under an oscillating load, the edges are computed for the static limit
-    only.
+    The rings are graded towards the edges of the stick zone of the static limit.  The stick zone of
+    a circular motion is smaller than that of a linear motion of the same amplitude, because slip on
+    a circle never stops.  The stick zone of a contact with a hole is a ring with two edges.  Under
+    an oscillating load, the edges are computed for the static limit only.
 
     The effort of a search is charged to every point that uses the result of the search.  Therefore,
     the work that remains in the budget of a point does not depend on earlier points.
@@ -469,9 +472,9 @@ def _edges_of(limit: Problem, settings: Settings, progress: Callable | None) -> 
 def static_run(
     problem: Problem, model: str, resolution: Resolution, tolerance: float, settings: Settings
 ) -> Run:
-    """Compute the static limit at one resolution; for arguments and result, see simulate.simulate.
+    """Compute the static limit at one resolution.
 
-    The velocity of the problem is 0.
+    For the arguments and the result, see simulate.simulate.  The velocity of the problem is 0.
     """
     if at_turning_points(problem) or settings.focus is not None:  # the edges are known
         contact = settings.contact(problem, model, resolution)
@@ -493,7 +496,8 @@ def stick_edges(
 ) -> tuple[list[Run], tuple[float, ...]]:
     """Find the radii of the stick zone's edges, on rings graded towards these edges.
 
-    The run is repeated on new rings until the radii stay the same, or at most MOST_PASSES times.
+    The run is repeated on new rings until the radii stay the same.  There are at most MOST_PASSES
+    runs.
 
     Parameters
     ----------
@@ -527,12 +531,13 @@ def stick_edges(
 
 
 def _stick_radii(contact: Contact, sticks: np.ndarray | None) -> tuple[float, ...]:
-    """Return the radii between rings that stick and rings that slip.
+    """Return the radii of the circles that separate sticking rings from slipping rings.
 
     A ring sticks if most of its points do.
 
-    Pairs of radii closer than SLIVER are removed.  If there are more than `MOST_EDGES` radii, only
-    the outermost radius is returned.  If `sticks` is None, no radius is returned.
+    Two radii are removed if the distance between them is below `SLIVER`.  If there are more than
+    `MOST_EDGES` radii, only the outermost radius is returned.  If `sticks` is None, no radius is
+    returned.
     """
     edges = contact.edges
     if sticks is None or edges is None:

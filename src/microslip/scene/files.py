@@ -1,11 +1,12 @@
 """Motions and pressures from data files such as "file:stroke.csv".
 
 A motion is given by equally spaced samples of one period.  The CSV file has one line for each
-sample.  The header line names at least one of the columns forward, lateral, angle, and load or
-indentation.  The end point of the period is omitted, because it equals the first point.  Without
-units, displacements are in u_lim, angles in u_lim / a, and loads and indentations are divided by
-their reference values.  Files with units are used for predictions in SI units; see si/strokes.py.
-The format can be described by ",decimal=comma" and ",encoding=cp1252" after the path.
+sample.  The header line names one or more of the columns `forward`, `lateral`, `angle`, `load` and
+`indentation`.  A file cannot have both a `load` and an `indentation`.  The end point of the period
+is omitted, because it equals the first point.  Without units, displacements are in u_lim, angles in
+u_lim / a, and loads and indentations are divided by their reference values.  Files with units are
+used for predictions in SI units; see si/strokes.py.  The format can be described by
+",decimal=comma" and ",encoding=cp1252" after the path.
 
 If there is a column `time`, it is used to check that the samples are equally spaced.
 
@@ -13,7 +14,8 @@ A pressure is given by values on a regular grid (see grid.py), in a CSV or netCD
 has the columns forward, lateral and pressure, and one line for each point.  A netCDF file has a
 variable `pressure` with the coordinates `forward` and `lateral`.  By default, each value is the
 mean over the cell around its point, like the reading of a sensor of finite size.  With
-",grid=samples" after the path, the values apply at the points and are interpolated bilinearly.
+",grid=samples" after the path, each value applies at its point.  The values are then interpolated
+bilinearly between the points.
 
 With ",pitch=0.5 mm" after the path, the file is a matrix of pressures, as exported by programs for
 pressure sensors and pressure films: the forward coordinate increases from line to line, and the
@@ -122,8 +124,8 @@ NUMBER = re.compile(r"[+-]?(\d+[.,]?\d*|[.,]\d+)([eE][+-]?\d+)?|nan|inf|B", re.I
 END = "@@"
 """Last line of Tekscan files."""
 LEAST_COORDINATES = 4
-"""Smallest number of evenly spaced values that are interpreted as coordinates.  Three pressures can
-be evenly spaced by chance."""
+"""Evenly spaced values are interpreted as coordinates if there are at least this many values.
+Three pressures can be evenly spaced by chance."""
 EVEN = 0.05
 """Largest difference between the steps of evenly spaced coordinates, divided by the first step.
 This value allows for coordinates rounded to 1/40 of the step."""
@@ -161,7 +163,8 @@ def create_pressure(file: NamedFile, content: bytes) -> Measured:
 
 
 def _factors(units: Mapping[str, str | None]) -> tuple[float, Units]:
-    """Return the ratio of the lateral to the forward unit of length, and the units as `Units`."""
+    """Return the ratio of the unit of lateral lengths to the unit of forward lengths.  Also returns
+    the units as `Units`."""
     factors: dict[str, float | None] = {}
     for name, si in SI.items():
         unit = units[name] or ""
@@ -210,8 +213,8 @@ def _points(file: NamedFile, content: bytes) -> Values:
 
 
 def _distinct(column: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Return the distinct coordinates in increasing order, as an array of shape (n,), and for each
-    point the index of its coordinate."""
+    """Return two arrays.  The first contains the distinct coordinates in increasing order, and has
+    the shape (n,).  The second contains the index of the coordinate of each point."""
     values, which = np.unique(column, return_inverse=True)
     group = np.concatenate([[0], np.cumsum(np.diff(values) > SAME * np.ptp(values))])
     return values[np.unique(group, return_index=True)[1]], group[which.reshape(-1)]

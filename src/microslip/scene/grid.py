@@ -71,8 +71,8 @@ def checked(
 
 
 def _step(label: str, axis: np.ndarray) -> float:
-    """Return the spacing of coordinates, an array of shape (n,).  The spacing must be uniform to
-    within REGULAR.
+    """Return the spacing of coordinates, an array of shape (n,).  The spacing must be uniform:
+    deviations are at most `REGULAR` times the spacing.
 
     Raises InputError for other coordinates.  The error message shows the pair of neighbours whose
     distance deviates most.
@@ -192,8 +192,10 @@ def cropped(points: Sequence[np.ndarray], values: np.ndarray, reading: str) -> G
 
 
 def distances(x: np.ndarray, y: np.ndarray) -> np.ndarray:
-    """Integrate the distance from the origin over each rectangle of the grid whose edges are x and
-    y."""
+    """Integrate the distance from the origin over each rectangle of a grid.
+
+    The edges of the rectangles are x and y.
+    """
     x, y = x[:, None], y[None, :]
     r = np.hypot(x, y)
     tiny = 1e-99  # replaces 0 in logarithms, which are then multiplied by 0
@@ -246,8 +248,8 @@ def of_loads(loads: np.ndarray) -> np.ndarray:
 def round_loads(cells: int, ring_loads: Callable, inner: float = 0.0) -> np.ndarray:
     """Compute the cell loads of a pressure that depends on the radius alone.
 
-    The result is an array of shape (cells, cells) with the sum 1.  The load on each of RINGS thin
-    rings is distributed uniformly along the middle circle of the ring.
+    The result is an array of shape (cells, cells) with the sum 1.  The pressure is divided into
+    RINGS thin rings.  The load of each thin ring is distributed uniformly along its middle circle.
 
     Parameters
     ----------

@@ -213,10 +213,11 @@ class Ring(RoundPressure):
 
     @property
     def _top(self) -> float:
-        """Factor of the square root in the pressure.  With this factor, the load is 1.
+        """Factor by which the square root in the pressure is multiplied.  With this factor, the
+        load is 1.
 
-        The factor equals 1 / Integral sqrt((r - b)(1 - r)) 2 pi r dr, where r = middle - half cos
-        t.
+        Let r = middle - half cos t.  Then the factor equals 1 / Integral sqrt((r - b)(1 - r)) 2 pi
+        r dr.
         """
         return 1.0 / (np.pi**2 * self._half**2 * self._middle)
 
@@ -252,8 +253,9 @@ class Ring(RoundPressure):
     def G_star(self) -> float:
         """G* in working units, which equals the largest displacement under full slip for G* = 1.
 
-        A unit traction on a narrow ring of radius s causes, per unit of the ring's width, the
-        displacement 4 s/(r + s) K(m)/pi at the radius r, where 1 - m = ((r - s)/(r + s))^2.
+        Let m be 1 - ((r - s)/(r + s))^2.  A unit traction on a narrow ring of radius s causes a
+        displacement at the radius r.  Per unit width of the ring, this displacement is 4 s/(r + s)
+        K(m)/pi.
         """
         # imported here, because loading takes a third of a second
         from scipy.integrate import quad

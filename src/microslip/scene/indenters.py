@@ -1,9 +1,9 @@
 """Axisymmetric indenters, whose contact is a full circle that grows with the load.
 
-By the method of dimensionality reduction, an indenter with the profile f(r) is equivalent to the
-plane profile D(c) = c Integral_0^c f'(r) / sqrt(c^2 - r^2) dr.  At the indentation depth D(c), the
-contact radius is c.  Let h = D / D(1).  Writing the friction bound as a superposition of flat
-punches gives
+By the method of dimensionality reduction, an indenter with the profile f(r) is equivalent to a
+plane profile.  The plane profile is D(c) = c Integral_0^c f'(r) / sqrt(c^2 - r^2) dr.  At the
+indentation depth D(c), the contact radius is c.  Let h = D / D(1).  Writing the friction bound as a
+superposition of flat punches gives
 
     G* = 1 / (2 Integral_0^1 x h'(x) dx)
     bound(r, c) = (G*/pi) Integral_r^c h'(x) / sqrt(x^2 - r^2) dx
@@ -80,8 +80,8 @@ class Indenter(RoundPressure):
     ) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
         """Return a quadrature rule for integrals from r to c.
 
-        The four arrays are the nodes x, the weights dx / sqrt(x^2 - r^2), the radii r, and the
-        roots sqrt(x^2 - r^2).  The nodes are along a new last axis.
+        The four arrays are the nodes x, the weights, the radii r, and the roots sqrt(x^2 - r^2).
+        The weights are dx / sqrt(x^2 - r^2).  The nodes are along a new last axis.
         """
         radii, contact = np.broadcast_arrays(np.asarray(r, float), np.asarray(c, float))
         contact = np.maximum(contact, SMALLEST_CONTACT)[..., None]
@@ -117,7 +117,8 @@ class Indenter(RoundPressure):
     def loading(self, displacement: np.ndarray) -> np.ndarray:
         """Return the tangential force after a displacement u from rest.
 
-        The force is 1 minus the load at the indentation depth 1 - u (Ciavarella 1998, Jaeger 1998).
+        Let P(d) be the load at the indentation depth d.  Then the force is 1 - P(1 - u) (Ciavarella
+        1998, Jaeger 1998).
         """
         depth = np.maximum(1.0 - np.asarray(displacement, float), 0.0)
         c = self.radius(depth)

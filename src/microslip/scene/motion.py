@@ -7,9 +7,9 @@ following term to the displacement along its direction:
 
     A * share * sin(cycles * phase + lead)
 
-A wave of the angle has the unit phi_lk(a/2), the largest angle of a bore with the amplitude 1.  The
-normal load or the indentation depth, divided by its reference value (the value without
-oscillation), is 1 plus the wave.  There is no contact while this sum is below 0.
+Waves of the angle are in units of phi_lk(a/2).  This unit is the largest angle of a bore motion of
+amplitude 1.  The normal load or the indentation depth, divided by its reference value (the value
+without oscillation), is 1 plus the wave.  There is no contact while this sum is below 0.
 """
 
 from __future__ import annotations
@@ -224,12 +224,12 @@ class Motion(spec.Named):
         has the opposite value if n / d is odd, and the same value as before if n / d is even.  The
         oscillation cannot propel the contact if, after this time, the forward component is reversed
         and the load is the same as before.  The signs of the lateral component and of the angle do
-        not matter, because under a symmetric pressure two images of a solution are solutions as
-        well.  The mirror image reverses the forward component and the angle.  The point reflection
-        q(-forward, -lateral) reverses the angle; it is a solution because the influence of one
-        point on another is an even function of the vector between them.  The solution -q reverses
-        all components.  Combinations of these three images give every combination of signs.  In all
-        images, the forward force has the sign of the forward motion.
+        not matter.  The reason is that, under a symmetric pressure, two images of a solution are
+        solutions as well.  The mirror image reverses the forward component and the angle.  The
+        point reflection q(-forward, -lateral) reverses the angle; it is a solution because the
+        influence of one point on another is an even function of the vector between them.  The
+        solution -q reverses all components.  Combinations of these three images give every
+        combination of signs.  In all images, the forward force has the sign of the forward motion.
         """
         if "forward" not in self.components:
             return False
@@ -296,8 +296,9 @@ class Motion(spec.Named):
     def drift(self, velocity: float, amplitude: float, poisson: float) -> float:
         """Compute the mean forward displacement per radian of phase, in u_lim.
 
-        The drift is proportional to the velocity.  The drift is computed at velocity 1 and scaled,
-        because at small velocities the rounding error of the oscillation would exceed the drift.
+        The drift is proportional to the velocity.  This function computes the drift at velocity 1
+        and multiplies it by the velocity.  At small velocities, the rounding error of the
+        oscillation would exceed the drift.
         """
         if self._sines and not self.edge_velocity and "forward" not in self.components:
             return velocity
@@ -321,8 +322,8 @@ class Motion(spec.Named):
         return float(np.max(np.hypot(forward, lateral)))
 
     def focus(self, velocity: float, amplitude: float, pressure: Pressure) -> float | None:
-        """Return the radius of a kink in the traction, towards which rings are graded; None without
-        a kink.
+        """Return the radius of the kink in the traction towards which the rings are graded, or None
+        if there is no kink.
 
         If the load oscillates, the result is the smallest contact radius divided by the largest.
         For a translation, the result is the stick radius of a straight oscillation with the same
@@ -361,7 +362,7 @@ class Motion(spec.Named):
         return waves[0] if waves else Wave(0.0)
 
     def _depth_at(self, height: np.ndarray, pressure: Pressure) -> np.ndarray:
-        """Return the indentation depth for a given load or indentation, and 0 if there is no
+        """Convert a load or an indentation to the indentation depth, which is 0 if there is no
         contact."""
         height = np.maximum(height, 0.0)
         return pressure.of_load(height) if "load" in self.components else height
@@ -372,8 +373,10 @@ class Motion(spec.Named):
         return float(self._depth_at(height, pressure))
 
     def depth(self, phase: np.ndarray, amplitude: float, pressure: Pressure) -> np.ndarray:
-        """Compute the indentation depth divided by its reference value; 0 if there is no
-        contact."""
+        """Compute the indentation depth divided by its reference value.
+
+        The result is 0 if there is no contact.
+        """
         return self._depth_at(1.0 + amplitude * self._normal(phase), pressure)
 
     def deepest(self, amplitude: float, pressure: Pressure) -> float:
@@ -399,9 +402,9 @@ class Motion(spec.Named):
         """Return the mean friction and the dissipated energy per period at nu = 0, if there is a
         closed form.
 
-        The result is None without a closed form.  Velocity 0 stands for the static limit.  A motion
-        along the direction of sliding follows Masing's rule under every pressure with a known
-        loading curve.  If only the load oscillates, there is a closed form for axisymmetric
+        The result is None if there is no closed form.  Velocity 0 stands for the static limit.  A
+        motion along the direction of sliding follows Masing's rule under every pressure with a
+        known loading curve.  If only the load oscillates, there is a closed form for axisymmetric
         indenters (theory/oscillating_load.py).
         """
         if self._longitudinal and pressure.loading is not None:
@@ -416,7 +419,7 @@ class Motion(spec.Named):
 
 
 def _is_like_sine(form: Callable[[np.ndarray], np.ndarray]) -> bool:
-    """Return whether a waveform has the symmetries of the sine, and the value 1 at pi/2."""
+    """Return whether a waveform has the symmetries of the sine and equals 1 at pi/2."""
     phase = np.linspace(-2.0 * np.pi, 2.0 * np.pi, 33)
     values = form(phase)
     images = np.stack([-form(-phase), form(np.pi - phase)])

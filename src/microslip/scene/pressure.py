@@ -10,9 +10,9 @@ computed with the compliance averaged over directions,
 
 For an axisymmetric indenter at the depth d, u_lim is mu d E*/G*, which is 3 mu F_z/(4 G* a) for a
 sphere.  A round contact that moves in one direction from rest slides everywhere once the
-displacement exceeds u_lim.  At nu = 0, the same applies to contacts of any shape.  For other
-contacts at nu > 0, full slip begins at a displacement that differs from u_lim by a few percent,
-depending on the direction.  The reduced shear modulus in working units, G*, is 3/4 for a sphere.
+displacement exceeds u_lim.  At nu = 0, the same applies to contacts of any shape.  At nu > 0, other
+contacts reach full slip at a displacement that differs from u_lim by a few percent.  The difference
+depends on the direction.  The reduced shear modulus G* in working units is 3/4 for a sphere.
 """
 
 from __future__ import annotations
@@ -192,11 +192,11 @@ class Pressure(spec.Named):
         return self.load(radius, radius)
 
     def stick_radius(self, displacement: float) -> float | None:
-        """Return the stick radius after a displacement >= 0 (in u_lim) in one direction from rest.
+        """Return the stick radius after a displacement in one direction from rest.
 
-        The stick radius is the contact radius at the depth 1 - displacement (Ciavarella, Jaeger).
-        The result is 0.0 at full slip, and None if the pressure is not that of an axisymmetric
-        indenter.
+        The displacement is in u_lim, and must be >= 0.  The stick radius is the contact radius at
+        the depth 1 - displacement (Ciavarella, Jaeger).  The result is 0.0 at full slip.  If the
+        pressure is not that of an axisymmetric indenter, the result is None.
         """
         if self.depth is None:
             return None

@@ -265,7 +265,7 @@ class Problem:
 
     @cached_property
     def mean_speed(self) -> float:
-        """Mean speed of the oscillation, which is the path length per radian of phase, in u_lim."""
+        """Mean speed of the oscillation (path length per radian of phase), in units of u_lim."""
         places = np.array(self.oscillation(LOOP))
         moves = places[:, 1:] - places[:, :-1]
         return float(np.sqrt(np.sum(moves**2, axis=0)).sum()) / (2.0 * np.pi)

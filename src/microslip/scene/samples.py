@@ -195,8 +195,11 @@ class Sampled(spec.NamedByText, _Samples):
         return (Sampled(self.rows[::2], height, self.by_load, text),)
 
     def _repeats(self, signs: Sequence[float]) -> bool:
-        """Return whether half a period later the load is unchanged, and the forward, lateral and
-        angular displacements are multiplied by the given signs."""
+        """Return whether the motion repeats itself, with the given signs, after half a period.
+
+        The load must be the same after half a period.  The forward, lateral and angular
+        displacements must be multiplied by the given signs.
+        """
         if len(self.rows) % 2:
             return False
         plane = self.rows - self.rows.mean(axis=0)
@@ -286,7 +289,8 @@ class Sampled(spec.NamedByText, _Samples):
 
 
 FEWEST_SAMPLES = 4
-"""Smallest number of rows in a period, also for the motion through every second row."""
+"""Smallest number of rows in a period.  The motion through every second row must also have this
+number of rows."""
 ROUGHER = 2.0
 """If the last row equals the first row, the roughness is compared with and without the last row.
 If the ratio is above this value, the last row is the end of the period.  The ratio is below 1.9 for

@@ -9,24 +9,24 @@ bound on the dissipation.  With the force F (|F| <= 1) and d = 1 - mu, it follow
   inequalities of Schwarz and Jensen <F_lateral cos t>^2 <= (1 - mu^2) / 2 = d (1 - d/2). Hence
   d <= 1 / ((v/y)^2 + 1/2).
 - bore (forward v phi t, angle phi sin t): the work of the torque takes the place of the work of the
-  lateral force. Forward tractions contribute at most phi d to the mean power of the torque, and
-  lateral tractions contribute at most phi sqrt(d/5), where 1/5 is the second moment of Hertz
-  pressure about a diameter. Hence d <= 1 / (5 (v - 1)^2) for v > 1.
+  lateral force. Forward tractions contribute at most phi d to the mean power of the torque. Lateral
+  tractions contribute at most phi sqrt(d/5), where 1/5 is the second moment of Hertz pressure about
+  a diameter. Hence d <= 1 / (5 (v - 1)^2) for v > 1.
 - longitudinal (forward v t + x sin t): if v >= x, the sphere never moves backward.
   In this case, d = 0.
 
-For the transverse motion, the dissipated energy per radian is the work v mu + y <F_lateral cos t>.
-This energy is at least v and at most v (1 - d) + y sqrt(d), hence at most v + y^2 / (4 v). For the
-bore, the dissipated energy per radian, divided by phi, is between v and v + 1 / (20 (v - 1)). If b
-is the upper bound on d, both energies are at most v (1 + b / (4 - 2 b)). The same bound applies to
-longitudinal motions with v >= x.
+For the transverse motion, the dissipated energy per radian equals the work, which is v mu + y
+<F_lateral cos t>. This energy is at least v. It is at most v (1 - d) + y sqrt(d), and hence at most
+v + y^2 / (4 v). For the bore motion, consider the dissipated energy per radian, divided by phi.
+This energy is at least v and at most v + 1 / (20 (v - 1)). If b is the upper bound on d, both
+energies are at most v (1 + b / (4 - 2 b)). Longitudinal motions with v >= x obey the same bound.
 
 The bounds apply to any nu and any stiffness. The functions take the dimensionless groups of the
 paper as arguments.
 
 Friction never decreases as the forward velocity increases, because Coulomb's law at a given
-pressure is monotone, and the half-space is elastic. Therefore (mu1 - mu2)(v1 - v2) >= 0 for
-periodic states of the same oscillation at the velocities v1 and v2. If the forward oscillation is
+pressure is monotone, and the half-space is elastic. For periodic states of the same oscillation at
+the velocities v1 and v2, it follows that (mu1 - mu2)(v1 - v2) >= 0. If the forward oscillation is
 reversed after half a period and the load is the same, friction is an odd function of the velocity.
 Hence friction is never negative for v > 0. Other motions can propel the contact (Motion.propels).
 
@@ -34,11 +34,11 @@ For some motions under Hertz pressure, closed forms replace simulations. Stored 
 this file and on the functions that it uses, but not on datasets/catalogue.py, which contains the
 names of these and other formulas.
 
-As a function of velocity and amplitude, friction can have kinks, where it is continuous but its
-slope or curvature is not. One kink is at the amplitude above which no point sticks during slow
-sliding. Another kink is at the velocity above which no point ever sticks. An interpolation needs a
-border between two cells at each kink. The border need not be exact, because the samples of friction
-resolve the remaining part of the kink.
+As a function of velocity and amplitude, friction can have kinks. At a kink, friction is continuous,
+but its slope or curvature is not. One kink is at the amplitude above which no point sticks during
+slow sliding. Another kink is at the velocity above which no point ever sticks. An interpolation
+needs a border between two cells at each kink. The border need not be exact, because the samples of
+friction resolve the remaining part of the kink.
 """
 
 from __future__ import annotations
@@ -106,8 +106,8 @@ LARGEST_DROPS = {
     "transverse": largest_drop_transverse,
     "bore": largest_drop_bore,
 }
-"""For each motion, a function of velocity and amplitude (floats) that returns an upper bound on 1 -
-mu_macro."""
+"""Upper bounds on 1 - mu_macro, by motion. Each bound is a function of velocity and amplitude,
+which are floats."""
 
 
 LOOP = "elliptic"
@@ -174,9 +174,10 @@ def _of_family(motion: str) -> Kinks:
     components.
 
     The kink velocity of a loop is the largest velocity of the forward oscillation. At larger
-    velocities, the contact never moves backward. Friction has no kink at this velocity, but it
-    changes over velocities of this size at all amplitudes. Under an oscillating load, the kink
-    velocity is the amplitude, and contact is lost above a certain amplitude.
+    velocities, the contact never moves backward. Friction has no kink at this velocity. However, at
+    all amplitudes, this velocity is the scale over which friction changes. If the load oscillates,
+    the kink velocity equals the amplitude of the oscillation. Above a certain amplitude, contact is
+    lost during a part of the period.
     """
     name, _, rest = motion.partition(":")
     if name not in (LOOP, LOAD):

@@ -74,7 +74,7 @@ def friction_bound(r: Numbers) -> Numbers:
 
 
 def load_inside(r: Numbers) -> Numbers:
-    """Return the fraction of the Hertz load within the radius r, 1 - (1 - r^2)^(3/2).
+    """Return the fraction of the Hertz load within the radius r, which is 1 - (1 - r^2)^(3/2).
 
     Raises ValueError unless r >= 0; the argument can have any shape. The result is dimensionless
     and 1 for r >= 1.
@@ -86,8 +86,8 @@ def ring_bounds(edges: np.ndarray) -> np.ndarray:
     """Compute the mean friction bound of each ring between consecutive radii.
 
     edges: n + 1 radii. Raises ValueError unless the radii are strictly increasing between 0 and 1.
-    Returns n dimensionless values. The sum of the values times the ring areas is the load between
-    the first and the last edge.
+    Returns n dimensionless values. If each value is multiplied by the area of its ring, the sum is
+    the load between the first and the last edge.
     """
     edges = checked("edges", edges, high=1.0)
     if edges.ndim != 1 or edges.size < 2 or not np.all(np.diff(edges) > 0):
@@ -104,8 +104,8 @@ def D(c: Numbers) -> Numbers:
     (Eqs 25, 26).
 
     Raises ValueError unless 0 < c <= 1; the argument can have any shape. The result is
-    dimensionless. For small c, D is about ln(4/c) - 1, and thus tends to infinity; it decreases to
-    D(1) = 0.
+    dimensionless. For small c, D is about ln(4/c) - 1, so D tends to infinity as c tends to 0. D
+    decreases with c, and D(1) is 0.
     """
     return _D_of_log(np.log(checked("c", c, high=1.0, low_open=True)))[()]
 
@@ -171,18 +171,17 @@ def bore_unit(poisson: float) -> float:
 
 
 def bore_amplitude(angle: Numbers, poisson: float = 0.0) -> Numbers:
-    """Convert an angle to a bore amplitude, phi~ = phi0 / phi_lk(1/2) (Eq 27, inverse of
-    bore_angle).
+    """Convert an angle to a bore amplitude (Eq 27, the inverse of bore_angle).
 
-    Raises ValueError unless angle >= 0 in u_lim/a and 0 <= poisson <= 0.5; the arguments are
-    broadcast. Returns a dimensionless array.
+    The amplitude is phi~ = phi0 / phi_lk(1/2). Raises ValueError unless angle >= 0 in u_lim/a and 0
+    <= poisson <= 0.5; the arguments are broadcast. Returns a dimensionless array.
     """
     return checked("angle", angle) / (_twist_unit(poisson) * D_half())
 
 
 def _twist_unit(poisson: Numbers) -> np.ndarray:
-    """Return the ratio of the torsion angle to D. This ratio depends on Poisson's ratio, because
-    torsion depends on G, but u_lim depends on G* = 4G/(2-nu)."""
+    """Return the ratio of the torsion angle to the function D of Eqs 25 and 26. This ratio depends
+    on Poisson's ratio, because torsion depends on G, but u_lim depends on G* = 4G/(2-nu)."""
     return 4 / (np.pi * (2 - checked("poisson", poisson, high=0.5)))
 
 
@@ -198,7 +197,7 @@ def mindlin_force(u: Numbers) -> Numbers:
 
 
 def mindlin_stick_radius(u: Numbers) -> Numbers:
-    """Return the stick radius after the displacement u from rest, sqrt(1 - u) (Eq 8).
+    """Return the stick radius after the displacement u from rest, which is sqrt(1 - u) (Eq 8).
 
     Raises ValueError unless u >= 0 in u_lim; the argument can have any shape. The radius is in
     units of a, and 0 for u >= 1.
@@ -229,7 +228,8 @@ def lubkin_share(r: Numbers, stick_radius: Numbers) -> Numbers:
     Raises ValueError unless r >= 0 and 0 <= stick_radius <= 1; the arguments are broadcast. The
     stick radius is 0 if all points slip. The ratio is between 0 and 1, equals 1 outside the stick
     radius, and is independent of Poisson's ratio. The formula is the closed form of a superposition
-    of punches with the radii s from c to 1, each rotated by -d phi_lk(s) (Lubkin 1951).
+    of rotating punches (Lubkin 1951). The radii s of the punches range from c to 1, and a punch of
+    radius s rotates by -d phi_lk(s).
     """
     r, c = np.broadcast_arrays(checked("r", r), checked("stick_radius", stick_radius, high=1.0))
     sticks = r < c
@@ -260,8 +260,9 @@ def lubkin_torque(stick_radius: Numbers) -> Numbers:
 
     Raises ValueError unless 0 <= stick_radius <= 1; the argument can have any shape. The torque is
     in mu*F_z*a. For every Poisson's ratio, it is 0 at the stick radius 1 and TORQUE_FULL_SLIP at
-    the stick radius 0. The torque is the integral of lubkin_traction, and equals the sum of the
-    torques (16/3) G s^3 (-d phi_lk(s)) of punches with radii from s = c to 1 (Lubkin 1951).
+    the stick radius 0. The torque is the integral of lubkin_traction. It also equals the sum of the
+    torques of rotating punches whose radii s range from c to 1 (Lubkin 1951). A punch of radius s
+    contributes (16/3) G s^3 (-d phi_lk(s)).
     """
     c = checked("stick_radius", stick_radius, high=1.0)[..., None]
     # With dD/ds = -E(k)/s, the integrand is s^2 E(k). After the substitution s = t^2, its only

@@ -3,7 +3,7 @@
 The static limits and the torsion of an indenter are accurate to about 1e-8. The limit for
 transverse oscillation applies to Poisson's ratio 0, and the limit for bore applies to any ratio.
 For a sphere, both limits agree with the closed forms of `paper`, which are faster. Quantities are
-dimensionless as in `paper`.
+dimensionless, as in the module `paper`.
 
 Eqs 9, 17 and 18 of the paper, which apply to any axisymmetric pressure, are evaluated by adaptive
 quadrature.
@@ -114,8 +114,8 @@ def torsion_stick_radius(pressure: IndenterPressure, angle: float, poisson: floa
 def torsion_traction(pressure: IndenterPressure, r: np.ndarray, stick_radius: float) -> np.ndarray:
     """Compute the circumferential traction of pure torsion inside the stick circle.
 
-    The superposition of rotating punches gives (2 r/pi) Integral g(t)/t d(theta) with
-    t^2 = c^2 + (c^2 - r^2) tan^2 theta.
+    The traction is a superposition of the tractions of rotating punches. With the stick radius c
+    and t^2 = c^2 + (c^2 - r^2) tan^2 theta, the result is (2 r/pi) Integral g(t)/t d(theta).
 
     Parameters
     ----------
@@ -143,10 +143,11 @@ def torsion_traction(pressure: IndenterPressure, r: np.ndarray, stick_radius: fl
 def torsion_energy(pressure: IndenterPressure, angle: float, poisson: float = 0.0) -> float:
     """Compute the dissipated energy per period of an oscillating torsion without sliding.
 
-    By Masing's rules, the energy is 8 W - 4 T phi, where W is the work of the first loading. The
-    torque T is a sum over punches of all radii s. A punch of the radius s contributes (16/3) G s^3
-    (-d phi(s)). Integration by parts gives 64 G Integral_c^1 s^2 phi(s) (phi(c) - phi(s)) ds. For a
-    sphere, this result is the formula of Lubkin and Deresiewicz.
+    By Masing's rules, the energy is 8 W - 4 T phi. Here phi is the amplitude of the angle, and W is
+    the work of the first loading. The torque T is a sum over punches of all radii s. A punch of the
+    radius s contributes (16/3) G s^3 (-d phi(s)). By integration by parts, the energy is 64 G
+    Integral_c^1 s^2 phi(s) (phi(c) - phi(s)) ds. For a sphere, this result is the formula of Lubkin
+    and Deresiewicz.
 
     Parameters
     ----------
@@ -206,8 +207,10 @@ def static_bore(pressure: IndenterPressure, angle: float, poisson: float = 0.0) 
 
 
 def _kink(pressure: IndenterPressure) -> float:
-    """Return the radius of an indenter's flat end, where the pressure has a kink; 0 without a flat
-    end."""
+    """Return the radius of the flat end of an indenter.
+
+    The pressure has a kink at this radius. The radius is 0 if there is no flat end.
+    """
     return float(pressure.radius(1e-300))
 
 

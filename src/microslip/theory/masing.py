@@ -8,10 +8,11 @@ on, the force follows the older branch. These rules are exact for Poisson's rati
 dimensionless as in `paper`.
 
 An Iwan model consists of parallel Jenkins elements, each of which is a spring in series with a
-slider. Let F(u) be the force of the first loading along one line at nu = 0. This force is 1 minus
-the load at the indentation depth 1 - u. The slope of F is 2 G* c, where c is the contact radius at
-this depth. Consider an Iwan model in which the elements with slip displacements from phi to phi +
-dphi have the stiffness rho dphi. The slope of its force is Integral_u^1 rho dphi. Hence
+slider. Let F(u) be the force of the first loading along one line at nu = 0. Let P(d) be the load at
+the indentation depth d. Then F(u) is 1 - P(1 - u). The slope of F is 2 G* c, where c is the contact
+radius at the depth 1 - u. Consider an Iwan model in which the elements with slip displacements from
+phi to phi + dphi have the stiffness rho dphi. The slope of its force is Integral_u^1 rho dphi.
+Hence
 
     rho(phi) = -F''(phi) = 2 G* / h'(c)    at the depth h(c) = 1 - phi,
 
@@ -20,10 +21,10 @@ displacement, because both the model and the contact follow Masing's rules. For 
 below the flat end slip together at phi = 1.
 
 In the discrete model, the contact radius is divided into intervals. One element replaces all
-elements of an interval, and has the sum of their stiffnesses and the sum of their limit forces.
-Hence the model has the initial stiffness of the contact and the correct force at full slip. In the
-first loading, the force of the model follows tangents of F at the ends of the intervals, so it is
-never below F.
+elements of an interval. Its stiffness and its limit force are the sums over these elements. Hence
+the model has the initial stiffness of the contact and the correct force at full slip. In the first
+loading, the force of the model follows tangents of F at the ends of the intervals, so it is never
+below F.
 """
 
 from __future__ import annotations
@@ -173,8 +174,10 @@ def _mean(v: np.ndarray, x: np.ndarray, curve: Function) -> np.ndarray:
 
 
 def _turned(curve: Function, travel: np.ndarray) -> np.ndarray:
-    """Return the change of force since a turning point, which follows the first loading curve at
-    twice the scale."""
+    """Return the change of force since a turning point.
+
+    The change follows the first loading curve at twice the scale.
+    """
     return 2.0 * curve(np.maximum(0.5 * travel, 0.0))
 
 
@@ -189,7 +192,7 @@ _GRID = 1.0 - np.linspace(0.0, 1.0, 4097)
 """Contact radii in the table that is used to interpolate the ends of the intervals."""
 LOOP_ERRORS = 3.0
 """Largest error on loops, divided by the largest error e on the first loading. The force on a
-branch of a loop is F(u_max) - 2 F(x) + 2 F(y), where each value of F has an error from 0 to e."""
+branch of a loop is F(u_max) - 2 F(x) + 2 F(y). The error of each value of F is between 0 and e."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -234,8 +237,8 @@ class Iwan:
         """Error of the force on any path, including paths with many nested loops.
 
         The force of a slider is a Lipschitz function of the slip displacement, with the constant 1.
-        Hence the error on any path is at most the total variation of the error on the first
-        loading.
+        Hence the error on any path has an upper bound, which is the total variation of the error
+        along the first loading.
         """
         return 2.0 * float(self.force_error.sum()) + self.poisson_error
 

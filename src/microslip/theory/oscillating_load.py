@@ -8,9 +8,9 @@ contact at the time T is
 
     min over tau from T to t of  v (t - tau) + d(tau) - h(x),
 
-because at every time tau, the stretch is at most the stretch at which the spring slides. With
-phi(t) = d(t) - v t, the stretch at any x is smaller than this limit by phi(t) - min phi. The mean
-over the springs is an integral over T. The result is exact for Poisson's ratio 0. Quantities are
+because at every time tau, the stretch is at most the stretch at which the spring slides. Let phi(t)
+= d(t) - v t. At any x, the stretch is smaller than this limit by phi(t) - min phi. The mean over
+the springs is an integral over T. The result is exact for Poisson's ratio 0. Quantities are
 dimensionless, in the working units of an indenter's pressure.Pressure.
 
 Under a sinusoidal indentation, a contact of constant stiffness, for example a flat end, acts as a

@@ -1,9 +1,9 @@
 """Closed forms of the paper, and exact static limits (v -> 0).
 
 All quantities are dimensionless. Lengths are divided by the contact radius a, forces by mu*F_z.
-Amplitudes are in u_lim (transverse, y~0) or in phi_lk(1/2) (bore, phi~). Velocities are in omega
-u_lim (transverse), a omega (continuous bore) or Omega phi0 a (oscillating bore). Forward is the
-direction of the macroscopic velocity, and lateral is perpendicular to it.
+Amplitudes are in u_lim for transverse motions (y~0), and in phi_lk(1/2) for bore motions (phi~).
+Velocities are in omega u_lim (transverse), a omega (continuous bore) or Omega phi0 a (oscillating
+bore). Forward is the direction of the macroscopic velocity, and lateral is perpendicular to it.
 
 Every function accepts floats or arrays, broadcasts them, and raises ValueError if an argument is
 not finite or is outside its range.
@@ -44,7 +44,7 @@ def large_amplitude_transverse(velocity: Numbers, amplitude: Numbers) -> Numbers
 
 
 def static_slider(amplitude: Numbers) -> Numbers:
-    """Return the static friction of a slider on a spring, sqrt(1 - amplitude^2) (Eq 7).
+    """Return the static friction of a slider on a spring, which is sqrt(1 - amplitude^2) (Eq 7).
 
     Raises ValueError unless amplitude >= 0; the argument can have any shape. The friction is 0 for
     amplitude >= 1.
@@ -54,10 +54,10 @@ def static_slider(amplitude: Numbers) -> Numbers:
 
 
 def stick_radius_transverse(amplitude: Numbers) -> Numbers:
-    """Return the stick radius under transverse oscillation alone, sqrt(1 - amplitude) (Eq 8).
+    """Return the stick radius under transverse oscillation alone (Eq 8).
 
-    Raises ValueError unless amplitude >= 0; the argument can have any shape. The radius is 0 for
-    amplitude >= 1.
+    The radius is sqrt(1 - amplitude). Raises ValueError unless amplitude >= 0; the argument can
+    have any shape. The radius is 0 for amplitude >= 1.
     """
     return hertz.mindlin_stick_radius(checked("amplitude", amplitude))
 
@@ -71,10 +71,11 @@ def static_stick_zone(stick_radius: Numbers) -> Numbers:
 
 
 def static_transverse(amplitude: Numbers) -> Numbers:
-    """Return the paper's static friction under transverse oscillation, 1 - amplitude^(3/2) (Eq 11).
+    """Return the paper's static friction under transverse oscillation.
 
-    Raises ValueError unless amplitude >= 0; the argument can have any shape. The friction is 0 for
-    amplitude >= 1. For the exact limit, see static_limit_transverse.
+    The friction is 1 - amplitude^(3/2) (Eq 11). Raises ValueError unless amplitude >= 0; the
+    argument can have any shape. The friction is 0 for amplitude >= 1. For the exact limit, see
+    static_limit_transverse.
     """
     return 1 - np.minimum(checked("amplitude", amplitude), 1.0) ** 1.5
 
@@ -111,12 +112,12 @@ def steady_bore_traction(lateral: Numbers, forward: Numbers, velocity: Numbers) 
 def forward_kernel(ratio: Numbers) -> Numbers:
     """Return the kernel Q_Y of the forward friction of a ring (Eq 19).
 
-    The kernel is the forward friction of a ring of radius ratio*velocity, divided by the friction
-    bound.
+    The kernel is the forward friction of a ring, divided by the friction bound. The radius of the
+    ring is ratio*velocity.
 
-    Raises ValueError unless ratio >= 0; the argument can have any shape. The kernel is 4 E(k) at
-    the modulus k = ratio for ratio <= 1, and Q_M(1/ratio) for ratio > 1. The kernel decreases from
-    2 pi at ratio 0 to 4 at ratio 1, and approaches pi/ratio at large ratios.
+    Raises ValueError unless ratio >= 0; the argument can have any shape. For ratio <= 1, the kernel
+    is 4 E(k) at the modulus k = ratio. For ratio > 1, the kernel is Q_M(1/ratio). The kernel
+    decreases from 2 pi at ratio 0 to 4 at ratio 1, and approaches pi/ratio at large ratios.
     """
     inside, even, odd = _ring_integrals(ratio)
     return np.where(inside, even, odd)[()]
@@ -125,12 +126,13 @@ def forward_kernel(ratio: Numbers) -> Numbers:
 def torque_kernel(ratio: Numbers) -> Numbers:
     """Return the kernel Q_M of the torque of a ring (Eq 20).
 
-    The kernel is the torque of a ring of radius ratio*velocity, divided by the friction bound and
-    the radius.
+    The kernel is the torque of a ring, divided by the friction bound and the radius. The radius of
+    the ring is ratio*velocity.
 
-    Raises ValueError unless ratio >= 0; the argument can have any shape. The kernel is 4 (E - (1 -
-    k^2) K)/k at the modulus k = ratio for ratio <= 1, and Q_Y(1/ratio) for ratio > 1. The kernel is
-    about pi*ratio at small ratios, is 4 at ratio 1, and approaches 2 pi at large ratios.
+    Raises ValueError unless ratio >= 0; the argument can have any shape. For ratio <= 1, the kernel
+    is 4 (E - (1 - k^2) K)/k at the modulus k = ratio. For ratio > 1, the kernel is Q_Y(1/ratio).
+    The kernel is about pi*ratio at small ratios, is 4 at ratio 1, and approaches 2 pi at large
+    ratios.
     """
     inside, even, odd = _ring_integrals(ratio)
     return np.where(inside, odd, even)[()]
@@ -151,9 +153,9 @@ def _ring_integrals(ratio: Numbers) -> tuple[np.ndarray, np.ndarray, np.ndarray]
 def bore_forward(velocity: Numbers) -> Numbers:
     """Return the forward friction of the steady continuous bore under Hertz pressure (Eq 21).
 
-    The friction is (3 pi/8)(v - v^3/4) for v <= 1. For v > 1, it is the hypergeometric function
-    2F1(-1/2, 1/2; 5/2; 1/v^2), which tends to 1 at large velocities. Raises ValueError unless
-    velocity >= 0; the argument can have any shape.
+    The friction is (3 pi/8)(v - v^3/4) for v <= 1. For v > 1, the friction is 2F1(-1/2, 1/2; 5/2;
+    1/v^2), where 2F1 is the hypergeometric function. The friction tends to 1 at large velocities.
+    Raises ValueError unless velocity >= 0; the argument can have any shape.
     """
     velocity = checked("velocity", velocity)
     slow = np.minimum(velocity, 1.0)
@@ -219,9 +221,10 @@ def _slow_mean(velocity: np.ndarray) -> np.ndarray:
 
 
 def bore_amplitude_at(stick_radius: Numbers) -> Numbers:
-    """Return the bore amplitude at which the stick radius is c, D(c)/D(1/2) (Eqs 30, 31).
+    """Return the bore amplitude at which the stick radius is c.
 
-    Raises ValueError unless 0 < stick_radius <= 1; the argument can have any shape.
+    The amplitude is D(c)/D(1/2) (Eqs 30, 31). Raises ValueError unless 0 < stick_radius <= 1; the
+    argument can have any shape.
     """
     stick_radius = checked("stick_radius", stick_radius, high=1.0, low_open=True)
     return hertz.D(stick_radius) / hertz.D_half()
@@ -239,18 +242,18 @@ def bore_stick_radius(amplitude: Numbers) -> Numbers:
 def static_bore(amplitude: Numbers) -> Numbers:
     """Return the paper's static friction under oscillating bore (Eq 33, corrected).
 
-    The friction is 1 - (1 - c^2)^(3/2), that is, Eq 10 at the stick radius c of Eq 32. For the
-    exact limit, see static_limit_bore. Raises ValueError unless amplitude >= 0; the argument can
-    have any shape.
+    The friction is 1 - (1 - c^2)^(3/2). This is Eq 10 at the stick radius c, which is given by Eq
+    32. For the exact limit, see static_limit_bore. Raises ValueError unless amplitude >= 0; the
+    argument can have any shape.
     """
     return static_stick_zone(bore_stick_radius(amplitude))
 
 
 def static_bore_printed(amplitude: Numbers) -> Numbers:
-    """Return Eq 33 as printed, 1 - (1 - c)^(3/2), in which the square of c in Eq 10 is missing.
+    """Return the static friction by Eq 33 as printed, 1 - (1 - c)^(3/2).
 
-    This function is for comparison only. Raises ValueError unless amplitude >= 0; the argument can
-    have any shape.
+    The printed equation contains c in place of the c^2 of Eq 10. This function is for comparison
+    only. Raises ValueError unless amplitude >= 0; the argument can have any shape.
     """
     return static_stick_zone(np.sqrt(bore_stick_radius(amplitude)))
 
@@ -259,12 +262,12 @@ def static_bore_printed(amplitude: Numbers) -> Numbers:
 # the largest constant forward traction that can be added to the oscillating traction without
 # exceeding the bound.
 def static_limit_transverse(amplitude: Numbers) -> Numbers:
-    """Return the exact static friction under transverse oscillation, v -> 0, for Poisson's ratio 0.
+    """Return the exact static friction under transverse oscillation for Poisson's ratio 0.
 
-    The friction is the integral of sqrt(g^2 - (g - g_c)^2) over the stick zone, where g_c is the
-    inner bound of mindlin_traction. The friction is 0 for amplitude >= 1. For other Poisson's
-    ratios, Mindlin's traction and this limit are approximations. Raises ValueError unless amplitude
-    >= 0; the argument can have any shape.
+    The static friction is the limit v -> 0. The friction is the integral of sqrt(g^2 - (g - g_c)^2)
+    over the stick zone, where g_c is the inner bound of mindlin_traction. The friction is 0 for
+    amplitude >= 1. For other Poisson's ratios, Mindlin's traction and this limit are
+    approximations. Raises ValueError unless amplitude >= 0; the argument can have any shape.
     """
     amplitude = np.minimum(checked("amplitude", amplitude), 1.0)
     step, bound, inner = _stick_zone_rule(np.sqrt(1 - amplitude), np.sqrt(amplitude))
@@ -273,11 +276,11 @@ def static_limit_transverse(amplitude: Numbers) -> Numbers:
 
 
 def static_limit_longitudinal(amplitude: Numbers) -> Numbers:
-    """Return the static friction under longitudinal oscillation, (1 - amplitude)^(3/2).
+    """Return the static friction under longitudinal oscillation, which is (1 - amplitude)^(3/2).
 
-    The friction is the integral of the inner bound g_c of mindlin_traction, and 0 for amplitude >=
-    1. The limit is exact for Poisson's ratio 0. Raises ValueError unless amplitude >= 0 in u_lim;
-    the argument can have any shape.
+    The friction is the integral of the inner bound g_c of mindlin_traction. For amplitude >= 1, the
+    friction is 0. The limit is exact for Poisson's ratio 0. Raises ValueError unless amplitude >= 0
+    in u_lim; the argument can have any shape.
     """
     return (1 - np.minimum(checked("amplitude", amplitude), 1.0)) ** 1.5
 
@@ -286,9 +289,10 @@ def static_limit_bore(amplitude: Numbers) -> Numbers:
     """Return the static friction under oscillating bore, v -> 0.
 
     The friction is the integral of (2/pi) g arccos(tau/g) over the stick zone. The integrand is the
-    largest forward traction, averaged over the angle. The limit is exact for every Poisson's ratio,
-    because neither the stick radius nor the torsional traction tau at a given phi~ depends on
-    Poisson's ratio. Raises ValueError unless amplitude >= 0; the argument can have any shape.
+    average over the angle of the largest forward traction. The limit is exact for every Poisson's
+    ratio. The reason is that, for a given phi~, neither the stick radius nor the torsional traction
+    tau depends on Poisson's ratio. Raises ValueError unless amplitude >= 0; the argument can have
+    any shape.
     """
     c = np.asarray(bore_stick_radius(amplitude))
     step, bound, inner = _stick_zone_rule(c, np.sqrt((1 - c) * (1 + c)))
@@ -302,13 +306,13 @@ def _stick_zone_rule(
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Return a quadrature rule over r < c.
 
-    The three arrays are the weights for d(eta), and the roots sqrt(1 - r^2) and sqrt(c^2 - r^2) at
-    the nodes.
+    The three arrays contain, at each node, the weight for d(eta), the root sqrt(1 - r^2), and the
+    root sqrt(c^2 - r^2).
 
-    The roots are complement*cosh(eta) and complement*sinh(eta) with complement = sqrt(1 - c^2), and
-    r dr = -(product of the roots) d(eta). The substitution resolves the thin layer at the edge for
-    small amplitudes. The nodes of eta follow a squared sine, because the integrands contain
-    half-integer powers at both ends.
+    The integration variable is eta, with r dr = -(product of the two roots) d(eta). The roots are
+    complement*cosh(eta) and complement*sinh(eta), where complement is sqrt(1 - c^2). The
+    substitution resolves the thin layer at the edge for small amplitudes. The nodes of eta follow a
+    squared sine, because the integrands contain half-integer powers at both ends.
     """
     # Smaller amplitudes change friction by less than the rounding error.
     complement = np.maximum(complement, 1e-8)
@@ -359,8 +363,9 @@ def bore_drift(force: Numbers, amplitude: Numbers) -> Numbers:
 
     In units of Omega phi0 a, the velocity is (2/pi) E^-1(P). Here E^-1 is the inverse of E, the
     friction of Eq 21 as a function of velocity. The result does not depend on the amplitude,
-    because the unit is proportional to the amplitude. The function has the same arguments and
-    exceptions as `transverse_drift`; forces between 1 - 1e-13 and 1 raise InputError.
+    because the unit is proportional to the amplitude. The function has the same arguments as
+    `transverse_drift`, and raises the same exceptions. In addition, forces between 1 - 1e-13 and 1
+    raise InputError.
     """
     steady = np.vectorize(_steady_bore, otypes=[float])(checked("force", force))
     return np.broadcast_arrays(2.0 / np.pi * steady, checked("amplitude", amplitude))[0].copy()

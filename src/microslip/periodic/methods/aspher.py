@@ -11,8 +11,8 @@ periods, only fast forward motions become periodic.  Two settings differ from th
 package:
 
 - The preconditioner is off.  The preconditioner is designed for sticking points.  When the slip
-  changes direction, the preconditioned solver needs about five times as many iterations, and the
-  mean forces are no more accurate.
+  changes direction, the preconditioned solver needs about five times as many iterations.  The mean
+  forces do not become more accurate.
 
 - A step that the package rejects counts as failed, and the march continues from the best tractions.
   By default, the package returns to the tractions before the step, which makes the mean forces
@@ -40,8 +40,8 @@ from microslip.theory.hertz import G_STAR
 MOST_PERIODS = 6
 """Largest number of periods."""
 ACCEPTED = 1e-2
-"""Stopping criterion of the package's step solver: largest traction change in a projected step,
-divided by the largest friction bound."""
+"""Stopping criterion of the package's step solver.  The solver stops when the largest traction
+change in a projected step is at most this fraction of the largest friction bound."""
 
 
 class Solver:

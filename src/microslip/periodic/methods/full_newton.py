@@ -1,7 +1,7 @@
 """Semismooth Newton method for q = P(q + slip / scale), with full steps.
 
-The method converges in a few steps near the solution.  Further away, points can switch between
-stick and slip forever.  Points with a very small bound are the first to switch.
+The method converges in a few steps near the solution.  Far from the solution, points can switch
+between stick and slip forever.  Points with a very small bound are the first to switch.
 """
 
 from __future__ import annotations

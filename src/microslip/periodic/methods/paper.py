@@ -26,7 +26,10 @@ STRESS_TOLERANCE = 1e-3
 
 
 def path_of(problem: Problem, steps: int = STEPS) -> Path:
-    """Return a path with the given number of steps, starting in the middle of a stroke."""
+    """Return a path with the given number of steps.
+
+    The path starts in the middle of a stroke.
+    """
     phase = 2.0 * np.pi / STEPS_PER_PERIOD * np.arange(steps + 1)
     return make_path(problem.displacement, phase, EULER)
 

@@ -19,7 +19,7 @@ MAX_ITERATIONS = 3000
 def _length(points: Points, step: float) -> float:
     """Return the length of a gradient step.
 
-    `step` is in units of the inverse of the largest eigenvalue.
+    `step` is the length of the step times the largest eigenvalue of the matrix.
     """
     return step / float(np.abs(np.linalg.eigvals(points.matrix)).max())
 
