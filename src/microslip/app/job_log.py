@@ -37,13 +37,12 @@ def job_log(path: str | Path, shown: int = logging.WARNING) -> Iterator[logging.
     try:
         yield log
         code = 0
-    except (CacheError, SolverError) as error:
-        log.error("Error: %s", error)
     except Exception as error:
+        is_plain = isinstance(error, CacheError | SolverError)
+        problem = str(error) if is_plain else problem_in_code(error)
         if getattr(error, "errno", None) in NO_WRITING:
-            name = getattr(error, "filename", None) or "a file"
-            log.error("Error: %s", advice("write", name, error))
-        elif problem := problem_in_code(error):
+            problem = advice("write", getattr(error, "filename", None) or "a file", error)
+        if problem:
             log.error("Error: %s", problem)
         else:
             log.exception("The job failed:")
