@@ -253,7 +253,7 @@ class Result(Answer):
     def of(
         cls, problem: Problem, estimates: Mapping[str, Estimate], reason: str = "", **values: Any
     ) -> Result:
-        """Build a Result.  Values that are not given are taken from DEFAULTS."""
+        """Build a Result.  If a value is missing, the value in DEFAULTS is used."""
         known = {"mean_velocity": Estimate(problem.velocity), **estimates}
         return cls(problem, {**about(problem), **DEFAULTS, **values}, known, reason)
 

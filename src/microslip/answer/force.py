@@ -66,7 +66,7 @@ ROUGH_TOLERANCE = 3e-2
 static limit is smaller than the difference between the force and the limit."""
 STATIC_TOLERANCE = 1e-3
 """Largest accepted error of the static limit when the force is close to it.  The SI layer uses the
-same value, so both agree on which forces are below the threshold."""
+same value.  Therefore, both layers agree on the forces that are below the threshold."""
 GAP_MARGIN = 2.0
 """A force certainly moves the contact if it exceeds the static limit by this factor times the error
 of the limit."""

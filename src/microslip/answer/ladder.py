@@ -1,9 +1,9 @@
 """Levels of resolution of a problem: cells, angles and time steps refined together.
 
 Level n has n cells, and its numbers of angles and steps are proportional to n.  So the error has a
-single leading term C / n^2, which is estimated from runs at the levels n/4, n/2 and n.  LEVELS
-interleaves two series of doublings: 2, 4, 8, ... and 3, 6, 12, ....  The cost therefore grows
-moderately from level to level, and level n can reuse the runs at n/2 and n/4.
+single leading term, C / n^2.  This term is estimated from runs at the levels n/4, n/2 and n.
+LEVELS interleaves two series of doublings: 2, 4, 8, ... and 3, 6, 12, ....  The cost therefore
+grows moderately from level to level, and level n can reuse the runs at n/2 and n/4.
 
 The first level depends on the tolerance and on the motion.  The mesh and the path also adapt to the
 problem.  Rings are graded towards the slip front (discretise.focus_strength).  The number of time

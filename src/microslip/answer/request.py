@@ -31,7 +31,7 @@ if TYPE_CHECKING:  # these load compiled code, which a closed form does not need
     from microslip.periodic.run import Run
 
 TOLERANCE = 1e-3
-"""Default tolerance, also used as the accuracy of runs if no tolerance is requested."""
+"""Default tolerance.  If no tolerance is requested, this value is the accuracy of the runs."""
 MOST_WORK = {"polar": 2e9, "cartesian": 2e9}
 MOST_WORK_OF_OTHERS = 2e8
 """Default limits on the work, by model.  The work is the number of step solves times the number of

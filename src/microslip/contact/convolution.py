@@ -165,11 +165,11 @@ def influence(
 ) -> tuple[np.ndarray, np.ndarray]:
     """Compute the influence coefficients for the traction and for its complex conjugate.
 
-    The result is two arrays of shape (P, P), where P is `padded`, in u_lim per unit of traction.
-    The first axis of both arrays is the forward offset between two cells, and the second axis is
-    the lateral offset.  Negative offsets are wrapped around.  The complex traction is lateral + i
-    forward.  The kernels of influence.py are integrated over a cell in closed form, and evaluated
-    at the centres of cells.
+    The result is two arrays of shape (P, P), where P is `padded`.  Their unit is u_lim per unit of
+    traction.  The first axis of both arrays is the forward offset between two cells, and the second
+    axis is the lateral offset.  Negative offsets are wrapped around.  The complex traction is
+    lateral + i forward.  The kernels of influence.py are integrated over a cell in closed form, and
+    evaluated at the centres of cells.
     """
     forward, lateral = (2.0 * half_width / cells for half_width in half_widths)
     offsets = np.fft.fftfreq(padded, 1.0 / padded)

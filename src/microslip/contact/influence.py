@@ -82,8 +82,8 @@ def elliptic_integrals(kc: np.ndarray, big_k: np.ndarray, big_e: np.ndarray) -> 
     kc: complementary moduli, as an array of shape (n,).
 
     The integrals are computed by the arithmetic-geometric mean.  The iteration converges
-    quadratically, and most slowly for the smallest modulus.  All moduli use the number of steps
-    that the smallest modulus needs, so that the compiler can use vector instructions.
+    quadratically.  Convergence is slowest for the smallest modulus.  All moduli use the number of
+    steps that the smallest modulus needs, so that the compiler can use vector instructions.
     """
     large, small, steps = 1.0, kc.min(), 0
     while large - small > HALF_PRECISION * large:

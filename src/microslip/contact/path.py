@@ -8,10 +8,10 @@ Runge-Kutta methods, in which every stage is one Coulomb step,
     A q_i + r_i = b_i,
 
 where b_i = z + w(t + c_i h) - Sum_{j<i} (a_ij / gamma) r_j, and r_i is gamma h times the slip rate.
-The last stage is the end of the step, so that tractions at the end of a step are within the
-friction bound.  Backward Euler has a single stage.  In a theta method, the single stage is before
-the end of the step.  The state is extrapolated to the end of the step, where tractions can exceed
-the bound.
+The last stage is at the end of the step.  Therefore, the tractions at the end of a step are within
+the friction bound.  Backward Euler has a single stage.  A theta method also has a single stage, but
+this stage is before the end of the step.  The state is extrapolated to the end of the step, where
+tractions can exceed the bound.
 """
 
 from __future__ import annotations
@@ -57,8 +57,8 @@ class Integrator:
 
 EULER = Integrator("euler", 1, (1.0,), ((0.0,),))
 SDIRK2 = Integrator("sdirk2", 2, (_GAMMA, 1.0), ((0.0, 0.0), ((1.0 - _GAMMA) / _GAMMA, 0.0)))
-"""Default integrator: L-stable, of second order, with two stages.  For the same work, it is far
-more accurate than backward Euler."""
+"""Default integrator.  It is L-stable and of second order, and it has two stages.  For the same
+work, it is far more accurate than backward Euler."""
 
 
 def theta_method(theta: float) -> Integrator:

@@ -116,10 +116,10 @@ def _of_edges(psi: np.ndarray, focus: Focus | float | None, pressure: Pressure) 
 
 
 def _focused(count: int, places: np.ndarray, strength: float) -> np.ndarray:
-    """Return count + 1 edges as angles psi, graded towards `places`.
+    """Return count + 1 edges as angles psi.
 
-    Each of the `places` is an edge between two rings.  Between two successive places, the rings are
-    widest in the middle.
+    The edges are graded towards `places`.  Each of the `places` is an edge between two rings.
+    Between two successive places, the rings are widest in the middle.
     """
     edge = np.pi / 2
     if len(places) == 1 and places[0] in (0.0, edge):

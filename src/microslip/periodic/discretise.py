@@ -101,8 +101,8 @@ def contact_of(
 def path_of(problem: Problem, contact: Any, steps: int, integrator: Integrator = SDIRK2) -> Path:
     """Build the path of a problem.  The path starts at a turning point.
 
-    If the second half of a period is the mirror image of the first, the path covers half a period,
-    otherwise a whole period.
+    The path covers half a period if the second half is the mirror image of the first, and a whole
+    period otherwise.
 
     Parameters
     ----------

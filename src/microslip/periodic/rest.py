@@ -37,7 +37,8 @@ displacements in two successive doublings.  The remaining displacement is extrap
 at most this value."""
 LONG, DRIFTING = 200, 1.8
 """If the ratio r is above DRIFTING after LONG (half) periods, the contact keeps drifting.  In a
-steady drift, r is 2.  On a coarse mesh, the threshold of drift can be below the force."""
+steady drift, r is 2.  A contact on a coarse mesh can drift under a force that is below the exact
+threshold."""
 MOST_SHARE = 0.9
 """After `most_after` periods, the oscillation has caused this fraction of the displacement."""
 

@@ -119,8 +119,8 @@ class Budget:
 STEP_SHARE = 1e-2
 """Largest ratio of the step tolerance to the tolerance of the periodic state."""
 SLOW_STEP_SHARE = 3e-4
-"""Smallest ratio of the step tolerance to the tolerance of the periodic state.  The slower the
-motion, the longer its transients, and the more the errors of the steps accumulate."""
+"""Smallest ratio of the step tolerance to the tolerance of the periodic state.  Slow motions have
+long transients, in which the errors of the steps accumulate."""
 TIGHTER = 0.1
 """The step tolerance in a second attempt is at least this fraction of the step tolerance in the
 first attempt."""
@@ -128,7 +128,7 @@ MARCH_SHARE = 0.16
 """Largest sum of the step tolerances in half a period, divided by the tolerance of the periodic
 state.  With two stages per step, the residuals add up to at most a third of the tolerance."""
 NAMES = ("friction", "torque", "dissipation", "velocity", "displacement")
-"""Names of the values of a run that have error estimates."""
+"""Names of those values of a run for which error estimates exist."""
 
 
 @dataclass(frozen=True)

@@ -369,9 +369,9 @@ TOLERANCE = 1e-3
 """Resolutions and tolerance of the search for motions on a loop.  Under an oscillating load, the
 edge of the contact moves across the rings, so more steps are needed."""
 LINE_RESOLUTION, FINE_RESOLUTION = Resolution(48, 2, 1), Resolution(192, 2, 1)
-"""Resolutions of the search for motions on a line.  This search needs no march, so many rings are
-cheap.  If the edges are accurate to 5e-4 of the radius, the static limit of a translation is
-accurate to 1e-4."""
+"""Resolutions of the search for motions on a line.  This search needs no march.  Therefore, runs
+with many rings are cheap.  If the edges are accurate to 5e-4 of the radius, the static limit of a
+translation is accurate to 1e-4."""
 FINE_TOLERANCE = 1e-5
 """Tolerance at FINE_RESOLUTION.  With a larger tolerance, some sticking rings appear to slip, and
 the search does not converge."""

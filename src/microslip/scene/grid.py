@@ -173,7 +173,7 @@ class Grid(NamedTuple):
 
 
 def cropped(points: Sequence[np.ndarray], values: np.ndarray, reading: str) -> Grid:
-    """Create a `Grid` from which the zeros around the pressure are removed.
+    """Create a `Grid` without the zeros around the pressure.
 
     points, values: return values of `checked`.  reading: one of READINGS.
     """
@@ -224,7 +224,7 @@ def largest_displacement(loads: np.ndarray, forward: float, lateral: float) -> f
 
 
 RINGS = 4096
-"""Number of thin rings that approximate a pressure that depends on the radius alone."""
+"""A pressure that depends on the radius alone is approximated by this number of thin rings."""
 SMALLEST_LOAD = 1e-13
 """Cell loads below this fraction of the total load are rounding errors and are set to 0."""
 

@@ -8,8 +8,8 @@ computed with the compliance averaged over directions,
 
     u_lim = max of 1/(pi G*) Integral mu p(z') / |z - z'| dA'.
 
-For an axisymmetric indenter at the depth d, u_lim is mu d E*/G*, which is 3 mu F_z/(4 G* a) for a
-sphere.  A round contact that moves in one direction from rest slides everywhere once the
+For an axisymmetric indenter at the depth d, u_lim is mu d E*/G*.  For a sphere, this length is 3 mu
+F_z/(4 G* a).  A round contact that moves in one direction from rest slides everywhere once the
 displacement exceeds u_lim.  At nu = 0, the same applies to contacts of any shape.  At nu > 0, other
 contacts reach full slip at a displacement that differs from u_lim by a few percent.  The difference
 depends on the direction.  The reduced shear modulus G* in working units is 3/4 for a sphere.

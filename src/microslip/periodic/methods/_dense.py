@@ -73,7 +73,8 @@ class DenseContact:
     def march(
         self, path: Path, state: np.ndarray, tolerance: float, previous: March | None = None
     ) -> March:
-        """Integrate along a path, see Contact.  Raises StepFailure if a step is not solved."""
+        """Integrate along a path; see contact.Contact.  Raises StepFailure if a step is not
+        solved."""
         self.tolerance, self.last = tolerance, state
         return march_by_steps(self.contact, self, path, state, previous)
 

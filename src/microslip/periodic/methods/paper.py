@@ -1,5 +1,6 @@
-"""The method of the paper: 8,000 backward Euler steps from full slip on 32 x 32 squares, without a
-search.
+"""The method of the paper: 8,000 backward Euler steps on 32 x 32 squares.
+
+The time integration starts from full slip. There is no search for the periodic state.
 
 In the paper, stresses are accurate to 0.1 %, and the result is the mean over the last period.
 Here, a period has 100 steps, and a step is solved when its residual is at most 0.1 % of the total
