@@ -48,7 +48,8 @@ be equal because of rounding."""
 ON_BOUND = 1.0 - 1e-4
 """A point counts as slipping if its traction is at least this fraction of the friction bound."""
 STEP_SHARE = 0.05
-"""Largest sum of the step residuals in a response, divided by the tolerance; see request.RUN_SHARE.
+"""Largest sum of the step residuals in a response, divided by the tolerance.  See also
+request.RUN_SHARE.
 """
 MOST_VALUES = 2e7
 """Largest number of tractions in memory at the same time.  Longer paths are integrated in

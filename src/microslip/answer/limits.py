@@ -65,7 +65,7 @@ LIMITS = {
     "elements": Limit(1, 10_000, "whole"),
 }
 """Limits of the arguments by name.  A function that needs other limits passes them to `within`.
-The units are those of `microslip.solve`; the travel is in u_lim."""
+The units are those of `microslip.solve`.  The travel is in u_lim."""
 RETURNED = 1e-12
 """A forward oscillation below this fraction of the amplitude is treated as a rounding error."""
 CLOSEST_FORCE = 0.9999

@@ -12,7 +12,8 @@ angular points has one angle and one wave.
 
 The compiler turns operations on tuples of four numbers into vector instructions if indices are
 unsigned.  Kernels are compiled without fastmath.  With fastmath, the compiler could reorder and
-fuse operations, and the last bits of a result would depend on which kernels were compiled before.
+fuse operations.  The last bits of a result would then depend on the kernels that were compiled
+before.
 """
 
 from __future__ import annotations

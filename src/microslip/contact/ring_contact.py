@@ -24,8 +24,8 @@ from microslip.scene.pressure import Pressure
 def load_on_rings(pressure: Pressure, edges: np.ndarray, depth: np.ndarray) -> np.ndarray:
     """Return the load inside each of n + 1 radii (`edges`), for each of k depths.
 
-    A depth is the indentation divided by its value in the reference state, in which the contact
-    radius is a and the load is F_z.  The result has the shape (k, n + 1).
+    A depth is the indentation divided by its value in the reference state.  In this state, the
+    contact radius is a and the load is F_z.  The result has the shape (k, n + 1).
     """
     return pressure.load(edges, pressure.radius(depth)[:, None])
 
@@ -149,7 +149,7 @@ class RingContact(Contact):
         """Convert values of shape (..., rows, cells) to fields of shape (..., points) for compiled
         code.
 
-        Each row of a field has operators.padded(cells) points; the additional points are set to
+        Each row of a field has operators.padded(cells) points.  The additional points are set to
         `fill`.
         """
         *shape, rows, cells = values.shape
@@ -315,7 +315,7 @@ class RingContact(Contact):
 
 
 class RadialContact(RingContact):
-    """Contact of rings without angular points; states have the shape (2, 1, cells).
+    """Contact of rings without angular points.  States have the shape (2, 1, cells).
 
     The model is exact for translations at nu = 0, because the tractions then depend on the radius
     alone.  `resolved` creates the contact of an elastic half-space.

@@ -34,7 +34,7 @@ from microslip.foundation.compiled import kernel
 MOST_ITERATIONS = 4000
 """Largest number of iterations of a step."""
 RELAXATION = 1.7
-"""Relaxation factor; 1.5 to 1.8 is usual (Eckstein and Bertsekas 1992)."""
+"""Relaxation factor.  Usual values are 1.5 to 1.8 (Eckstein and Bertsekas 1992)."""
 BETWEEN_BALANCES = 32
 """Number of iterations between calls of `rebalance` in a step with a driven body.  The mean number
 of iterations per step is lower in benchmarks/splitting.py.  Therefore, `rebalance` is rarely

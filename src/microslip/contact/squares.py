@@ -216,9 +216,9 @@ class DescentSolver:
 def _images(loads: np.ndarray, symmetry: str, poisson: float) -> int:
     """Return the number of cells of the whole contact for each resolved cell: 1, 2 or 4.
 
-    Displacements in a translation are symmetric under a half turn, and displacements in a rotation
-    are symmetric under a reflection across the lateral axis.  For translations at nu = 0, forward
-    and lateral displacements are independent, and each is even along both axes.
+    Displacements in a translation are symmetric under a half turn.  Displacements in a rotation are
+    symmetric under a reflection across the lateral axis.  For translations at nu = 0, forward and
+    lateral displacements are independent, and each is even along both axes.
     """
     if len(loads) % 2 or not symmetry:
         return 1

@@ -132,8 +132,8 @@ def tractions_at_phases(
     """Return the tractions of a march and the friction bounds at phases of its path.
 
     The two arrays have the shapes (phases, 2, ...) and (phases, ...).  `rows` contains the indices
-    of the phases; by default, all phases are used.  If the last stage of a step lies before the end
-    of the step, all phases are needed.
+    of the phases.  By default, all phases are used.  If the last stage of a step lies before the
+    end of the step, all phases are needed.
     """
     assert march.fields is not None  # true for contacts whose points can stick
     bounds = bounds_at_phases(contact, path)

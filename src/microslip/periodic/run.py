@@ -55,7 +55,7 @@ class Effort(NamedTuple):
 
     @staticmethod
     def of(solves: int, iterations: int, unknowns: int) -> Effort:
-        """Return the effort of marches; `unknowns` is the number of unknowns in a step."""
+        """Return the effort of marches.  `unknowns` is the number of unknowns in a step."""
         return Effort(solves, iterations, solves * unknowns, iterations * unknowns)
 
     def __add__(self, other: Effort) -> Effort:  # type: ignore[override]

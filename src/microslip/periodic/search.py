@@ -36,8 +36,8 @@ MOST_MARCHES = 200
 FORCING = 1e-3
 """Tolerance of the steps in a march, divided by the last change of the state."""
 LOOSEST, LOOSEST_NEAR = 1e-4, 1e-5
-"""Largest tolerance of a step.  The first value is for an initial state far from the periodic
-state, and the second value is for an initial state near it."""
+"""Largest tolerance of a step.  The first value applies if the initial state is far from the
+periodic state.  The second value applies if the initial state is near the periodic state."""
 NOISE = 1e-2
 """Largest accepted residual of a march, as a fraction of the force that the drift adds in this
 march.  The rate at which an error of the state decays is at most the rate at which the state

@@ -135,8 +135,8 @@ def simulate(
 ) -> Run:
     """Simulate a problem with a model at one resolution.
 
-    The problem determines the state that is computed.  This is the steady state of a motion without
-    oscillation, the static limit at velocity 0, or the state of rest at velocity 0 under a force.
+    The problem determines the state that is computed.  Without oscillation, this is the steady
+    state of the motion.  At velocity 0, it is the static limit, or the state of rest under a force.
     In all other cases, the periodic state is computed.
 
     Parameters

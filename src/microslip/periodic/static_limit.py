@@ -73,9 +73,9 @@ from microslip.scene.problem import Problem
 
 STEPS = 4
 """Number of steps from one turning point to the next.  Between turning points, the slip of each
-point grows in a constant direction, so backward Euler gives the same tractions for any number of
-steps.  A second-order method can end a step below the bound.  Even a small distance from the bound
-matters, because s depends on the square root of this distance."""
+point grows in a constant direction.  Therefore, backward Euler gives the same tractions for any
+number of steps.  A second-order method can end a step below the bound.  Even a small distance from
+the bound matters, because s depends on the square root of this distance."""
 SLOW_LOOP = 0.02
 """If the drift is below this value, the stick zone of the static limit determines the state on a
 loop.  The value is in u_lim per radian of phase."""

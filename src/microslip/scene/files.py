@@ -136,8 +136,8 @@ NETCDF = (".nc", ".nc4", ".cdf")
 BEGINNINGS = (b"\x89HDF", b"CDF\x01", b"CDF\x02", b"CDF\x05")
 """Possible first bytes of a netCDF file."""
 LARGEST_CHUNK = 100_000_000
-"""Largest allowed chunk of a netCDF file, in bytes.  HDF5 reads whole chunks; the default chunks of
-netCDF have up to 16 MB."""
+"""Largest allowed chunk of a netCDF file, in bytes.  HDF5 reads whole chunks.  The default chunks
+of netCDF have up to 16 MB."""
 VARIABLES = "allowed: a variable pressure with the dimensions and coordinates forward and lateral"
 
 Values = tuple[Sequence[np.ndarray], Mapping[str, str | None]]

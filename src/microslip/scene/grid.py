@@ -35,7 +35,7 @@ def checked(
 ) -> tuple[list[np.ndarray], np.ndarray, float]:
     """Check the coordinates and the pressures of a grid, and scale the coordinates.
 
-    Coordinates are arrays of shapes (n,) and (m,); `values` is an array of shape (n, m).
+    Coordinates are arrays of shapes (n,) and (m,), and `values` is an array of shape (n, m).
 
     Returns
     -------

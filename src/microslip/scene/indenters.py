@@ -12,8 +12,8 @@ superposition of flat punches gives
 where load(r, c) is the load outside the radius r.  The substitution x = r cosh(eta) makes these
 integrals smooth.
 
-Power is an indenter with the profile f(r) ~ r^n: a cone for n = 1, a sphere for n = 2, and an
-indenter with a flatter end for larger n.  Punch is a flat punch with a rounded edge: f(r) is 0
+Power is an indenter with the profile f(r) ~ r^n.  It is a cone for n = 1 and a sphere for n = 2.
+Indenters with larger n have a flatter end.  Punch is a flat punch with a rounded edge: f(r) is 0
 within the flat end, and a parabola outside.
 """
 

@@ -6,9 +6,9 @@ far end of a spring.  The equations of motion are
     velocity   u = v t                              force   m u'' + f = P
     spring     m u'' + c u' + f = k (v t - u)
 
-Here u is the forward displacement of the body without the oscillation of the motion, and f is the
-forward force of the contact.  Units are mu F_z, u_lim and the time 1 / omega, where F_z is the
-normal load without oscillation.
+Here u is the forward displacement of the body without the oscillation of the motion.  The forward
+force of the contact is f.  Units are mu F_z, u_lim and the time 1 / omega, where F_z is the normal
+load without oscillation.
 """
 
 from __future__ import annotations

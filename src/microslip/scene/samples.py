@@ -89,7 +89,7 @@ class SampledPath(_Samples):
     name = "path"
 
     def at(self, phase: np.ndarray, values: np.ndarray) -> np.ndarray:
-        """Interpolate values linearly at a phase; the values are given at the rows."""
+        """Interpolate values linearly at a phase.  The values are given at the rows."""
         return np.interp(phase, np.arange(len(values)), values)
 
     def displacement(

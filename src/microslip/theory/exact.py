@@ -26,13 +26,14 @@ paper as arguments.
 
 Friction never decreases as the forward velocity increases, because Coulomb's law at a given
 pressure is monotone, and the half-space is elastic. For periodic states of the same oscillation at
-the velocities v1 and v2, it follows that (mu1 - mu2)(v1 - v2) >= 0. If the forward oscillation is
-reversed after half a period and the load is the same, friction is an odd function of the velocity.
-Hence friction is never negative for v > 0. Other motions can propel the contact (Motion.propels).
+the velocities v1 and v2, it follows that (mu1 - mu2)(v1 - v2) >= 0. Assume that, after half a
+period, the forward oscillation is reversed and the load is the same. Then friction is an odd
+function of the velocity. Hence friction is never negative for v > 0. Other motions can propel the
+contact (Motion.propels).
 
 For some motions under Hertz pressure, closed forms replace simulations. Stored results depend on
-this file and on the functions that it uses, but not on datasets/catalogue.py, which contains the
-names of these and other formulas.
+this file and on the functions that it uses. They do not depend on datasets/catalogue.py, which
+contains the names of these and other formulas.
 
 As a function of velocity and amplitude, friction can have kinks. At a kink, friction is continuous,
 but its slope or curvature is not. One kink is at the amplitude above which no point sticks during

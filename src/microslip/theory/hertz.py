@@ -1,9 +1,9 @@
 """Constants and closed forms of a Hertz contact under normal load, tangential load and torsion.
 
-Unless a docstring states otherwise, quantities are in working units: contact radius a = 1, mu*F_z =
-1 and u_lim = 1 (the displacement at which the whole contact slides). In these units, the reduced
-shear modulus is 3/4. Tractions are in mu*F_z/a^2, torques are in mu*F_z*a, and angles are in
-u_lim/a.
+Unless a docstring states otherwise, quantities are in working units: the contact radius a, mu*F_z
+and u_lim are 1. Here u_lim is the displacement at which the whole contact slides. In these units,
+the reduced shear modulus is 3/4. Tractions are in mu*F_z/a^2, torques are in mu*F_z*a, and angles
+are in u_lim/a.
 
 Every function accepts floats or arrays, broadcasts them, and raises ValueError if an argument is
 not finite or is outside its range.
@@ -138,8 +138,8 @@ def lubkin_stick_radius(angle: Numbers, poisson: float = 0.0) -> Numbers:
     """Return the stick radius after pure torsion from rest by `angle` (inverse of Eq 24).
 
     Raises ValueError unless angle >= 0 in u_lim/a and 0 <= poisson <= 0.5; the arguments are
-    broadcast. Returns a radius above 0 and at most 1; it is 1 at the angle 0. Because the centre
-    never slips, a radius that would underflow is replaced by the smallest normal float.
+    broadcast. Returns a radius above 0 and at most 1. At the angle 0, the radius is 1. Because the
+    centre never slips, a radius that would underflow is replaced by the smallest normal float.
     """
     target = checked("angle", angle) / _twist_unit(poisson)
     # Newton's method in ln c. As a function of ln c, D is concave and has the slope -E(k), between

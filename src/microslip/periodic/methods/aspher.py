@@ -86,7 +86,7 @@ class Solver:
 
 
 def half_period(solver: Solver, path: Path, number: int) -> tuple[np.ndarray, float]:
-    """Integrate over one half period; `number` counts the half periods from 0.
+    """Integrate over one half period.  `number` counts the half periods from 0.
 
     Returns the forward forces at all phases except the first, and the sum of the residuals.
     """
