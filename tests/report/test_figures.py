@@ -169,7 +169,7 @@ def test_a_figure_of_any_sweep_is_drawn_or_refused_when_the_configuration_is_rea
     full = {"motion": "bore", "velocity": [0.1, 1], "amplitude": [0.5, 1]}
     figures, drawn = {"figure": {"kind": kind, "sweep": ["map", "full"]}}, 0
     for speed, amplitude, other in SHAPES:
-        one = {"motion": "bore", "amplitude": amplitude} | speed | other
+        one = {"motion": "longitudinal", "amplitude": amplitude} | speed | other
         try:
             read = from_mapping({"sweeps": {"map": one, "full": full}, "figures": figures})
         except ConfigError as error:
@@ -177,7 +177,10 @@ def test_a_figure_of_any_sweep_is_drawn_or_refused_when_the_configuration_is_rea
             continue
         dataset, drawn = stub.built(read), drawn + 1
         if kind != "explorer":
-            draw(kind, dataset)
+            figure = draw(kind, dataset)
+            gids = [gid for gid in ("certified", "error", "rest") if artists(figure, gid)]
+            line = ["certified"] * ("error" in other) + ["error"] * ("force" in speed)
+            assert gids == (line if kind == "curves" else ["rest"] * ("force" in speed))
         elif "cell" not in dataset.dims:
             page.build({"map": dataset}, {})
     assert drawn >= 10
@@ -217,7 +220,7 @@ def test_predictions_have_the_values_of_the_dataset():
     assert lower.get_xlabel() == "speed (mm/s)" and lower.get_xscale() == "log"
     assert "friction force (mN)" in lower.get_ylabel() and "dimensionless" in upper.get_ylabel()
     titles = [text.get_text() for text in upper.get_legend().get_texts()]
-    assert titles == ["load 50 mN", "hollow: not converged", "load 100 mN"]
+    assert titles == ["load 50 mN", "not converged", "load 100 mN"]
     for axes, name, factor in ((upper, "mu_apparent", 1.0), (lower, "friction_force_N", 1e3)):
         values = factor * dataset[name].values
         _, second = artists(axes, "computed")

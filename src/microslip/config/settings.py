@@ -675,13 +675,11 @@ class Configuration(Settings):
             runs.add(one)
 
     def _refuse_figure(self, key: str, figure: Figure) -> None:
-        kind = KINDS[figure.kind]
-        problem = f"{figure.kind} needs the key {kind.study}, which is missing"
-        missing = kind.study not in ("", *self.studies)
-        refuse(missing, f"{problem}; allowed: a kind of another key", f"{key}.kind")
-        key = f"{key}.sweep"
+        study = KINDS[figure.kind].study
+        key, names = (f"{key}.kind", self.studies) if study else (f"{key}.sweep", self.sweeps)
+        for name in figure.datasets:
+            refuse_unknown(name, names, f"{figure.kind} needs {shown(name)}, which is missing", key)
         for name in figure.sweep:
-            refuse_unknown(name, self.sweeps, f"{shown(name)} is no sweep", key)
             required = _required(figure.kind, self.sweeps[name])
             problem = f"{name} cannot be drawn as {figure.kind}; required: {required}"
             refuse(required != "", problem, key)

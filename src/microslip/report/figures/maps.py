@@ -44,10 +44,6 @@ distance from other contours. FAR is the distance from other numbers and from th
 contour."""
 HATCHED: look.Ink = {"fc": (1.0, 1.0, 1.0, 0.45), "ec": look.BLACK, "lw": 0.0, "hatch": 6 * "/"}
 REST: look.Ink = {"facecolor": look.PALE, "label": "comes to rest", "gid": "rest"}
-DIVERGING = "PuOr"
-"""Colour map for differences. It is pale in the middle."""
-PALE: look.Ink = {"fc": matplotlib.colormaps[DIVERGING](0.5), "ec": look.GREY, "lw": 0.5}
-PALE |= {"label": "change within the errors"}
 THRESHOLD: look.Ink = {"color": look.BLACK, "label": "static limit: threshold", "gid": "mu_static"}
 RIGID = "rigid contact, same velocities"
 
@@ -158,8 +154,13 @@ def _fill(page: Any, drawn: list[Panel], across: int) -> None:
     for one in axes:
         handles, labels = one.get_legend_handles_labels()
         entries |= dict(zip(labels, handles, strict=True))
+    contours = page.findobj(lambda artist: artist.get_gid() == "contours")
+    is_there = any(len(path) for one in contours for path in one.get_paths())
+    if not is_there and (uncertain := entries.get("contours only where certain")):
+        uncertain.set(label="no contour is certain", linewidth=0.0)
     if any(panel.variable == "mu_macro_change" for panel in drawn):
-        entries["pale"] = Patch(**PALE)
+        pale = matplotlib.colormaps[DIVERGING](0.5)
+        entries["pale"] = Patch(fc=pale, ec=look.GREY, lw=0.5, label="change within the errors")
     points = [panel.points for panel in drawn if panel.variable != "mu_macro_error"]
     flags = np.concatenate([one["converged"].values.ravel() for one in points])
     if bad := np.count_nonzero(flags == 0):
@@ -206,9 +207,7 @@ def fill(axes: Axes, panel: Panel, scale: Scale) -> ContourSet:
         complete = np.ma.count(supported) == np.ma.count(surface.values)
         contours = axes.contour(*grid, supported, scale.lines, **scale.contours())
         if not complete:
-            some = any(len(path) for path in contours.get_paths())
-            label = "contours only where certain" if some else "no contour is certain"
-            axes.plot([], [], color=look.BLACK, lw=0.7 * some, label=label)
+            axes.plot([], [], color=look.BLACK, lw=0.7, label="contours only where certain")
         contours.set_gid("contours")
         number_contours(axes, contours, filled, scale)
     axes.set(ylim=amplitude[[0, -1]], xlim=x[[0, -1]], gid="map")
@@ -298,6 +297,8 @@ black."""
 BEYOND = 0.01
 """Because of the errors of the points, friction may leave the range from 0 to 1 by at most this
 distance."""
+DIVERGING = "PuOr"
+"""Colour map for differences. This map is pale in the middle."""
 MOST_BANDS = 12
 """Maximum number of bands on each side of 0 in a map of differences."""
 FEW_BANDS = 6

@@ -128,20 +128,15 @@ def new_figure(width: float, height: float) -> Figure:
 def quantity(dataset: xr.Dataset, dim: str) -> Quantity:
     """Return the description of an axis of a dataset. Only drives, Poisson's ratio and the axes of
     the paper have a symbol."""
+    own, motion = TABLE.get(dim, {}), dataset.attrs.get("motion", "")
     name = "forward velocity" if dim == "velocity" else dim
     formula = dataset[dim].attrs.get("formula", "") if dim in dataset else ""
-    return _known(dataset.attrs.get("motion", ""), dim) or Quantity(name, "", formula)
+    return own.get(motion) or own.get("") or DRIVES.get(dim) or Quantity(name, "", formula)
 
 
 def symbol(motion: str, dim: str) -> str:
     """Return the LaTeX symbol of an axis for a motion, or else the name of the axis."""
-    known = _known(motion, dim)
-    return known.latex if known else rf"\mathrm{{{dim}}}"
-
-
-def _known(motion: str, dim: str) -> Quantity | None:
-    own = TABLE.get(dim, {})
-    return own.get(motion) or own.get("") or DRIVES.get(dim)
+    return quantity(xr.Dataset(attrs={"motion": motion}), dim).latex or rf"\mathrm{{{dim}}}"
 
 
 def axis(one: Quantity, short: bool = False) -> str:
@@ -151,7 +146,8 @@ def axis(one: Quantity, short: bool = False) -> str:
     """
     ratio = mathtext(one.unit)
     if not one.latex or (short and ratio):
-        return f"{one.text}  {ratio if '/' in ratio else f'{ratio} (dimensionless)'.strip()}"
+        # A unit with spaces is a ratio, or words that explain the number.
+        return f"{one.text}  {ratio if ' ' in one.unit else f'{ratio} (dimensionless)'.strip()}"
     return f"{one.text}  ${one.latex}{' = ' + ratio[1:-1] if ratio else ''}$"
 
 
@@ -293,8 +289,6 @@ def _in_words(match: re.Match[str]) -> str:
 VISIBLE_ERROR = 0.01
 """Smallest error estimate that is drawn, as a fraction of the largest value. Smaller error bars
 would be hidden by the markers."""
-HOLLOW = "hollow: not converged"
-"""Entry of the legend for the markers of all lines."""
 PIXELS = 401
 """Number of pixels along each side of a contact's image."""
 
@@ -458,9 +452,9 @@ def computed(axes: Axes, x: np.ndarray, *points: np.ndarray, of: str = "y", **in
         axes.errorbar(x, values, **bars).lines[2][0].set_gid("error")
     axes.plot(x[converged], values[converged], gid="computed", **marks)
     if not converged.all():
-        # A label that begins with "_" is not in the legend.
-        known = HOLLOW in axes.get_legend_handles_labels()[1]
-        marks |= {"mfc": "white", "ls": "none", "label": "_" if known else HOLLOW}
+        if "not converged" not in axes.get_legend_handles_labels()[1]:  # of the lines so far
+            axes.plot([], [], "o", mfc="white", mec=GREY, ms=3.2, mew=0.7, label="not converged")
+        marks |= {"mfc": "white", "ls": "none", "label": ""}
         axes.plot(x[~converged], values[~converged], gid="unconverged", **marks)
 
 
