@@ -169,7 +169,7 @@ def test_a_figure_of_any_sweep_is_drawn_or_refused_when_the_configuration_is_rea
     full = {"motion": "bore", "velocity": [0.1, 1], "amplitude": [0.5, 1]}
     figures, drawn = {"figure": {"kind": kind, "sweep": ["map", "full"]}}, 0
     for speed, amplitude, other in SHAPES:
-        one = {"motion": "longitudinal", "amplitude": amplitude} | speed | other
+        one = {"motion": "elliptic", "amplitude": amplitude} | speed | other
         try:
             read = from_mapping({"sweeps": {"map": one, "full": full}, "figures": figures})
         except ConfigError as error:
