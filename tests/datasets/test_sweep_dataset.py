@@ -27,7 +27,8 @@ GRIDS = {"transverse": AXES, "bore": AXES, "continuous_bore": {"velocity": [0.1,
 
 def records_of(name, grids):
     """Configuration of sweeps with the figures of their single runs, and records of a sweep."""
-    figures = {name: figure for name, figure in RUNS.items() if figure["sweep"] in grids}
+    drawn = [sweep for sweep, axes in grids.items() if "stiffness" not in axes]
+    figures = {name: figure for name, figure in RUNS.items() if figure["sweep"] in drawn}
     configuration = sweep_stub.configured(grids, figures=figures)
     return configuration, sweep_stub.records_of(configuration, name)
 

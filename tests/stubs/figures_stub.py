@@ -54,6 +54,7 @@ def fake_transverse(n: int = 9) -> xr.Dataset:
         history_force_forward=("history_step", force.real),
         history_force_lateral=("history_step", force.imag),
         history_velocity=0.2,
+        history_poisson=0.0,
         history_amplitude=1.0,
     )
 
@@ -93,11 +94,13 @@ def fake_continuous_bore(n: int = 9, rings: int = 8) -> xr.Dataset:
         field_traction_forward=("cell", -bound * (x + 0.8) / away),
         field_bound=("cell", bound),
         field_velocity=0.8,
+        field_poisson=0.0,
         field_centre_lateral=-0.8,
         transient_displacement=(step, np.tile(travel, (3, 1))),
         transient_force_forward=(step, gone[0]),
         transient_torque=(step, gone[1]),
         transient_velocity=0.8,
+        transient_poisson=0.0,
         transient_force_theory=end[0],
         transient_torque_theory=end[1],
     )

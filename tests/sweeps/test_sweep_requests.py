@@ -35,12 +35,16 @@ def test_a_new_axis_keeps_the_old_requests():
 
 def test_figures_ask_for_single_runs():
     steady = {"velocity": [0.5]}
-    sweeps = {"transverse": {"velocity": 1, "amplitude": 1}, "continuous_bore": steady}
+    cone = {"velocity": 1, "amplitude": 1, "pressure": "power:exponent=1", "poisson": 0.3}
+    cone["model"] = "polar"
+    sweeps = {"transverse": cone, "continuous_bore": steady}
     configuration = configured(sweeps, figures=RUNS)
     kinds = [request["kind"] for request in sweep.runs_of(configuration, "continuous_bore")]
     assert kinds == ["field", "history", "history", "history"]
     (history,) = sweep.runs_of(configuration, "transverse")
     assert (history["periods"], history["velocity"]) == (4, "0.1")
+    assert (history["pressure"], history["poisson"]) == ("power:exponent=1", "0.3")
+    assert history["model"] == "polar"
 
 
 @pytest.mark.parametrize("size", [1, 2, 4, 6, 50])

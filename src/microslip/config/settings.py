@@ -615,14 +615,17 @@ def _required(kind: str, sweep: Sweep) -> str:
     plane = "two amplitudes, and two velocities above 0 or two forces, at one stiffness and mass"
     is_line = several & {"force"} if sweep.force else several
     is_steady = sweep.motion == "continuous-bore"
-    is_run = not (is_steady or sweep.is_certified)
+    is_run = not sweep.drives.keys() - ({"force"} if sweep.velocity else set())
+    is_history = is_run and not (is_steady or sweep.is_certified)
+    is_steady_run = is_run and is_steady and sweep.pressure == "hertz"
     needs = {
         "map": (is_map, plane),
         "curves": (is_line, f"{line}; with a force, two forces"),
-        "history": (is_run, "an oscillation, and no key error"),
+        "history": (is_history, "an oscillation with a velocity, no spring and no key error"),
         "explorer": ({*sweep.dims} - {"poisson"}, "two values of an axis except poisson"),
     }
-    needs |= dict.fromkeys(("field", "transients"), (is_steady, "the motion continuous-bore"))
+    what = "the motion continuous-bore with a velocity, no spring and the pressure hertz"
+    needs |= dict.fromkeys(("field", "transients"), (is_steady_run, what))
     is_enough, text = needs[kind]
     return "" if is_enough else text
 

@@ -131,11 +131,15 @@ def runs_of(configuration: Configuration, name: str) -> list[dict]:
     requests = []
     for figure in configuration.figures.values():
         if figure.run and figure.sweep == (name,):
-            run = {"motion": solver_names(configuration.sweeps[name])[0]} | figure.run
+            sweep = configuration.sweeps[name]
+            motion, pressure = solver_names(sweep)
+            run = {"motion": motion, "poisson": sweep.poisson[0]} | figure.run
+            run |= {} if pressure == "hertz" else {"pressure": pressure}
             starts = STARTS if figure.kind == "transients" else STARTS[:1]
             if figure.kind == "field":
                 requests.append(request_of("field", **run))
             else:
+                run |= {} if sweep.model == "auto" else {"model": sweep.model}
                 requests += [request_of("history", start=start, **run) for start in starts]
     return requests
 

@@ -37,7 +37,8 @@ SHADES = LinearSegmentedColormap.from_list("bound", ["#FFFFFF", "#8CC8EE"])
 def _conditions(dataset: xr.Dataset, run: str, *names: str) -> str:
     """Format the conditions of a run. `run` is the first word in the names of the run's
     variables."""
-    values = {name: float(dataset[f"{run}_{name}"]) for name in names}
+    values = {name: float(dataset[f"{run}_{name}"]) for name in (*names, "poisson")}
+    values["poisson"] = values["poisson"] or np.nan  # 0 is not shown
     return look.conditions(dataset.attrs.get("motion", ""), values)
 
 
