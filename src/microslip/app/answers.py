@@ -211,9 +211,10 @@ def fit(
     The result contains the coefficient of friction without vibration, and either the displacement
     u_lim at which the whole contact slides or the shear modulus.  Each row of the CSV file is a
     measurement of friction under vibration.  The heading names the columns and their units.  One
-    column is friction [N] or mu.  The other columns are any of speed [mm/s], amplitude [um],
-    frequency [kHz] and load [N], and optionally friction_error [N] or mu_error.  If a column is
-    missing, an option can give its value for all rows.  Exit codes: 0 if both parameters are
+    column contains the measured values.  The heading of this column is friction [N] or mu.  The
+    other columns are speed [mm/s], amplitude [um], frequency [kHz] and load [N].  If one of these
+    four columns is missing, an option can give its value for all rows.  A column of standard
+    errors, friction_error [N] or mu_error, is optional.  Exit codes: 0 if both parameters are
     determined; 1 if only mu is determined, or if unreadable lines are left out; 2 for bad input, or
     if neither parameter is determined.
     """
@@ -232,9 +233,9 @@ def response(path: str, output: str | None = None, **arguments: Any) -> Answer:
     """Compute the forces of a contact that follows a path from a file.
 
     The result contains forces, torque, dissipated energy and stick fraction, with error estimates.
-    The columns of the file are any of forward, lateral and angle, and at most one of load and
-    indentation.  Each heading contains the unit, as in forward [um].  `load` is the load of the
-    reference state.
+    The file can have the columns forward, lateral and angle.  It can also have one of the columns
+    load and indentation.  Each heading contains the unit, as in forward [um].  `load` is the load
+    of the reference state.
     """
     import microslip
 
@@ -254,9 +255,9 @@ def fold(record: str, output: str = "", rows: int = 32, **arguments: str) -> Ans
     """Average a long record of a motion, such as one measured by a vibrometer, to one period.
 
     The slow drift is removed, and the periods are averaged.  The standard error accounts for the
-    scatter between the periods and for a slow drift of the frequency.  The record has the column
-    time, any of the columns forward, lateral and angle, and at most one of load and indentation.
-    Each heading contains the unit, as in time [s],lateral [um].
+    scatter between the periods and for a slow drift of the frequency.  The record must have the
+    column time.  The record can have the columns forward, lateral and angle, and one of the columns
+    load and indentation.  Each heading contains the unit, as in time [s],lateral [um].
     """
     from microslip.foundation.number_text import number_text
     from microslip.si.fold import fold as fold_record
@@ -355,6 +356,7 @@ def table(motion: str, output: str | None = None, **arguments: Any) -> Answer:
 
 
 def _exported(plain: Any, columns: Any, comments: list[str]) -> Answer:
-    """Return the answer for a table with comments.  Numbers are printed with six digits."""
+    """Return an answer that consists of comments and a table.  Numbers are printed with six
+    digits."""
     text = csv_text(columns, comments, digits=6).rstrip("\n")
     return Answer(plain, text, True, csv=lambda: csv_text(columns, comments), is_table=True)

@@ -1,4 +1,4 @@
-"""The log of a workflow job, the message if the job fails, and the end of a job by Ctrl-C."""
+"""Log files, error messages and interrupts of the jobs of the workflow."""
 
 import gc
 import logging
@@ -62,7 +62,8 @@ def job_log(path: str | Path, shown: int = logging.WARNING) -> Iterator[logging.
 def end_job(number: int, frame: object) -> NoReturn:
     """Signal handler that removes partial files and ends this process without a message.
 
-    A KeyboardInterrupt would print a long traceback, and a pool would first finish its points.
+    Without this handler, a KeyboardInterrupt would print a long traceback, and a pool of processes
+    would first finish its points.
     """
     remove_partial()
     os._exit(128 + number)

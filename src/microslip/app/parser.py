@@ -114,8 +114,8 @@ def option(argument: str) -> str:
 
 
 def message(argument: str, value: object, allowed: str, names: Iterable[str]) -> str:
-    """Return a one-line error message about an argument.  The value None is omitted, and the Python
-    arguments `names` are replaced by options."""
+    """Return a one-line error message about an argument.  A value of None is omitted.  Python
+    arguments that are in `names` are replaced by options."""
     text = "" if value is None else f" = {shown(value)}"
     return " ".join(f"{argument}{text}: {with_options(allowed, names)}".split())
 

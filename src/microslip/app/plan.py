@@ -35,7 +35,8 @@ BUILDERS = {
     "claims": ("studies", "report/pages.py", "report/claims.html"),
     "explorer": ("report/explorer", "sweeps/period_codec.py"),
 }
-"""Modules and folders that make each kind of product.  The modules that they import are added."""
+"""Modules and folders that make each kind of product.  The modules that these modules import are
+added."""
 MAP_CODE = ("sweeps/map_refinement.py", "sweeps/map_coordinates.py")
 """Modules that choose the points of a certified map."""
 
@@ -121,8 +122,8 @@ class Plan:
         """Return the batches of a product, keyed by their path without extension, in the order of
         the requests.
 
-        A certified map has one batch with all points.  The value of this batch is None, because the
-        choice of its requests depends on results.
+        A certified map has one batch with all points.  The value of this batch in the dict is None,
+        because the requests of the batch depend on results.
         """
         configuration, blocks = self.configuration, []
         if (sweep := configuration.sweeps.get(name)) is not None:
@@ -219,8 +220,8 @@ class Results:
 
     def batches(self, certified: bool) -> list[str]:
         """Return the names, without extension, of missing batch files that are needed for missing
-        products.  If `certified` is true, these are the batches of certified maps.  If `certified`
-        is false, these are all other batches."""
+        products.  If `certified` is true, only batches of certified maps are returned.  If
+        `certified` is false, all other batches are returned."""
         return [path.stem for path, b in self._needed.items() if (b is None) == certified]
 
     def new_points(self) -> str:
@@ -261,7 +262,7 @@ class Results:
 
     def _chosen(self, folder: str, stem: str, endings: tuple[str, ...]) -> tuple[str, bool]:
         """Return a name, and whether complete files with this name exist.  If there are no complete
-        files, the name is an unused one."""
+        files, an unused name is returned."""
         number = self._listed(folder).get(stem, {})
         for variant in sorted(number):
             if content.GAPS not in number[variant] and number[variant].issuperset(endings):
@@ -272,8 +273,8 @@ class Results:
         return next(name for name in names if name not in number), False
 
     def _list(self, folder: str) -> dict[str, dict[str, set[str]]]:
-        """Return the extensions of the files in a folder.  The outer keys are file names without
-        their number, and the inner keys are file names with their number."""
+        """Return the extensions of the files in a folder.  The outer key is the file name without
+        its number.  The inner key is the file name with its number."""
         listed: dict[str, dict[str, set[str]]] = {}
         path = self.folder / folder
         for file in os.listdir(path) if self.here and path.is_dir() else ():

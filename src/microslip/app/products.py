@@ -20,8 +20,9 @@ log = logging.getLogger("microslip")
 def make_products(job: Any) -> None:
     """Make the products of a job, one after the other.
 
-    job: the variable `snakemake` of a script.  The parameter `products` of the job is a JSON list
-    of [name, stem of the files, inputs].  Paths are relative to the folder of results.
+    job: the variable `snakemake` of a script.  The parameter `products` of the job is a JSON list.
+    Each item contains the name of a product, the stem of its files, and its inputs.  Paths are
+    relative to the folder of results.
 
     If one product fails, the other products are still made.  The first error is raised at the end.
     """
@@ -41,7 +42,7 @@ def make_products(job: Any) -> None:
 
 
 def make(plan: Plan, name: str, stem: Path, inputs: list[Path]) -> None:
-    """Make the files of a product, and link its plain names to them.
+    """Make the files of a product.  The plain names of the product become links to these files.
 
     stem: path of the files without extension.  inputs: datasets, then batch files.
 

@@ -107,8 +107,8 @@ def _run(arguments: list[str]) -> int:
 
 
 def configurations() -> dict[str, Path]:
-    """Return the paths of all configurations, keyed by name.  They are in the folder config of the
-    package and of the current folder."""
+    """Return the paths of all configurations, keyed by name.  Configurations are in the folder
+    config of the package, and in the folder config of the current folder."""
     folders = source_digest.workflow_file("config/config.yaml").parent, Path("config")
     return {file.stem: file for folder in folders for file in sorted(folder.glob("*.yaml"))}
 

@@ -83,8 +83,9 @@ def _open_closed_streams() -> None:
     """Open the standard streams that are closed, and buffer standard output until the end.
 
     If a stream stays closed, a file that is opened later gets the number of the stream.  The output
-    of the stream is then written to this file.  With the buffer, standard output is either complete
-    or missing, and only `_written` has to handle a full device.
+    of the stream is then written to this file.  Because of the buffer, standard output is either
+    complete or missing.  Only the function `_written`, which writes the buffer, has to handle a
+    full device.
     """
     missing = sys.stdout is None
     while (number := os.open(os.devnull, os.O_RDWR)) < 3:

@@ -1,2 +1,2 @@
-"""Basic functions for all packages: errors, names with parameters, compiled functions, source
-digests."""
+"""Basic tools for all packages: error classes, parsing of names with parameters, compilation of
+functions, and digests of sources."""

@@ -58,15 +58,16 @@ OPTIONS = {"nogil": True, "error_model": "numpy"}
 ROOM = 16_000_000
 """Number of bytes that must be free on the disk of a folder.  The compiled code takes 5 MB."""
 SPELL = 1.0
-"""The next compilation is announced again after this number of seconds without compilation.
-Between the kernels of one solution, milliseconds pass."""
+"""A compilation is announced again after this number of seconds without compilation.  In one
+solution, each compilation begins milliseconds after the end of the previous one."""
 PAUSE = 0.05
 """Seconds between two attempts to lock the folder."""
 ATTEMPTS = iter(range(2400))
-"""Attempts of this process to lock the folder.  They end after two minutes of waiting, because the
-process that has the lock can be suspended."""
+"""Remaining attempts of this process to lock the folder.  After two minutes of waiting, no attempt
+remains.  This limit is necessary because the process that has the lock can be suspended."""
 REPORTED = "MICROSLIP_SAID_UNSTORED"
-"""Environment variable that is set after the message about a folder.  Jobs inherit it."""
+"""Environment variable that is set when the message about an unusable folder has been printed.
+Jobs inherit this variable."""
 
 
 def _usable_folder() -> Path | None:
@@ -105,7 +106,7 @@ def _report(problem: str, remedy: str = "each process compiles it again") -> Non
 class Locator(getattr(caching, "UserProvidedCacheLocator", object)):  # type: ignore[misc]
     """Numba's locator for a given folder of compiled code.  This locator ignores the path of the
     package, so that copies of the package share the compiled code.  Old versions of Numba do not
-    use it."""
+    use this locator."""
 
     @classmethod
     def get_suitable_cache_subpath(cls, py_file: str) -> str:
@@ -114,8 +115,8 @@ class Locator(getattr(caching, "UserProvidedCacheLocator", object)):  # type: ig
 
 
 class _Listener(event.Listener):
-    """Listener to the events of Numba's compiler lock, and to compilations.  Numba holds the lock
-    while it loads, compiles and stores code."""
+    """Listener for two kinds of Numba's events: those of the compiler lock, and compilations.
+    Numba holds the lock while it loads, compiles and stores code."""
 
     depth, is_compiling, ended, seconds, started = 0, False, -SPELL, 0.0, 0.0
     lock: IO | None = None
@@ -178,7 +179,7 @@ def _remove_damaged(folder: Path) -> None:
 
 
 FOLDER = _usable_folder()
-"""Folder of the compiled code, or None."""
+"""Folder of the compiled code, or None if no folder is usable."""
 if FOLDER is not None:
     with _lock() or contextlib.nullcontext():
         _remove_damaged(FOLDER)
@@ -212,8 +213,8 @@ def kernel(function: Callable | None = None, **options: object) -> Callable:
 
 
 def _compile(compile_and_store: Callable, signature: object) -> object:
-    """Compile a function, and store its code.  If the code cannot be stored, the function is only
-    compiled."""
+    """Compile a function, and store its code.  If the code cannot be stored, the function is
+    compiled but not cached."""
     try:
         return compile_and_store(signature)
     except OSError as error:  # the function has been compiled

@@ -8,10 +8,10 @@ Commas, semicolons or tabs separate the columns.  A heading is a name, with or w
 brackets.  Empty lines, lines that begin with #, a first line such as "sep=;" and empty columns at
 the end are ignored.  A comment directly above the first line can be the heading.
 
-`pandas.read_csv` accepts too much.  For example, take the heading "load [N],mu".  For the line "1",
-pandas returns a load with an empty mu.  For the line "1,5,0.3", pandas returns a load of 5.  For an
-unclosed quote, pandas rejects the whole file.  Duplicate columns are renamed, and error messages do
-not contain the line number of a cell.
+`pandas.read_csv` accepts invalid lines.  Under the heading "load [N],mu", pandas reads the line "1"
+as a load without a mu, and the line "1,5,0.3" as a load of 5.  If a quote is not closed, pandas
+rejects the whole file.  Pandas also renames duplicate columns.  The error messages of pandas do not
+contain the line number of a cell.
 """
 
 from __future__ import annotations
@@ -45,8 +45,8 @@ UNIT = re.compile(r"[\[(]?[^\W\d_][^\s,;]*[\])]?")
 """Pattern of a cell that may be a unit."""
 DECIMAL_COMMA = re.compile(r"(?<=[0-9]),(?=[0-9])|^([+-]?),(?=[0-9])")
 GROUPED = re.compile(r"[+-]?[1-9]\d{0,2}(\.\d{3})*", re.A)
-"""Pattern of a number without a point, such as 900, or of a number in which each point can be a
-thousands separator, such as 1.100."""
+"""Pattern of a number in which each point can be a thousands separator, such as 1.100.  The pattern
+also matches numbers without a point, such as 900."""
 Heads = list[tuple[str, str | None]]
 """Name and unit of each column."""
 Rows = Iterator[tuple[int, list[str]]]
@@ -275,7 +275,7 @@ def lines_of(content: bytes, encoding: str) -> list[str]:
 
 def _heading(lines: list[str], index: int, decimal: str) -> tuple[str, Heads, Rows]:
     """Return the separator, the heading that begins in a line, and the rows below the heading.  The
-    heading is empty if the line is not a heading."""
+    returned heading is empty if the line is not a heading."""
     for separator in sorted(SEPARATORS, key=decimal.__eq__):  # the comma last if it is decimal
         rows = _rows(lines, index, separator)
         titles = next(rows, (0, []))[1]
@@ -378,8 +378,8 @@ def _number(
 ) -> float:
     """Convert a word to a number.
 
-    unit: unit in the heading, for the message.  Raises ValueError unless the word is a finite
-    number of at least `least`.  The message contains the line number.
+    unit: unit in the heading, for the message.  Raises ValueError if the word is not a finite
+    number, or if the number is below `least`.  The message contains the line number.
     """
     if not NUMBER.fullmatch(word):
         of = f" in {unit}, the unit of the heading" if unit else ""
@@ -394,9 +394,9 @@ def _number(
 def _refuse_thousands(name: str, words: Mapping[int, str | None]) -> None:
     """Raise ValueError for a column in which points may be thousands separators.
 
-    Programs with decimal commas may use points as thousands separators, and write 1100 as 1.100 but
-    900 without a point.  The check is not needed in two cases: commas separate the cells, or commas
-    are declared as decimal marks.
+    Programs with decimal commas may use points as thousands separators.  Such programs write 1100
+    as 1.100, but 900 without a point.  The check is not needed in two cases: commas separate the
+    cells, or commas are declared as decimal marks.
     """
     cells = [(k, word) for k, word in words.items() if word and word.lstrip("+-") != "0"]
     points = [(k, word) for k, word in cells if "." in word]

@@ -18,8 +18,8 @@ omitted."""
 class InputError(ValueError):
     """An invalid argument.
 
-    The message is one line, "argument = value: what is allowed".  Other layers use the attributes
-    of the error to adapt the message.  They replace the argument by the name of an option, or the
+    The message is one line, "argument = value: what is allowed".  Functions that catch the error
+    can adapt the message.  Such a function replaces the argument by the name of an option, or the
     value by the quantity as the user wrote it.
 
     Attributes
@@ -40,8 +40,8 @@ class InputError(ValueError):
         return " ".join(f"{self.argument} = {shown(self.value)}: {self.allowed}".split())
 
     def renamed(self, argument: str, value: object = None) -> InputError:
-        """Return a copy of the error with another argument name.  The copy also has another value,
-        unless `value` is None."""
+        """Return a copy of the error with another argument name.  If `value` is not None, it
+        replaces the value of the error in the copy."""
         return InputError(argument, self.value if value is None else value, self.allowed)
 
 

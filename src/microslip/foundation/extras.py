@@ -5,7 +5,7 @@ from __future__ import annotations
 from importlib.util import find_spec
 
 EXTRAS = {"matplotlib": "plot", "snakemake": "workflow"}
-"""Extras in pyproject.toml.  The key of an extra is the package that it installs."""
+"""Extras in pyproject.toml, keyed by the package that the extra installs."""
 
 
 def missing(package: str) -> str:

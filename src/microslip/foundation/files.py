@@ -119,8 +119,9 @@ def clear_abandoned(folder: Path) -> list[Path]:
 def _advice(verb: str, path: Path) -> Iterator[None]:
     """Context manager that converts errors of the operating system to CacheError.
 
-    If a disk is full, HDF5 reports "Permission denied" or "HDF error", or raises RuntimeError.  A
-    second attempt to write to the folder gives the true cause.
+    If a disk is full, HDF5 reports "Permission denied" or "HDF error", or raises RuntimeError.
+    Therefore, the context manager tries again to write to the folder.  The error of this attempt
+    shows the true cause.
     """
     try:
         yield

@@ -7,8 +7,8 @@
 A result depends on the content of a file and not on its folder.  Therefore, the name of a motion or
 a pressure from a file contains a digest: "soft_square.py:sha256=0123456789abcdef,share=0.5" or
 "file:sha256=0123456789abcdef,grid=samples".  The digest of a Python file covers the files that it
-imports from its folder.  Each process stores the path that belongs to a digest.  `remember` stores
-paths that this process has received from another process.
+imports from its folder.  Each process has a table of paths, keyed by digest.  If a process receives
+paths from another process, `remember` adds these paths to the table.
 
 This module imports only fast modules, because each start of the workflow imports this module.
 """
@@ -94,13 +94,14 @@ class NamedFile:
 
     @property
     def name(self) -> str:
-        """The name of the file in results.  This name does not contain the folder, so that files
-        with equal content have equal names."""
+        """Name under which results refer to the file.  This name does not contain the folder, so
+        that files with equal content have equal names."""
         return self._text(os.path.basename(self.path) if self.is_code else "")
 
     @property
     def placed(self) -> str:
-        """The name with the path and the digest.  Other processes read the file by this name."""
+        """Name that contains the path and the digest.  Other processes use this name to read the
+        file."""
         return self._text(self.path)
 
     def _text(self, path: str) -> str:
@@ -248,8 +249,8 @@ def read_object(named: NamedFile, argument: str, create: Callable[[NamedFile, by
 
 
 def _imports_of(path: Path) -> tuple[Sources, set[str]]:
-    """Return the `Sources` of the folder that contains a file, and a set of names.  The set
-    contains the name of the file, and the names of the files in this folder that the file
+    """Return two values: the `Sources` of the folder that contains a file, and a set of names.  The
+    set contains the name of the file, and the names of the files in this folder that the file
     imports."""
     from microslip.foundation.source_digest import Sources  # late, since it imports ast
 
@@ -260,9 +261,9 @@ def _imports_of(path: Path) -> tuple[Sources, set[str]]:
 def _run(path: Path, name: str) -> ModuleType:
     """Run a Python file as a module with the given name.  The file can import the files beside it.
 
-    Afterwards, sys.modules contains this module, and otherwise the same modules as before.  The
-    reason is that files in two folders can have the same name, and that an edited file is run
-    again.
+    Afterwards, sys.modules contains the previous modules and this module.  Modules that were
+    imported from the folder of the file are removed.  Otherwise, a module of the same name in
+    another folder would not be imported, and an edited module would not be imported again.
     """
     module = sys.modules[name] = ModuleType(name)
     module.__file__ = str(path)
@@ -313,8 +314,8 @@ def _class_in(file: NamedFile, base: type) -> type:
 class Family(Generic[T]):
     """Callable that returns the motion or the pressure with a given name.
 
-    The most recent objects of data files are stored, so that files with equal content share one
-    object.
+    The objects that were read most recently from data files are stored, so that files with equal
+    content share one object.
 
     Parameters
     ----------

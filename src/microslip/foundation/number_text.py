@@ -13,7 +13,7 @@ EXACT = 1e-9
 """Relative error below which a number is printed without its error, because all printed digits are
 correct."""
 ROUNDING = 1e-12
-"""A zero with a smaller error is printed without this error.  The value is the rounding error of
+"""Largest error of a zero that is printed without its error.  This value is the rounding error of
 numbers near 1."""
 SIZES = -4, 7
 """Range of decimal exponents in which numbers are printed without an exponent."""
@@ -129,7 +129,7 @@ def interval_text(low: float, high: float, unit: str = "", *, error: float = 0.0
 
 def prefixed(value: float, unit: str) -> tuple[str, float]:
     """Return the unit with a metric prefix, and the factor of this prefix.  The prefix is the
-    largest one with which the value is at least 1.  For 0, the unit has no prefix."""
+    largest one with which the value is at least 1.  If the value is 0, the unit has no prefix."""
     size = abs(value) or 1.0
     prefix, factor = next((one for one in PREFIXES.items() if size >= one[1]), ("p", 1e-12))
     return f"{prefix}{unit}", factor

@@ -2,11 +2,12 @@
 
 The name of a result contains the digest of the solver.  This digest covers the code of all
 subpackages that compute results, and the file of a comparison method.  The name of a dataset, page
-or figure contains the digest of its builder.  The builder consists of the modules that make the
-product, and of the modules imported by them from the subpackages in `OUTER`, except foundation.
-The name of a motion or a pressure in a user's file also contains a digest.  This digest covers the
-user's file, and the files that it imports from its folder.  Comments, docstrings and layout do not
-change a digest.  The text of messages influences only the digests of builders.
+or figure contains the digest of its builder.  The builder of a product consists of the modules that
+make the product.  It also contains the modules that these modules import from the subpackages in
+`OUTER`, except from foundation.  The name of a motion or a pressure in a user's file also contains
+a digest.  This digest covers the user's file, and the files that it imports from its folder.
+Comments, docstrings and layout do not change a digest.  If the text of a message changes, only the
+digests of builders change.
 
 Files are read when a digest is first needed.
 """
@@ -27,7 +28,7 @@ from microslip.foundation.files import write_atomically
 
 PACKAGE = Path(__file__).parents[1]
 OUTER = {"app", "bundle", "config", "datasets", "foundation", "report", "si", "studies", "sweeps"}
-"""Subpackages that do not compute results, except for the files in NUMBERS."""
+"""Subpackages that do not compute results.  The files in NUMBERS are exceptions."""
 NUMBERS = {"foundation/compiled.py", "sweeps/evaluate.py", "sweeps/period_codec.py"}
 """Files that influence results, although they are in the subpackages of `OUTER`.  They compile
 functions, and convert the output of the solver."""
@@ -101,8 +102,8 @@ class Sources:
         return self.closure(kernels, is_physics)
 
     def builder(self, *files: str) -> set[str]:
-        """Return the paths of the modules that make a product.  The modules of the physics and of
-        the foundation are left out.
+        """Return the paths of the modules that produce the files of a product.  Modules of the
+        physics and of the foundation are not included.
 
         A table that has the name of a module, such as variables.csv, belongs to the module.
 
@@ -209,8 +210,8 @@ def of_request(request: dict) -> str:
 
 @cache
 def of_solver(method: str = "") -> str:
-    """Return the digest of the code that computes results.  It covers the code of the physics and
-    the file of a comparison method."""
+    """Return the digest of the code that computes results.  The digest covers the code of the
+    physics and the file of a comparison method."""
     files = {f"{METHODS}{method}.py"}.intersection(LOADED.names)
     return LOADED.digest(LOADED.solver | LOADED.closure(files, is_physics))
 
@@ -228,9 +229,9 @@ def of_builder(*files: str) -> str:
 
 
 def workflow_file(name: str) -> Path:
-    """Return the path of a file of the workflow.  An installed package stores this file in the
-    folder `bundle`, and a source tree stores it at the top.  The file may be missing at this
-    path."""
+    """Return the path of a file of the workflow.  In an installed package, the file is in the
+    folder `bundle`.  In a source tree, the file is in the top folder.  The function does not check
+    that the file exists in the source tree."""
     bundled = PACKAGE / "bundle" / name
     return bundled if bundled.is_file() else PACKAGE.parents[1] / name
 

@@ -19,8 +19,8 @@ NUMBER = re.compile(
 WHOLE = re.compile(r"[+-]?[0-9]{1,18}", re.ASCII)
 MINUS = "\N{MINUS SIGN}"
 HALVES = {"diameter": "radius", "stroke": "amplitude", "peak_to_peak": "amplitude"}
-"""Words that name half of a quantity, keyed by the word for the quantity.  For example, a radius is
-half of a diameter."""
+"""Name of half of a quantity, keyed by the name of the quantity.  For example, half of a diameter
+is a radius."""
 
 
 def read(argument: str, text: str, whole: bool = False) -> float | int:
@@ -78,7 +78,7 @@ def near_miss(name: object, names: Iterable[str]) -> str:
 
 def split(text: str, what: str, names: Iterable[str]) -> tuple[str, str | None]:
     """Split a string such as "elliptic:phase=90" into the name and the part with the parameters.
-    Without a colon, the second part is None.
+    If the string has no colon, the second part is None.
 
     Raises InputError about the argument `what` if `names` does not contain the name.
     """
@@ -97,8 +97,8 @@ def numbers_in(
     None.
 
     Raises InputError about the argument `what` if the part cannot be read, or if `parameters` does
-    not contain the name of a number.  The message contains the whole string, and an example with
-    the name.
+    not contain the name of a number.  The message contains the whole string, and an example that
+    begins with the name.
     """
     numbers: dict[str, float] = {}
     for one in [] if part is None else part.split(","):

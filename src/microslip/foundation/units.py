@@ -64,8 +64,8 @@ HINTS = {
     "N": {"kg": ", of a mass; for its weight write gf or kgf, as in '500 gf'"},
     "m/s": {"rpm": ", of a rotation; its speed is the rate in rad/s times a radius"},
 }
-"""Hints about wrong units.  The outer keys are SI units, and the inner keys are units of the same
-kind as the wrong unit."""
+"""Hints about wrong units.  The outer key is the required SI unit.  The inner key is a unit of the
+same kind as the wrong unit."""
 
 
 class Unit(NamedTuple):
@@ -125,7 +125,7 @@ def unit_of(text: str) -> Unit:
 
 UNITS = {one: Unit(Fraction(1), tuple(int(one == base) for base in BASES)) for one in BASES}
 UNITS["turn"] = Unit(TURN, UNITS["rad"].powers)
-"""Every accepted name of a unit, with its prefix."""
+"""All accepted units, keyed by name.  Names include metric prefixes."""
 
 
 for _entries, _prefixes in DEFINITIONS.items():
@@ -255,7 +255,7 @@ def _number(text: str, si: str, units: bool) -> tuple[float, bool]:
 
 
 def _hint(digits: str, rest: str) -> str:
-    """Return a hint about `rest`, which follows the digits of a number and could not be read."""
+    """Return a hint about `rest`, the unreadable text after the digits of a number."""
     if digits and (fraction := re.fullmatch(r"/\s*([1-9]\d*)\s*(.*)", rest, re.S)):
         value = float(Fraction(Decimal(digits)) / int(fraction[1]))
         return f" (did you mean {f'{value!r} {fraction[2]}'.strip()!r}?)"

@@ -167,8 +167,8 @@ class Contact:
 
     @cached_property
     def amplitude(self) -> Any:
-        """Amplitude for microslip.solve.  It is the largest value of `amplitudes`, or None for a
-        steady motion."""
+        """Amplitude for microslip.solve: the largest value of `amplitudes`, or None for a steady
+        motion."""
         sizes = self.amplitudes.values()
         return reduce(np.maximum, sizes) if sizes else None
 

@@ -10,9 +10,9 @@ The confidence region contains the pairs (u_lim, mu) whose sum of squares is at 
 The threshold is the smallest sum of squares plus a margin.  If the rows have standard errors, the
 margin is a quantile of the chi-square distribution.  Otherwise, the margin is a quantile of the F
 distribution times the mean square residual.  For each u_lim, the region is an interval of mu,
-because the sum of squares is quadratic in mu.  The interval of a parameter is the range of its
-values in the region, as in a profile likelihood.  This interval does not depend on the
-parametrisation, and may be infinite on one side.
+because the sum of squares is quadratic in mu.  The interval of a parameter is the range of the
+parameter's values in the confidence region, as in a profile likelihood.  This interval does not
+depend on the parametrisation, and may be infinite on one side.
 
 If no map is given, the solver first computes a coarse map.  The coarse map is used only to compute
 how friction changes between two guesses of u_lim.  Then the solver computes the friction of every
@@ -52,8 +52,8 @@ values and their errors."""
 Friction = Callable[..., np.ndarray]
 """friction(velocity, amplitude, rough=False) returns mu_macro and its error estimate as an array of
 shape (2, n).  If `rough` is true, the arguments can have any shape.  The first item of the result
-is then an approximation of mu_macro, and the error of this approximation hardly depends on the
-point."""
+is then an approximation of mu_macro.  The error of this approximation is nearly the same at all
+points."""
 
 MOTIONS = ("transverse", "longitudinal", "zigzag")
 CONDITIONS = ("speed", "amplitude", "load", "frequency")
@@ -75,8 +75,8 @@ OPEN = "open"
 MORE_ROWS = "add rows without vibration, or rows where vibration reduces friction more"
 EMPTY = "empty; allowed: a number in every row; leave out the row, or fill the cell"
 MOST_ROWS, MOST_SOLVED = 10_000, 200
-"""Largest number of rows.  If a map is given, the first value applies.  Otherwise, the solver
-computes the rows, and the second value applies."""
+"""Largest number of rows of a fit.  The first value applies if friction is interpolated in a map.
+The second value applies if the solver computes the friction of every row."""
 TOLERANCE, CONFIDENCE = 1e-3, 0.95
 TOLERANCES = INPUTS["tolerance"]._replace(high=0.02)
 CONFIDENCES = Input("", "", "", high=0.999999, exact=True)
@@ -89,8 +89,8 @@ SLOWEST, FASTEST = 1e-3, 20.0
 SIZES, RATIOS = 16, 4
 """Number of amplitudes in the coarse map, and number of ratios per decade."""
 COARSE = {"poisson": 0.0, "tolerance": 5e-3}
-"""Settings of the coarse map.  Poisson's ratio is 0, because it hardly changes the slopes of the
-map."""
+"""Settings of the coarse map.  Poisson's ratio is set to 0, because Poisson's ratio hardly changes
+the slopes of the map."""
 NODES = 161
 """Number of values of ln u_lim at which the friction of the rows is tabulated."""
 MOST_PASSES, SETTLED = 6, 5e-4
@@ -382,8 +382,8 @@ def _read_rows(source: Any, shared: dict[str, Any], **form: str) -> dict[str, An
 
 
 def _read_bodies(nu: Any, radius: Any, counterbody: Any) -> tuple[dict[str, Any], dict[str, str]]:
-    """Read the inputs nu, radius and counterbody.  Returns the values and the descriptions
-    of the inputs that are given.  Raises InputError."""
+    """Read the inputs nu, radius and counterbody.  Returns two dicts, keyed by input: the values of
+    the inputs, and their descriptions.  Raises InputError."""
     if radius is None and counterbody is not None:
         raise InputError("counterbody", counterbody, "allowed with a radius")
     if radius is not None and nu is None:
@@ -498,7 +498,8 @@ def _curves(friction: Friction, lengths: np.ndarray, x: Any) -> np.ndarray:
 
 
 class Profile:
-    """Sum of squares as a function of mu and x = ln u_lim at the mean load.
+    """Sum of squares of the fit as a function of two variables, mu and x.  Here, x is the logarithm
+    of u_lim at the mean load.
 
     Attributes
     ----------
@@ -560,9 +561,9 @@ class Profile:
         return max(low, default=-math.inf), min(high, default=math.inf)
 
     def second(self, allowed: float) -> float | None:
-        """Return the value of x at a second minimum of the sum of squares.  Return None unless the
-        sum at this minimum is at most `allowed`.  At this minimum, u_lim differs from its best
-        value by more than a factor of 2."""
+        """Return the value of x at a second minimum of the sum of squares, or None if there is no
+        second minimum.  At a second minimum, the sum of squares is at most `allowed`, and u_lim
+        differs from the best u_lim by more than a factor of 2."""
         sums = np.pad(self.squares(self.x), 1, constant_values=np.inf)
         lowest = np.flatnonzero(sums[1:-1] <= np.minimum(np.minimum(sums[:-2], sums[2:]), allowed))
         far = [k for k in lowest if abs(self.x[k] - self.best) > math.log(2.0)]

@@ -6,10 +6,10 @@ averaged over all whole periods.  The scatter between the periods gives the stan
 average.
 
 If the frequency drifts, the periods are averaged out of phase, and the average is too small.  The
-variance of this slow phase drift equals the covariance of the phases of neighbouring periods,
-because the noise of neighbouring periods is uncorrelated.  The phase drift multiplies the average
-of harmonic m by exp(-x), where x is half the variance of m times the phase.  The error includes
-this loss of amplitude.
+noise of neighbouring periods is uncorrelated.  Therefore, the variance of this slow phase drift
+equals the covariance of the phases of neighbouring periods.  The phase of harmonic m is m times the
+phase of the motion.  The phase drift multiplies the average of this harmonic by exp(-x), where x is
+half the variance of the harmonic's phase.  The error includes this loss of amplitude.
 """
 
 from __future__ import annotations
@@ -33,15 +33,15 @@ ROWS, MOST_ROWS = 32, 10_000
 """Default and largest number of samples in the period.  With more samples, the period contains more
 harmonics, but also more noise."""
 REFINEMENTS = 3
-"""Number of corrections of the frequency.  The error that remains after a correction is due to the
-errors of the phases."""
+"""Number of corrections of the frequency.  The error of the frequency that remains after a
+correction is due to the errors of the phases."""
 PARTS, MOST_PARTS, PERIODS_OF_PART = FEWEST_PERIODS, 20, 10
 """Smallest and largest number of parts of a record, and number of periods in each part.  The median
 amplitude of 10 noisy periods is rarely below one half of the mean."""
 STEADY = 0.5
-"""Smallest amplitude of a part divided by the mean amplitude.  If the amplitude is below one half
-of the mean, it is nearer to 0 than to the mean.  A state of rest then describes the part better
-than the mean period does."""
+"""Smallest allowed ratio of the amplitude of a part to the mean amplitude.  If the ratio is below
+one half, the amplitude of the part is nearer to 0 than to the mean.  The part then resembles a
+state of rest more than the mean period."""
 LARGEST_CHANGE = 0.1
 """Largest difference between the amplitudes of the quarters of a record, divided by the mean."""
 MOST_DECIMALS = 12
@@ -55,14 +55,14 @@ SIGNIFICANT = 5.0
 3 at the frequency of its strongest component."""
 PHASE_OF_A_DRIFT = 0.5 * math.sqrt(1.0 / 80.0 - 1.0 / 144.0)
 """Standard deviation of the phase, in periods, for a frequency that changes linearly by one period
-over the duration of the record.  It is the standard deviation of u**2 / 2 for u from -1/2 to
-1/2."""
+over the duration of the record.  The value is the standard deviation of u**2 / 2, where u is
+uniformly distributed from -1/2 to 1/2."""
 FINER = 32
 """Number of interpolated points per sample for the peak-to-peak value.  With 32 samples, the peak
 of a sine is too small by at most 5e-6 of its amplitude."""
 CONSTANT = 1e-12
 """A column counts as constant if its variation, divided by its largest value, is at most this
-value.  It allows for rounding errors."""
+value.  This value allows for rounding errors."""
 NOT_CONSTANT = "constant; allowed is an oscillation"
 TREND, SLOWEST = 3, 3
 """TREND: degree of the polynomial that is subtracted before the search for the frequency.  SLOWEST:
@@ -240,8 +240,8 @@ def _check_periods(frequency: float, longest: float, step: float, typed: bool) -
 
 
 def _check_repeats(frequency: float, parts: np.ndarray, order: int, column: int) -> None:
-    """Raise InputError if the frequency is a multiple or a fraction of the frequency of the
-    motion."""
+    """Raise InputError if `frequency` is not the frequency of the motion, but a multiple or a
+    fraction of that frequency."""
     beats = np.abs(np.fft.fft(parts[:, order, column]))
     problem = "the periods differ from each other more than they agree; allowed is the frequency "
     _refuse(beats[1:].max() > beats[0], "frequency", frequency, f"{problem}of the motion")
@@ -327,8 +327,7 @@ def _step(time: np.ndarray) -> tuple[float, float]:
 
 
 def _strongest(values: np.ndarray) -> float:
-    """Find the strongest spectral component of the record, and return how many of its periods the
-    record contains."""
+    """Return the number of periods of the strongest spectral component in the record."""
     x = np.linspace(-1.0, 1.0, len(values))
     trend = np.polynomial.polynomial.polyvander(x, TREND)
     rest = values - trend @ np.linalg.lstsq(trend, values, rcond=None)[0]

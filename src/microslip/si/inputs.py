@@ -1,6 +1,6 @@
-"""The inputs of a prediction.  One table defines every input as a Python argument, a command-line
-option and a column of CSV files, together with its checks, its help text and its line on the
-reference page."""
+"""The inputs of a prediction.  One table defines every input.  An input is a Python argument, a
+command-line option and a column of CSV files.  The table also defines the checks, the help text and
+the line on the reference page."""
 
 from __future__ import annotations
 
@@ -117,8 +117,8 @@ OSCILLATIONS = {
 }
 """Direction of each oscillation in the solver's motions, keyed by the input for its amplitude."""
 SAME_ANGLE = 1e-3
-"""Largest relative difference between two angles that count as equal.  One of them is the largest
-of 721 samples."""
+"""Largest relative difference between two angles that count as equal.  One of these angles is the
+largest of 721 samples."""
 
 
 @dataclass(frozen=True)

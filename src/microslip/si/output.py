@@ -100,7 +100,7 @@ OUTCOMES = {
     "stays": "it stays: the force is below the threshold",
     "undecided": "undecided within the error",
 }
-"""Sentence for each outcome, except for the outcome that the contact runs away."""
+"""Sentence for each outcome except "runs away"."""
 REASONS = ("mu_static_reason", "displacement_reason")
 LISTS = ("remarks", "warnings", "not_checked")
 """Columns of a prediction that are lists of strings."""

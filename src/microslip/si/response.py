@@ -144,7 +144,7 @@ def read_path(path: Any, **form: str) -> dict[str, np.ndarray]:
     """Read the columns of a path, in SI units.
 
     form: decimal mark and encoding of a CSV file.  Raises InputError if a column or a line cannot
-    be read.  Lines cannot be skipped, since a path has no gaps.
+    be read.  An invalid line cannot be skipped, since the path would then have a gap.
     """
     table = table_of("path", path, UNITS, need_units=True, **form)
     cells = {name: one for name, one in table.columns.items() if name not in LABELS}

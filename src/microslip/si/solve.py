@@ -32,12 +32,12 @@ STATIC_TOLERANCE = 1e-3
 """Largest accepted error of the static limit under a force, dimensionless."""
 TOLERANCE_OF_SEVERAL = 1e-2
 """Smallest tolerance of the static limit of a motion with several oscillations, dimensionless.
-Smaller errors take more than a minute."""
+To reach a smaller tolerance, the solver would need more than a minute."""
 SLOWEST = 1e-3
 """Dimensionless velocity below which the accepted error is absolute instead of relative."""
 MARGIN = 0.8
-"""Safety factor on the accepted error of a second run.  It is below 1 because the second velocity
-can be smaller than the first."""
+"""Safety factor on the accepted error of a second run.  The factor is below 1 because the velocity
+of the second run can be smaller than the velocity of the first run."""
 RUNS_AWAY = "runs away"
 """If the contact accelerates without limit, the solver returns a reason that begins with these
 words."""
@@ -49,8 +49,8 @@ SPEEDS = 1e-9, 1e6
 """Smallest and largest dimensionless velocity of the search.  For a translation with an amplitude
 above 1, the velocity is divided by the amplitude."""
 LOAD = 1e-12
-"""Load, in N, at which the dimensionless groups are computed in a search for the load.  It is so
-small that Hertz's theory applies to all bodies."""
+"""Load, in N, at which the dimensionless groups are computed in a search for the load.  This load
+is so small that Hertz's theory applies to all bodies."""
 STEP = 0.05
 """Step of the finite difference that gives the slope of friction.  The step is a change of the
 logarithm of the unknown."""
@@ -190,8 +190,8 @@ def _friction(
 
     If the force is below the threshold by more than the threshold's error, the contact comes to
     rest, and no drift is computed.  If the force differs from the threshold by less than the error
-    of the threshold, the result is not converged, since computing the small speed would take
-    minutes.
+    of the threshold, the result is not converged.  In this case, the speed is small, and the solver
+    would need minutes to compute it.
     """
     groups = contact.drive(contact.mean_load)
     drive: dict[str, Any] = within_range(groups)
@@ -278,8 +278,8 @@ def _rest(contact: Contact) -> tuple[dict[str, Value], str]:
 def with_mean_load(problem: Problem) -> Problem:
     """Return the problem without the oscillation of its normal load.
 
-    If the contact separates, the problem is returned unchanged, because its units then do not refer
-    to the mean load.  If nothing else oscillates, the amplitude of the result is 0.
+    If the contact separates, the problem is returned unchanged.  The units of such a problem do not
+    refer to the mean load.  If nothing else oscillates, the amplitude of the result is 0.
     """
     motion = problem.motion
     if not motion.loads or abs(problem.mean_load - 1.0) > ROUNDING:
@@ -302,13 +302,14 @@ SIMPLER: dict[str, Callable[[Problem], Problem]] = {
     ),
     "a constant load suffices: with the mean load": with_mean_load,
 }
-"""Functions that simplify a Problem.  The key of a function is the beginning of a sentence, which
-is printed if the simpler Problem has the same mu_macro within the error."""
+"""Functions that simplify a Problem, keyed by the beginning of a sentence.  The sentence is printed
+if the simpler Problem has the same mu_macro within the error."""
 
 
 def simplifications(contact: Contact, answer: Prediction) -> list[str]:
-    """Return the sentences of `SIMPLER` that apply to a contact.  A sentence applies if the simpler
-    contact has the same friction at the same speed, within the error of the result.
+    """Return the sentences of `SIMPLER` that apply to a contact.  A sentence applies if the contact
+    and the simpler contact have the same friction at the same speed.  The allowed difference is the
+    error of `answer`.
 
     A contact counts as simpler only if the solver chooses a cheaper model for it, or if its load
     becomes constant.  The list is empty for a contact under a prescribed force.  The list is also
@@ -397,9 +398,9 @@ def find_reduction(inputs: Inputs) -> tuple[Contact, Value]:
     """Find the smallest amplitude, the largest speed or the largest load that gives the requested
     reduction.  Returns the contact, and the value of this quantity in its SI unit.
 
-    If the solver fails at a contact, this contact is returned, and the error of the quantity is
-    NaN.  Raises NoSolutionError if the reduction is outside the range of the search, and InputError
-    if an input is invalid.
+    If the solver fails for a contact of the search, this contact is returned, with NaN as the error
+    of the quantity.  Raises NoSolutionError if the reduction is outside the range of the search,
+    and InputError if an input is invalid.
     """
     from scipy.optimize import brentq
 
@@ -473,7 +474,8 @@ def _check_share(inputs: Inputs, share: float, tolerance: float) -> None:
 
 
 def _line(inputs: Inputs, name: str, share: float) -> tuple[float, float, float, float, float]:
-    """Express the unknown as scale * exp(power * place).  Friction decreases as `place` increases.
+    """Return the parameters of the search, in which the unknown is scale * exp(power * place).
+    Friction decreases as `place` increases.
 
     Returns
     -------

@@ -25,9 +25,9 @@ from microslip.scene.files import COLUMNS, FORM, UNITS, columns_of, read_period
 from microslip.scene.samples import NORMAL, PLANE, Sampled
 
 USUAL_ROWS, MOST_ROWS = 2_000, 10_000
-"""USUAL_ROWS: largest number of rows in a period without a hint to use `microslip fold`.  With more
-rows, a prediction can take minutes, and the file may be a record of many periods.  MOST_ROWS:
-largest allowed number of rows."""
+"""USUAL_ROWS: number of rows above which a hint to use `microslip fold` is shown.  A file with more
+rows may be a record of many periods, and a prediction from such a file can take minutes.
+MOST_ROWS: largest allowed number of rows."""
 FOLD = "for a record of many periods, `microslip fold` writes the mean period"
 
 
@@ -61,14 +61,14 @@ class Stroke:
     hint: str
 
     def deviations(self, contact: Any) -> dict[str, np.ndarray]:
-        """Return the columns in the units of `microslip.Sampled`.  A load or an indentation is
-        returned as the deviation from its mean, which is 1."""
+        """Return the columns in the units of `microslip.Sampled`.  In these units, the mean of a
+        load or an indentation is 1.  The function returns the deviation from this mean."""
         units = scales(contact, self.columns)
         return {name: one / units[name] - (name in NORMAL) for name, one in self.columns.items()}
 
     def sampled(self, contact: Any, size: float) -> Sampled:
-        """Return the motion for microslip.solve.  Its displacements, and the deviations of the load
-        or indentation from 1, are divided by `size`."""
+        """Return the motion for microslip.solve.  In this motion, the displacements are divided by
+        `size`, and so are the deviations of the load or the indentation from 1."""
         deviations = self.deviations(contact).items()
         return Sampled.of_columns({n: one / size + (n in NORMAL) for n, one in deviations})
 

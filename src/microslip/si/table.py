@@ -45,7 +45,7 @@ PRINTED |= {f"probability_{one}": one for one in ("stays", "moves", "runs_away")
 """Headings of the outputs in a printed table."""
 WIDTH = 13
 MISSING: tuple[dict[str, Any], dict[str, dict[str, str]]] = {"converged": False}, {}
-"""Columns, and attributes of columns, for a contact that has no prediction."""
+"""Columns of a contact that has no prediction, and the attributes of these columns."""
 
 
 @dataclass(frozen=True)

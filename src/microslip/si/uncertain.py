@@ -5,10 +5,11 @@ The uncertain inputs are independent and normally distributed.  The draws form a
 sequence, so that the same inputs always have the same draws.  A draw outside the range of its input
 is replaced by the closest value of the range.  Outputs in closed form are evaluated for each draw.
 The result of the solver depends only on a few dimensionless groups of each draw.  If the groups of
-all draws lie on a line, the solver computes the result at a few points of this line, and results
-are interpolated between these points.  In general, there are several lines.  The changes of the
-result along the lines are added.  The lines are the principal axes of the groups.  If there are at
-most as many inputs as principal axes, the lines are the axes of the inputs instead.
+all draws lie on a line, the solver computes the result at a few points of this line.  The results
+of the draws are interpolated between these points.  In general, there are several lines.  The
+changes of the result along the lines are added.  The lines are the principal axes of the groups.
+If the number of inputs does not exceed the number of principal axes, the lines are drawn along the
+axes of the inputs.
 """
 
 from __future__ import annotations
@@ -33,13 +34,14 @@ DRAWS = 2**15
 """Number of draws.  The error of a probability is about 1e-3."""
 LEVELS = (-3.0, -1.5, 1.5, 3.0)
 """Positions of points along a line, in standard deviations.  The solver computes the result at
-these points.  Draws beyond the outermost points are replaced by these points.  This reduces a
-standard deviation by 0.25 %.  With outermost points at 2.5, the reduction would be 1.1 %."""
+these points.  Draws beyond the outermost points are replaced by these points.  This replacement
+reduces a standard deviation by 0.25 %.  If the outermost points were at 2.5 standard deviations,
+the reduction would be 1.1 %."""
 STATIC_LEVELS = (-3.0, -1.96, -1.3, -0.65, 0.65, 1.3, 1.96, 3.0)
 """Points along a line at which the static limit is computed.  The bounds of a 95 % interval are at
 -1.96 and 1.96."""
 NEARER = (1.0, 0.75, 0.5, 0.25)
-"""Factors by which a level is multiplied.  They are tried in this order until the inputs are within
+"""Factors of a level.  The level is multiplied by each factor in turn, until the inputs are within
 the range of the theory."""
 REFINEMENTS = 3
 """Number of bisections in the search for the smallest amplitude with a static limit of 0.  The same
@@ -47,12 +49,12 @@ number of points is added where the static limit is close to the force."""
 VANISHING = 1e-3
 """Largest static limit that counts as 0 in the bisection."""
 CLOSEST = 64
-"""A draw counts as close to the force if its static limit is among the closest ones.  The fraction
-of such draws is 1 divided by this value."""
+"""The draws are sorted by the difference between their static limit and the force.  The first DRAWS
+/ CLOSEST of them count as close to the force."""
 NEGLIGIBLE = 1e-3
-"""An axis is ignored if the standard deviation of the groups along it, divided by the standard
-deviation along the first axis, is at most this value.  Also, a standard uncertainty is infinite if
-the fraction of draws without a finite value is above this value."""
+"""An axis is ignored if the groups hardly vary along the axis: their standard deviation is at most
+this fraction of the standard deviation along the first axis.  A standard uncertainty is infinite if
+more than this fraction of the draws has no finite value."""
 SMALLEST = 5e-324
 """Smallest positive number.  If an input must be above 0, this number replaces 0."""
 DRIVEN = ("velocity", "force", "stiffness", "mass", "damping")
@@ -204,10 +206,10 @@ class Draws:
         return np.nan_to_num(np.stack(np.broadcast_arrays(*columns), axis=-1))
 
     def _lines(self, central: dict[str, float], static: bool = False) -> list[_Line]:
-        """Return the lines along which the result, or the static limit, varies.  These lines are
-        the principal axes of the groups.  If there are at most as many inputs as principal axes,
-        the lines are the axes of the inputs instead.  The first node of each line is at the
-        centre."""
+        """Return the lines along which the result varies.  If `static` is true, these are the lines
+        along which the static limit varies.  The lines are the principal axes of the groups.  If
+        the number of inputs does not exceed the number of principal axes, the lines are drawn along
+        the axes of the inputs.  The first node of each line is at the centre."""
         normal, count = self._normal, len(self._inputs.uncertain)
         groups = self._groups(self.contact, static)
         if len(groups) == 1:
@@ -248,8 +250,8 @@ def _total(central: dict[str, float], lines: list[_Line]) -> dict[str, np.ndarra
 
 
 def _numbers(contact: Contact, answer: Prediction, search: str | None) -> dict[str, float]:
-    """Return the values of a prediction.  If there was a search, the value "root" is the logarithm
-    of the quantity that it found."""
+    """Return the values of a prediction.  After a search, the dict also contains "root", the
+    logarithm of the quantity that the search found."""
     values = {name: one.value for name, one in answer.values.items()}
     return values | ({"root": math.log(getattr(contact.inputs, search))} if search else {})
 
@@ -283,7 +285,7 @@ def normal_numbers(count: int) -> np.ndarray:
 
 def with_interval(one: Value, draws: Any) -> Value:
     """Return a copy of a `Value` that also contains the standard uncertainty and the 95 % interval
-    of the draws.  A draw without a value counts as infinite."""
+    of the draws.  If a draw has no value, its value counts as infinite."""
     drawn = np.broadcast_to(np.asarray(draws, dtype=float), (DRAWS,))
     drawn = np.where(np.isnan(drawn), math.inf, drawn)
     low, high = np.quantile(drawn, INTERVAL, method="nearest")
@@ -302,8 +304,8 @@ def probabilities(contact: Contact, answer: Prediction) -> dict[str, Value]:
 
     The error estimate is the largest of three values.  The first value is the change of the
     probability due to the error of the threshold.  The second value is the difference between the
-    even and the odd draws.  The third value, log(DRAWS) / DRAWS, is the order of the discrepancy of
-    the sequence.
+    probability computed from the even draws and the probability computed from the odd draws.  The
+    third value, log(DRAWS) / DRAWS, is the order of the discrepancy of the sequence.
 
     contact, answer: the attributes of Draws.
     """

@@ -26,13 +26,14 @@ HARDEST = 0.1
 """Largest hardness of metals, ceramics and glasses, divided by Young's modulus.  The hardness is
 2.8 times the yield stress.  The yield stress is at most a few per cent of the modulus."""
 RUBBERY = 0.45
-"""Smallest Poisson's ratio of a rubber.  Rubber does not yield.  It has internal losses, and its
-modulus increases with the frequency (K. A. Grosch, Proc. R. Soc. A 274, 1963)."""
+"""Smallest Poisson's ratio of a rubber.  Rubber does not yield.  Rubber has internal losses, and
+the modulus of rubber increases with the frequency (K. A. Grosch, Proc. R. Soc. A 274, 1963)."""
 ADHESION = 0.05
 """Typical work of adhesion between clean smooth surfaces due to van der Waals forces, in N/m (J. N.
 Israelachvili, Intermolecular and Surface Forces)."""
 RANGE = 0.2e-9
-"""Range of van der Waals forces, in m.  It is of the order of the distance between atoms."""
+"""Range of van der Waals forces, in m.  This range is of the order of the distance between
+atoms."""
 SHORT, LONG = 5.0, 0.1
 """Smallest Tabor number for the JKR theory, and largest Tabor number for the DMT theory (K. L.
 Johnson and J. A. Greenwood, J. Colloid Interface Sci. 192, 1997)."""
@@ -46,8 +47,8 @@ the contact radius a divided by the radius of the smaller body, and a divided by
 relative curvature.  Hertz's theory assumes a << R1, R2 and a << R (K. L. Johnson, Contact
 Mechanics, 4.2)."""
 AGREES = 0.01
-"""Largest relative difference between two sizes or loads that count as equal.  It allows for
-rounding to two or three digits."""
+"""Largest relative difference between two sizes or loads that count as equal.  This value allows
+for rounding to two or three digits."""
 RADII = np.geomspace(1e-3, 1e3, 3001)
 """Contact radii at which the adhesive force is evaluated, divided by the contact radius under the
 load.  The largest force is the pull-off force.  Neighbouring radii differ by 0.5 %, which changes
@@ -253,12 +254,12 @@ def _pull_off(contact: Contact) -> tuple[float | None, float | None]:
 
     The pull-off force of a paraboloid is computed for an equivalent sphere.  The radius of this
     sphere is the geometric mean of the paraboloid's two radii of relative curvature.  This is exact
-    in the DMT theory (B. V. Derjaguin, Kolloid-Z. 69, 1934).  In the JKR theory it is an upper
-    bound, which slender ellipses do not reach (K. L. Johnson and J. A. Greenwood, J. Phys. D 38,
-    2005).  The pull-off force of another axisymmetric indenter is the largest value of sqrt(8 pi E*
-    w c^3) - F(c), where F(c) is the load without adhesion at the contact radius c (D. Maugis,
-    Contact, Adhesion and Rupture of Elastic Solids, 4.2).  For a flat punch, this is Kendall's
-    force (J. Phys. D 4, 1971).
+    in the DMT theory (B. V. Derjaguin, Kolloid-Z. 69, 1934).  In the JKR theory, the force of the
+    equivalent sphere is an upper bound, which slender ellipses do not reach (K. L. Johnson and J.
+    A. Greenwood, J. Phys. D 38, 2005).  The pull-off force of another axisymmetric indenter is the
+    largest value of sqrt(8 pi E* w c^3) - F(c), where F(c) is the load without adhesion at the
+    contact radius c (D. Maugis, Contact, Adhesion and Rupture of Elastic Solids, 4.2).  For a flat
+    punch, this is Kendall's force (J. Phys. D 4, 1971).
     """
     shape, crack = contact.shape, 8.0 * math.pi * contact.E_star * ADHESION
     if shape.hertzian:
@@ -276,8 +277,8 @@ def _contradictions(contact: Contact) -> list[str]:
     """Return a message for each size or load that disagrees with a pressure file.  Only files with
     units contain such values.
 
-    A pressure file can be read in several ways.  A value is accepted if it lies within the range of
-    all these readings, widened by the relative difference `AGREES`.
+    A pressure file can be read in several ways.  The readings give a range of values.  A value is
+    accepted if it lies within this range, widened by the relative difference `AGREES`.
     """
     texts, readings = [], (contact.shape, *contact.shape.readings) if not contact.radii else ()
     size, load = ("size_m", "m"), ("load_N", "N")
