@@ -1,5 +1,5 @@
-"""Plan of a configuration: its products, the batches of requests that they need, and the files that
-are missing in the folder of results.
+"""Plan of a configuration: the products, the batches of requests for the products, and the files
+that are missing in the folder of results.
 
 A product is one of the following: a dataset with its page; a figure; a page of the explorer.  The
 files of a product are named by content, such as data/bore.0123456789abcdef.nc.  The name contains a
@@ -119,8 +119,8 @@ class Plan:
         return Product(kind, rule, stem, links, inputs)
 
     def _batches(self, name: str) -> dict[str, Batch | None]:
-        """Return the batches of a product, keyed by their path without extension, in the order of
-        the requests.
+        """Return the batches of a product in the order of the requests.  The keys are the paths of
+        the batches without extension.
 
         A certified map has one batch with all points.  The value of this batch in the dict is None,
         because the requests of the batch depend on results.
@@ -219,8 +219,8 @@ class Results:
         return {path: batch for path, batch in needed.items() if not path.exists()}
 
     def batches(self, certified: bool) -> list[str]:
-        """Return the names, without extension, of missing batch files that are needed for missing
-        products.  If `certified` is true, only batches of certified maps are returned.  If
+        """Return the names of the missing batch files that are needed for missing products, without
+        extension.  If `certified` is true, only batches of certified maps are returned.  If
         `certified` is false, all other batches are returned."""
         return [path.stem for path, b in self._needed.items() if (b is None) == certified]
 

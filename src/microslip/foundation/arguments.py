@@ -10,8 +10,8 @@ from typing import Any, TypeGuard
 from microslip.foundation.errors import InputError
 
 LARGEST = {"velocity": 1e6, "amplitude": 1e6, "cells": 1000, "steps": 1_000_000}
-"""Largest allowed values.  Larger values are typing errors, or would exceed the memory or the range
-of floats."""
+"""Largest allowed values.  A larger value is probably a typing error, or the calculation would
+exceed the memory or the range of floats."""
 SMALLEST_TOLERANCE = 1e-6
 """Smallest allowed absolute tolerance of mu_macro."""
 LARGEST_BODY = 1e6
@@ -26,7 +26,7 @@ def without_array(value: Any) -> Any:
     """Return the number in a NumPy array without dimensions, or in a DataArray with one value and
     without a unit.  Return every other value unchanged.
 
-    Arrays of other libraries, masked arrays and arrays with a unit are unchanged.
+    Arrays of other libraries, masked arrays and arrays with a unit are also returned unchanged.
     """
     xarray, numpy = sys.modules.get("xarray"), sys.modules.get("numpy")
     if xarray is not None and isinstance(value, xarray.DataArray):

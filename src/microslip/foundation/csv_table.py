@@ -6,7 +6,7 @@ load [N],speed [mm/s],counterbody
 
 Commas, semicolons or tabs separate the columns.  A heading is a name, with or without a unit in
 brackets.  Empty lines, lines that begin with #, a first line such as "sep=;" and empty columns at
-the end are ignored.  A comment directly above the first line can be the heading.
+the end are ignored.  The heading can also be a comment directly above the first line.
 
 `pandas.read_csv` accepts invalid lines.  Under the heading "load [N],mu", pandas reads the line "1"
 as a load without a mu, and the line "1,5,0.3" as a load of 5.  If a quote is not closed, pandas
@@ -32,7 +32,7 @@ SEPARATORS = {",": "comma", ";": "semicolon", "\t": "tab"}
 LABELS = ("label", "name", "id", "sample", "comment")
 """Columns of text that are copied to the output."""
 PURE = ("", "1", "-")
-"""Unit strings in a heading that denote pure numbers."""
+"""Strings that replace the unit in the heading of a pure number."""
 HEADING = re.compile(r"(\w+)\s*(?:\[([^\]]*)\]|\(([^()]*)\))?")
 NUMBER = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?|[+-]?(nan|inf|infinity)", re.I | re.A)
 NO_ROW = re.compile(r"[\s,;\"]*|\s*#(?!(N/A|NV|[A-Z/0]+[!?])).*")

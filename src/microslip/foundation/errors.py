@@ -80,7 +80,7 @@ def described(error: BaseException, path: str | os.PathLike) -> str:
 
 
 def places_in(error: BaseException, path: str | os.PathLike) -> list[str]:
-    """Return the places in the file at `path` that the traceback of an error passes, such as
+    """Return the entries of an error's traceback that are in the file at `path`, such as
     "displacement, line 9"."""
     from traceback import extract_tb  # late, since its import takes a while
 

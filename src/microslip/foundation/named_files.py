@@ -4,11 +4,12 @@
     mine/soft_square.py:share=0.5    the class in a Python file
     file:pad.csv,grid=samples        a data file, with options
 
-A result depends on the content of a file and not on its folder.  Therefore, the name of a motion or
-a pressure from a file contains a digest: "soft_square.py:sha256=0123456789abcdef,share=0.5" or
-"file:sha256=0123456789abcdef,grid=samples".  The digest of a Python file covers the files that it
-imports from its folder.  Each process has a table of paths, keyed by digest.  If a process receives
-paths from another process, `remember` adds these paths to the table.
+A result depends on the content of a file, but not on the folder of the file.  Therefore, the name
+of a motion or a pressure from a file contains a digest:
+"soft_square.py:sha256=0123456789abcdef,share=0.5" or "file:sha256=0123456789abcdef,grid=samples".
+The digest of a Python file covers the files that it imports from its folder.  Each process has a
+table of paths, keyed by digest.  If a process receives paths from another process, `remember` adds
+these paths to the table.
 
 This module imports only fast modules, because each start of the workflow imports this module.
 """
@@ -40,7 +41,7 @@ T = TypeVar("T")
 PREFIX = "file:"
 PYTHON = re.compile(r"(?:file:)?(.*\.py)(?::(.*))?", re.S)
 GRID = "cells"
-"""Default meaning of the values of a grid, see pressures.grid.READINGS."""
+"""Default meaning of the values of a grid; see pressures.grid.READINGS."""
 DIGITS = 16
 """Number of hexadecimal digits of a digest in a name."""
 OPTIONS = re.compile(r"(?:^|,)(grid|pitch|sha256|decimal|encoding)=([^,]*)$")
@@ -203,8 +204,8 @@ def remember(names: Iterable[str]) -> None:
 
 
 def problem_in_code(error: BaseException) -> str:
-    """Describe an error in one line if its traceback passes a user's Python file.  Otherwise,
-    return ""."""
+    """Describe an error in one line if the traceback of the error contains a user's Python file.
+    Otherwise, return ""."""
     for path in PLACES.values():
         if path.suffix == ".py" and places_in(error, path):
             return f"{path}: {described(error, path)}"

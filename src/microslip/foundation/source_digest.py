@@ -113,8 +113,8 @@ class Sources:
         return self.closure(starts, lambda n: not (is_physics(n) or n.startswith("foundation/")))
 
     def _imports(self, modules: Iterable[str]) -> list[str]:
-        """Return the paths of the modules with these names and of the packages that contain
-        them."""
+        """Return the paths of the modules with these names, and the paths of the packages that
+        contain these modules."""
         inside = (n.removeprefix(self.prefix) for n in modules if n.startswith(self.prefix))
         parts = [name.split(".") for name in inside]
         paths = {"/".join(one[:end]) for one in parts for end in range(1, len(one) + 1)}

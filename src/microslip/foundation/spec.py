@@ -158,8 +158,8 @@ class Named:
 
     @cached_property
     def name(self) -> str:
-        """Name of the class, followed by the parameters that differ from their defaults, rounded to
-        12 digits."""
+        """Name of the class, followed by the parameters that differ from their defaults.  The
+        parameters are rounded to 12 digits."""
         record: Any = self
         name, values = name_of(type(self)), ((f, getattr(self, f.name)) for f in fields(record))
         words = [f"{field.name}={value:.12g}" for field, value in values if value != field.default]

@@ -225,9 +225,10 @@ class Contact:
     def drive(self, mean_load: Any = 1.0) -> dict[str, Any]:
         """Return the dimensionless force, stiffness, mass and damping for microslip.solve.
 
-        The force is divided by mu times the mean load, the stiffness by mu F_z / u_lim, the mass by
-        mu F_z / (u_lim omega^2), and the damping by mu F_z / (u_lim omega).  F_z is the load
-        without oscillation, and `mean_load` is the mean load divided by F_z.
+        The unit of the force is mu times the mean load.  The unit of the stiffness is mu F_z /
+        u_lim, where F_z is the load without oscillation.  The unit of the mass is the unit of the
+        stiffness divided by omega^2.  The unit of the damping is the unit of the stiffness divided
+        by omega.  The argument `mean_load` is the mean load divided by F_z.
         """
         stiffness = self.mu * self.load / self.u_lim
         units = {"force": self.mu * self.load * mean_load, "drive_stiffness": stiffness}

@@ -662,8 +662,8 @@ def _curve(rows: Rows, profile: Profile, friction: Friction, mu: float) -> Rows:
     """Compute the model's friction on curves.  Each curve connects rows that differ in one
     condition only.  The returned arrays contain these curves one after another.
 
-    The condition that differs is the one with the most distinct values.  The correction of the
-    coarse map is known only for the rows, and is interpolated between the rows.
+    This condition is the one that has the most distinct values in the table.  The corrections of
+    the coarse map at the rows are interpolated between the rows.
     """
     along = max(KEYS, key=lambda key: len(np.unique(rows[key])))
     which = np.unique([rows[k] for k in KEYS if k != along], axis=1, return_inverse=True)[1].ravel()

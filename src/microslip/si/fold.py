@@ -36,14 +36,15 @@ REFINEMENTS = 3
 """Number of corrections of the frequency.  The error of the frequency that remains after a
 correction is due to the errors of the phases."""
 PARTS, MOST_PARTS, PERIODS_OF_PART = FEWEST_PERIODS, 20, 10
-"""Smallest and largest number of parts of a record, and number of periods in each part.  The median
-amplitude of 10 noisy periods is rarely below one half of the mean."""
+"""Smallest number of parts of a record, largest number of parts, and number of periods in a part.
+The median amplitude of 10 noisy periods is rarely below one half of the mean."""
 STEADY = 0.5
 """Smallest allowed ratio of the amplitude of a part to the mean amplitude.  If the ratio is below
 one half, the amplitude of the part is nearer to 0 than to the mean.  The part then resembles a
 state of rest more than the mean period."""
 LARGEST_CHANGE = 0.1
-"""Largest difference between the amplitudes of the quarters of a record, divided by the mean."""
+"""Largest accepted difference between the amplitudes of two quarters of a record, divided by the
+mean amplitude."""
 MOST_DECIMALS = 12
 """Times with at most this number of decimals count as rounded.  Times with more decimals need no
 allowance for rounding."""
@@ -51,12 +52,12 @@ LARGEST_LOSS = 0.01
 """Largest accepted relative loss of the strongest harmonic due to a drift of the frequency.  The
 estimate of the loss is of first order, so it is correct for small losses only."""
 SIGNIFICANT = 5.0
-"""Smallest ratio of the peak-to-peak value to its standard error.  White noise has a ratio of about
-3 at the frequency of its strongest component."""
+"""Smallest accepted ratio of the peak-to-peak value to its standard error.  White noise has a ratio
+of about 3 at the frequency of its strongest component."""
 PHASE_OF_A_DRIFT = 0.5 * math.sqrt(1.0 / 80.0 - 1.0 / 144.0)
-"""Standard deviation of the phase, in periods, for a frequency that changes linearly by one period
-over the duration of the record.  The value is the standard deviation of u**2 / 2, where u is
-uniformly distributed from -1/2 to 1/2."""
+"""Standard deviation of the phase, in periods, for a frequency that changes linearly over the
+record.  The whole change of the frequency is 1 divided by the duration of the record.  The value is
+the standard deviation of u**2 / 2, where u is uniformly distributed from -1/2 to 1/2."""
 FINER = 32
 """Number of interpolated points per sample for the peak-to-peak value.  With 32 samples, the peak
 of a sine is too small by at most 5e-6 of its amplitude."""
@@ -255,7 +256,7 @@ def _check_repeats(frequency: float, parts: np.ndarray, order: int, column: int)
 
 def _change(sizes: np.ndarray) -> float:
     """Return the largest difference between the mean amplitudes of the quarters of a record,
-    divided by their mean.  Return 0 if the difference is within the noise."""
+    divided by the mean of these amplitudes.  Return 0 if the difference is within the noise."""
     means = [float(one.mean()) for one in np.array_split(sizes, PARTS) if len(one)]
     noise = np.diff(sizes).std() / math.sqrt(2.0 * len(sizes) / PARTS)
     change = float(np.ptp(means))

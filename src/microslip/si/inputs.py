@@ -300,8 +300,8 @@ class Inputs:
         return self._body(""), self._body("counter_")
 
     def _body(self, side: str) -> tuple[Material, str]:
-        """Return a body and its description.  `side` is "counter_" for the counterbody, and
-        otherwise empty."""
+        """Return a body and its description.  `side` is "counter_" for the counterbody, and "" for
+        the body."""
         name, known = "counterbody" if side else "material", self.quantities
         if side or name in self.given:
             body, text = read_body(name, self.given.get(name, "rigid"))

@@ -312,7 +312,7 @@ def _names() -> set[str]:
 
 
 def line(title: str, text: str) -> str:
-    """Format a line to print, which begins with a title."""
+    """Format a printed line that begins with a title."""
     return f"{title:<{WIDTH - 1}} {text}"
 
 

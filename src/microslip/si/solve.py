@@ -165,10 +165,11 @@ def largest_force(contact: Contact) -> float:
 def _threshold(contact: Contact, limit: Result | None) -> Estimate | None:
     """Return the smallest constant force that moves the contact, divided by mu times the mean load.
 
-    The threshold equals the static limit if the oscillation exerts no forward force.  Otherwise, a
-    contact without mass follows the forward oscillation.  The threshold is then the static limit of
-    the other components of the motion, or 1 if there are no other components.  This static limit is
-    computed only if a force is prescribed.  The threshold is None if it is unknown.
+    The threshold equals the static limit if the oscillation exerts no forward force.  If the
+    oscillation exerts a forward force, a contact without mass follows the forward oscillation.  In
+    this case, the threshold is the static limit of the other components of the motion, or 1 if
+    there are no other components.  This static limit is computed only if a force is prescribed.
+    The threshold is None if it is unknown.
     """
     if limit is None:
         return Estimate(0.0)  # under a steady spin any force moves the contact

@@ -33,7 +33,8 @@ OPTION = r"(?:\s*,\s*(\d+))?"
 RANGE = re.compile(
     rf"(?!.*\.\.\.)({NUMBER})\s*\.\.\s*({NUMBER})\s*([^,.]*?){OPTION}(\s*,\s*log)?{OPTION}\s*", re.A
 )
-"""Pattern of a range: both ends, the unit, and the number of values before or after `log`."""
+"""Pattern of a range: both ends, the unit, the number of values, and the word `log`.  The number
+can be before or after `log`."""
 RANGES = (
     "allowed is a range from a smaller to a larger number, such as '0..0.5 um' (11 values), "
     f"'0..2 um, 21' (21 values; from 2 to {MOST_CASES} are allowed) or '0.1..10 mm/s, 21, log' (21 "

@@ -51,8 +51,8 @@ AGREES = 0.01
 for rounding to two or three digits."""
 RADII = np.geomspace(1e-3, 1e3, 3001)
 """Contact radii at which the adhesive force is evaluated, divided by the contact radius under the
-load.  The largest force is the pull-off force.  Neighbouring radii differ by 0.5 %, which changes
-the largest force by less than the last printed digit."""
+load.  The largest force is the pull-off force.  Neighbouring radii differ by 0.5 %.  This step
+changes the largest force by less than the last printed digit."""
 
 
 ADHERES = (
@@ -253,13 +253,13 @@ def _pull_off(contact: Contact) -> tuple[float | None, float | None]:
     """Return Tabor's number of a paraboloid, and the pull-off force in N.  Unknown values are None.
 
     The pull-off force of a paraboloid is computed for an equivalent sphere.  The radius of this
-    sphere is the geometric mean of the paraboloid's two radii of relative curvature.  This is exact
-    in the DMT theory (B. V. Derjaguin, Kolloid-Z. 69, 1934).  In the JKR theory, the force of the
-    equivalent sphere is an upper bound, which slender ellipses do not reach (K. L. Johnson and J.
-    A. Greenwood, J. Phys. D 38, 2005).  The pull-off force of another axisymmetric indenter is the
-    largest value of sqrt(8 pi E* w c^3) - F(c), where F(c) is the load without adhesion at the
-    contact radius c (D. Maugis, Contact, Adhesion and Rupture of Elastic Solids, 4.2).  For a flat
-    punch, this is Kendall's force (J. Phys. D 4, 1971).
+    sphere is the geometric mean of the paraboloid's two radii of relative curvature.  The force of
+    this sphere is exact in the DMT theory (B. V. Derjaguin, Kolloid-Z. 69, 1934).  In the JKR
+    theory, the force of the equivalent sphere is an upper bound, which slender ellipses do not
+    reach (K. L. Johnson and J. A. Greenwood, J. Phys. D 38, 2005).  Let F(c) be the load without
+    adhesion at the contact radius c.  The pull-off force of another axisymmetric indenter is the
+    largest value of sqrt(8 pi E* w c^3) - F(c) for all c (D. Maugis, Contact, Adhesion and Rupture
+    of Elastic Solids, 4.2).  For a flat punch, this is Kendall's force (J. Phys. D 4, 1971).
     """
     shape, crack = contact.shape, 8.0 * math.pi * contact.E_star * ADHESION
     if shape.hertzian:
