@@ -233,9 +233,9 @@ def response(path: str, output: str | None = None, **arguments: Any) -> Answer:
     """Compute the forces of a contact that follows a path from a file.
 
     The result contains forces, torque, dissipated energy and stick fraction, with error estimates.
-    The file can have the columns forward, lateral and angle.  It can also have one of the columns
-    load and indentation.  Each heading contains the unit, as in forward [um].  `load` is the load
-    of the reference state.
+    The file can have the columns forward, lateral and angle.  The file can also have one of the
+    columns load and indentation.  Each heading contains the unit, as in forward [um].  `load` is
+    the load of the reference state.
     """
     import microslip
 

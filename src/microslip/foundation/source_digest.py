@@ -3,11 +3,11 @@
 The name of a result contains the digest of the solver.  This digest covers the code of all
 subpackages that compute results, and the file of a comparison method.  The name of a dataset, page
 or figure contains the digest of its builder.  The builder of a product consists of the modules that
-make the product.  It also contains the modules that these modules import from the subpackages in
-`OUTER`, except from foundation.  The name of a motion or a pressure in a user's file also contains
-a digest.  This digest covers the user's file, and the files that it imports from its folder.
-Comments, docstrings and layout do not change a digest.  If the text of a message changes, only the
-digests of builders change.
+make the product.  The builder also contains the modules that these modules import from the
+subpackages in `OUTER`, except from foundation.  The name of a motion or a pressure in a user's file
+also contains a digest.  This digest covers the user's file, and the files that it imports from its
+folder.  Comments, docstrings and layout do not change a digest.  If the text of a message changes,
+only the digests of builders change.
 
 Files are read when a digest is first needed.
 """

@@ -33,15 +33,15 @@ ROWS, MOST_ROWS = 32, 10_000
 """Default and largest number of samples in the period.  With more samples, the period contains more
 harmonics, but also more noise."""
 REFINEMENTS = 3
-"""Number of corrections of the frequency.  The error of the frequency that remains after a
-correction is due to the errors of the phases."""
+"""Number of corrections of the frequency.  After a correction, the remaining error of the frequency
+is due to the errors of the phases."""
 PARTS, MOST_PARTS, PERIODS_OF_PART = FEWEST_PERIODS, 20, 10
 """Smallest number of parts of a record, largest number of parts, and number of periods in a part.
 The median amplitude of 10 noisy periods is rarely below one half of the mean."""
 STEADY = 0.5
 """Smallest allowed ratio of the amplitude of a part to the mean amplitude.  If the ratio is below
-one half, the amplitude of the part is nearer to 0 than to the mean.  The part then resembles a
-state of rest more than the mean period."""
+one half, the amplitude of the part is nearer to 0 than to the mean.  Such a part is nearer to a
+state of rest than to the mean period."""
 LARGEST_CHANGE = 0.1
 """Largest accepted difference between the amplitudes of two quarters of a record, divided by the
 mean amplitude."""

@@ -191,8 +191,8 @@ def _friction(
 
     If the force is below the threshold by more than the threshold's error, the contact comes to
     rest, and no drift is computed.  If the force differs from the threshold by less than the error
-    of the threshold, the result is not converged.  In this case, the speed is small, and the solver
-    would need minutes to compute it.
+    of the threshold, the result is not converged.  The speed is then so small that the solver would
+    need minutes to compute the speed.
     """
     groups = contact.drive(contact.mean_load)
     drive: dict[str, Any] = within_range(groups)

@@ -49,8 +49,8 @@ number of points is added where the static limit is close to the force."""
 VANISHING = 1e-3
 """Largest static limit that counts as 0 in the bisection."""
 CLOSEST = 64
-"""The draws are sorted by the difference between their static limit and the force.  The first DRAWS
-/ CLOSEST of them count as close to the force."""
+"""The fraction of draws that count as close to the force is 1 divided by this value.  These draws
+have the smallest differences between static limit and force."""
 NEGLIGIBLE = 1e-3
 """An axis is ignored if the groups hardly vary along the axis: their standard deviation is at most
 this fraction of the standard deviation along the first axis.  A standard uncertainty is infinite if
@@ -285,7 +285,7 @@ def normal_numbers(count: int) -> np.ndarray:
 
 def with_interval(one: Value, draws: Any) -> Value:
     """Return a copy of a `Value` that also contains the standard uncertainty and the 95 % interval
-    of the draws.  If a draw has no value, its value counts as infinite."""
+    of the draws.  A missing value of a draw counts as infinite."""
     drawn = np.broadcast_to(np.asarray(draws, dtype=float), (DRAWS,))
     drawn = np.where(np.isnan(drawn), math.inf, drawn)
     low, high = np.quantile(drawn, INTERVAL, method="nearest")
