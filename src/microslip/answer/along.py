@@ -56,8 +56,8 @@ MOST_VALUES = 2e7
 pieces."""
 PATH_STEPS = LOAD.steps / 2.0
 """At level n, a path of length u_lim has n times this number of time steps.  With this value, the
-steps are as long as the steps of `LOAD`, the ladder for oscillating loads, at a stroke of u_lim.
-There, half a period is 2 u_lim long."""
+steps at a stroke of u_lim are as long as those of the ladder `LOAD`, which is used for oscillating
+loads.  At this stroke, half a period is 2 u_lim long."""
 FORCES = ("force_forward", "force_lateral", "torque")
 """Names of the forces in a History, a Response and a Period."""
 COLUMNS = (
@@ -195,7 +195,7 @@ def named_forces(problem: Problem, forces: np.ndarray) -> dict[str, np.ndarray]:
 
 
 class Response(Answer):
-    """Dimensionless forces of a contact at the rows of a prescribed path.
+    """Dimensionless forces of a contact at each point of a prescribed path, one point per row.
 
     Attributes
     ----------
@@ -448,8 +448,8 @@ def _stick_fraction(contact: Contact, tractions: np.ndarray, bounds: np.ndarray)
 
 
 TOLERANCE = 1e-3
-"""Default limit on the error due to the number of elements.  It is also the tolerance of the full
-contact in the comparison."""
+"""Default limit on the error due to the number of elements.  The full contact in the comparison has
+the same tolerance."""
 BEYOND_FULL_SLIP = 1.2
 """In the comparison, the loop reverses when the magnitude of the displacement reaches this value,
 in u_lim.  At nu = 0.5, the force at this displacement is within 2e-4 of full friction."""

@@ -13,7 +13,7 @@ from microslip.periodic.run import Effort
 from microslip.scene.problem import Problem
 
 CLOSED_FORM = "closed-form"
-"""Model name in results of a closed form, which needs no run."""
+"""Model name in results of a closed form. A closed form needs no run."""
 SOURCES = ("resolution", "periodicity", "solver", "model")
 """Error sources of an estimate, see refine.py."""
 QUANTITIES = {
@@ -177,8 +177,8 @@ def about(problem: Problem) -> dict[str, Any]:
 class Result(Answer):
     """Result of `solve`: the friction, or the velocity under a force, with its error estimate.
 
-    All numbers except `solve_time_s` are dimensionless.  Counts that do not apply are 0, such as
-    the number of cells of a closed form, or the number of periods of a steady motion.
+    All numbers except `solve_time_s` are dimensionless.  Counts that do not apply, such as the
+    number of cells of a closed form or the number of periods of a steady motion, are 0.
 
     Attributes
     ----------

@@ -16,9 +16,9 @@ QUADRATURE = 1e-7
 kinks."""
 WHOLE_ROUNDING = 1e-9
 OF_RECORD = 1e-8
-"""Errors of closed forms with a quadrature.  The first value is for a sphere, where only the motion
-is integrated numerically.  The second value is for other indenters, where the pressure is
-integrated numerically as well."""
+"""Errors of the closed forms that are evaluated by quadrature.  The first value is for a sphere,
+where only the motion is integrated numerically.  The second value is for other indenters, where the
+pressure is integrated numerically as well."""
 ROUNDING = 1e-12
 """Error of closed forms that need no quadrature."""
 ON_A_SPRING = ("transverse", "bore")
@@ -45,8 +45,8 @@ def closed_form(problem: Problem, tolerance: float) -> Exact | None:
     Closed forms exist in four cases.  The first case is the steady state of a motion without
     oscillation.  There, every point slips in the direction of its rigid velocity.  The second case
     is the limit of vanishing velocity.  The third case is motion along one line at nu = 0.  The
-    fourth case is fast sliding.  There, the midpoint of the bounds in theory/exact.py is used if it
-    is accurate to within the tolerance.
+    fourth case is fast sliding.  In fast sliding, the midpoint of the bounds in theory/exact.py is
+    used if the midpoint is accurate to within the tolerance.
 
     Parameters
     ----------

@@ -3,7 +3,8 @@
 Level n has n cells, and its numbers of angles and steps are proportional to n.  So the error has a
 single leading term, C / n^2.  This term is estimated from runs at the levels n/4, n/2 and n.
 LEVELS interleaves two series of doublings: 2, 4, 8, ... and 3, 6, 12, ....  The cost therefore
-grows moderately from level to level, and level n can reuse the runs at n/2 and n/4.
+grows moderately from level to level. In addition, level n can reuse the runs at the levels n/2 and
+n/4.
 
 The first level depends on the tolerance and on the motion.  The mesh and the path also adapt to the
 problem.  Rings are graded towards the slip front (discretise.focus_strength).  The number of time
@@ -39,8 +40,8 @@ LOOSEST = 1e-2
 FEWEST = 4
 """Smallest number of angles and of steps."""
 MOST_MASS_STEPS = 8192
-"""Largest number of steps in half a period for a body with mass.  Runs with 24 rings and this
-number of steps take seconds."""
+"""Largest number of steps in half a period for a body with mass.  A run with 24 rings and this
+number of steps takes a few seconds."""
 FREQUENCY_ERROR = (3.0 * np.sqrt(2.0) - 4.0) / 6.0
 """Coefficient of the frequency error of the integrator path.SDIRK2.  For an undamped oscillation
 and a step of s radians, the relative error of the frequency is this coefficient times s^2.  A step
@@ -89,8 +90,8 @@ class Ladder:
     def levels(self, tolerance: float) -> tuple[int, ...]:
         """Return the finest levels to try at a tolerance, in the order in which they are tried.
 
-        The last of these levels comes directly after the first level for the smallest allowed
-        tolerance.
+        Let n be the first level for the smallest allowed tolerance. The last level in the list is
+        the level after n.
         """
         if self.imposed:
             return (self.start,)

@@ -81,7 +81,8 @@ STEPLESS = ("rigid", "dahl")
 
 
 def within(name: str, value: object, **changes: Any) -> Any:
-    """Convert an argument to a number within its limits, or raise InputError.
+    """Return an argument as a number. Raise InputError unless the argument is a number within its
+    limits.
 
     The keyword arguments `changes` replace fields of the argument's entry in LIMITS.
     """
@@ -195,7 +196,7 @@ def without_forward_motion(problem: Problem) -> Problem:
     """Return the problem without the oscillation along the direction of the force.
 
     Under a constant force, the forward force on a contact without mass is constant.  Then the body
-    follows the forward oscillation, which therefore has no effect.
+    follows the forward oscillation. Therefore, the forward oscillation has no effect.
     """
     return replace(problem, follows=True) if oscillates_forward(problem) else problem
 
@@ -248,8 +249,8 @@ def choose_model(problem: Problem, model: str = "auto") -> str:
     Rings are chosen if the traction depends only on the radius (translation at nu = 0).  Angular
     modes are chosen for other motions of a round contact, and squares in all other cases.  Squares
     are also chosen for the static limit of a contact without symmetry, because its stick zone is
-    not round.  The slider and the rigid contact are never chosen.  Their model error could only be
-    bounded with a run on rings, and this run already gives the result.
+    not round.  The slider and the rigid contact are never chosen.  The model errors of these two
+    could only be bounded with a run on rings, and such a run already gives the result.
 
     Parameters
     ----------

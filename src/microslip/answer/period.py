@@ -22,8 +22,8 @@ from microslip.scene.problem import Problem
 PERIOD_CELLS, PERIOD_STEPS = 16, 64
 """Default resolution.  The mean force agrees with `solve` within 2e-3, see test_period.py."""
 PERIOD_TOLERANCE = 3e-5
-"""Largest distance from the periodic state, as a force divided by mu F_z.  It is far below the
-discretisation error, 2e-3."""
+"""Largest distance from the periodic state, as a force divided by mu F_z.  This tolerance is far
+below the discretisation error of 2e-3."""
 STEADY_TOLERANCE = 1e-6
 """Tolerance of the steady state in a traction field, as a force divided by mu F_z."""
 MOST_VALUES = 1e8
@@ -39,7 +39,7 @@ class NoPeriodicState(SolverError, ValueError):
 class Period(Answer):
     """One period of the periodic state on the whole disc, in dimensionless form.
 
-    If the normal load oscillates, F_z and a are those of the reference state, and the points cover
+    If the normal load oscillates, F_z and a are those of the reference state. The points then cover
     the largest contact area.
 
     Attributes
@@ -299,7 +299,8 @@ def _work(traction: np.ndarray, slip: np.ndarray) -> np.ndarray:
 
 
 def _points(contact: PolarContact) -> dict[str, np.ndarray]:
-    """Return the positions and the areas of the points on the whole disc, by name."""
+    """Return a dictionary with the positions of the points on the whole disc and the areas that
+    they represent."""
     forward, lateral = contact.forward_position.ravel(), contact.lateral_position.ravel()
     area = np.broadcast_to(contact.weight, contact.forward_position.shape).ravel()
     if not contact.whole:  # the weight of a point on the half disc includes its mirror image

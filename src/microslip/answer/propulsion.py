@@ -1,10 +1,10 @@
 """Stall force and no-load velocity of a self-propelled motion.
 
 The sphere moves forward at a prescribed velocity v, like a body too heavy for its velocity to
-change during a period.  The contact exerts the force -mu(v) on the body.  The stall force is
--mu(v -> 0), the load that stops the body.  The no-load velocity is the root of mu(v).  Friction
-never decreases with the velocity (theory/exact.py), so two velocities at which friction has
-opposite signs bracket the root.
+change during a period.  The contact exerts the force -mu(v) on the body.  The stall force is the
+load that stops the body. It equals -mu in the limit v -> 0.  The no-load velocity is the root of
+mu(v).  Friction never decreases with the velocity (theory/exact.py), so two velocities at which
+friction has opposite signs bracket the root.
 
 A body without mass under a constant load is not propelled.  It follows the forward oscillation (see
 limits.without_forward_motion).

@@ -50,8 +50,8 @@ SAFETY = 1.5
 CHANCE_ORDER = 2 * ORDER
 """If the observed order is above this value, the agreement of the last two levels counts as chance.
 Above this order, D increases linearly as the last difference decreases.  If the last two levels are
-equal, D equals the first difference.  `benchmarks/attacks.py` searches for points that this rule
-does not cover."""
+equal, D equals the first difference.  `benchmarks/attacks.py` searches for points where this rule
+fails."""
 WEIGHTS = 0.0, -1.0 / (2**ORDER - 1), 2**ORDER / (2**ORDER - 1)
 """Weights of the levels n/4, n/2 and n in the extrapolated value."""
 READING_SAFETY = 2.5

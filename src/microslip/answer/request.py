@@ -353,7 +353,7 @@ def within_friction(problem: Problem, friction: Estimate) -> Estimate:
 
     Values outside this range result from rounding and discretisation errors.  If the error exceeds
     the width of the range, the result is the middle of the range.  The error of this result is half
-    the width.
+    the width of the range.
     """
     least = -1.0 if problem.propels else 0.0
     if not math.isfinite(friction.value):

@@ -191,7 +191,7 @@ class Contact(Protocol):
         """
 
     def energy(self, change: np.ndarray) -> float:
-        """Return twice the elastic energy of tractions, <q, A q>."""
+        """Return <q, A q>, which is twice the elastic energy of the tractions q."""
         return float(np.vdot(self.weight * change, self.displacement(change)))
 
     def prolong(self, state: np.ndarray) -> np.ndarray | None:
@@ -202,8 +202,8 @@ class Contact(Protocol):
         return None
 
     def mirrored(self, state: np.ndarray) -> np.ndarray:
-        """Return the mirror image of a state under lateral -> -lateral, with lateral tractions
-        negated."""
+        """Return the mirror image of a state, in which the lateral direction is reversed and the
+        lateral tractions are negated."""
 
     def march(
         self,

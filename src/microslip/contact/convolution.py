@@ -7,7 +7,8 @@ cosines and sines of 2 pi k x / (2 n - 1) for k = 0 .. n - 1.  This period is lo
 convolution does not wrap around.  The influence of tractions on displacements in the same direction
 (forward or lateral) is even along both axes.  It multiplies each wave by a number.  The influence
 of forward tractions on lateral displacements, and of lateral tractions on forward displacements, is
-odd along both axes.  It multiplies each wave by a number, and exchanges cosine and sine.
+odd along both axes.  This influence multiplies each wave by a number, and exchanges cosine and
+sine.
 
 If a symmetry determines the field at negative forward coordinates, only the cells with positive
 forward coordinates are resolved.  Each wave along the lateral axis is then either even or odd along

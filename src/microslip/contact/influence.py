@@ -144,8 +144,8 @@ def toroidal_kernels(
 def modes_for(r: float, s: float, n: int) -> int:
     """Return the number of values G_m(r, s) that are needed to compute `n` values C_m.
 
-    If the upward recurrence is stable, the number is n + 2.  Otherwise the number is larger, but at
-    most `MOST_MODES` times n + 2.
+    If the upward recurrence is stable, the number is n + 2.  Otherwise, the number of modes is
+    larger, but at most n + 2 multiplied by `MOST_MODES`.
     """
     growth = np.log(s / r)
     return n + 2 if (n + 1) * growth < 2.0 else n + 3 + int(DECAY / growth)
@@ -255,7 +255,8 @@ def _add_pair(
 
 @kernel
 def _weight(r: float) -> float:
-    """Return the profile of the Hertz friction bound times r dr/dpsi, at r = sin psi."""
+    """Return the product of the Hertz friction bound and r dr/dpsi at r = sin psi, except for a
+    constant factor."""
     return r * (1.0 - r) * (1.0 + r)
 
 

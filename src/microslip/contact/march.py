@@ -57,15 +57,15 @@ def add(out: np.ndarray, factor: float, values: np.ndarray) -> None:
 
 @kernel
 def move_forward(factor: float, out: np.ndarray) -> None:
-    """Add a uniform forward displacement, `factor`, to the field `out`."""
+    """Add the uniform forward displacement `factor` to the field `out`."""
     for i in range(out.shape[1]):
         out[0, i] += factor
 
 
 @kernel
 def combine(out: np.ndarray, first: np.ndarray, factor: float, second: np.ndarray) -> None:
-    """Set the field `out` to first + factor (first - second).  With the factor 0, `first` is
-    copied."""
+    """Set the field `out` to `first` plus `factor` times the difference `first` - `second`.  With
+    the factor 0, `first` is copied."""
     for c in range(2):
         for i in range(out.shape[1]):
             out[c, i] = first[c, i] + factor * (first[c, i] - second[c, i])
@@ -100,7 +100,8 @@ def unpack(state: np.ndarray, field: np.ndarray) -> None:
 
 @kernel
 def strain_energy(operators: tuple, weight: np.ndarray, state: np.ndarray) -> float:
-    """Return twice the elastic energy <q, A q> of tractions of shape (2, rows, cells)."""
+    """Return <q, A q>, which is twice the elastic energy of tractions q of shape (2, rows,
+    cells)."""
     sectors, number, rows = operators[0].shape
     size = len(weight)
     waves = np.empty((2, sectors * number, 2 * size // (sectors * rows)))

@@ -153,7 +153,7 @@ class Path(NamedTuple):
         return len(self.phase) - 1
 
     def mean(self, values: np.ndarray) -> np.ndarray:
-        """Return the time average of values at the phases (first axis)."""
+        """Return the time average of values whose first axis is the phase."""
         return self.weights @ values
 
 
@@ -203,9 +203,9 @@ def phases_between(
 ) -> np.ndarray:
     """Return phases from the first turning point to the last one.
 
-    There are `steps` steps between neighbouring turning points.  The number of phases is therefore
-    (len(turns) - 1) steps + 1.  The steps are graded towards both turning points.  For `grading`
-    and `width`, see turning_point_grading and turning_point_width.
+    There are `steps` steps between neighbouring turning points.  Therefore, the path has
+    (len(turns) - 1) steps + 1 phases.  The steps are graded towards both turning points.  For
+    `grading` and `width`, see turning_point_grading and turning_point_width.
     """
     t = np.arange(steps + 1) * (np.pi / steps) - np.pi / 2
     t[-1] = np.pi / 2  # as in np.linspace, which takes longer

@@ -4,10 +4,11 @@ rigid: every point slips in the direction of its rigid velocity at every instant
 translation, this model is the rigid slider of Eq 6; for a rotation, it is the quasi-steady contact
 of Eqs 21, 22 and 29.  The model has no memory, so that only the forces at each phase are evaluated.
 
-slider: one friction element in series with an isotropic spring (Benad et al. 2019).  Like the whole
-contact, the element slides once the displacement exceeds u_lim, so both have the same dimensionless
-groups.  The model neglects partial slip.  The slider is cheap, and accurate at high velocities.
-Near the static limit, the friction of the slider is given by Eq 7.
+slider: one friction element in series with an isotropic spring (Benad et al. 2019).  The element
+slides once the displacement exceeds u_lim, as the whole contact does. Therefore, the element and
+the contact have the same dimensionless groups.  The model neglects partial slip.  The slider is
+cheap, and accurate at high velocities.  Near the static limit, the friction of the slider is given
+by Eq 7.
 
 dahl: the Dahl model in two directions (Tsai and Tseng 2005),
 
@@ -22,10 +23,10 @@ mdr: the method of dimensionality reduction, which replaces the contact by a row
 springs with friction.  The model is exact for tangential loading of an axisymmetric indenter in one
 direction (Cattaneo and Mindlin).  For slip in two directions, the model is an approximation,
 because the springs do not interact.  Springs at -a < x < a have the stiffness G* and the friction
-bound G* (1 - h(x)) per unit length.  Here h(x) is the depth for the contact radius x divided by the
-reference depth.  The spring at x therefore begins to slide at the displacement (1 - h) u_lim.  For
-a sphere, this displacement is (1 - x^2) u_lim.  If the depth is d times the reference depth and
-d > h, the spring begins to slide at the displacement (d - h) u_lim.
+bound G* (1 - h(x)) per unit length.  Here h(x) is the depth at which the contact radius is x,
+divided by the reference depth.  The spring at x therefore begins to slide at the displacement (1 -
+h) u_lim.  For a sphere, this displacement is (1 - x^2) u_lim.  If the depth is d times the
+reference depth and d > h, the spring begins to slide at the displacement (d - h) u_lim.
 """
 
 from __future__ import annotations
@@ -45,8 +46,8 @@ reverses within a phase of about v/y, the ratio of velocity to amplitude."""
 
 
 class RigidContact(contact.Contact):
-    """Rigid contact with points on rings and at angles on one half of the disc, or with a single
-    point for a translation; see contact.Contact."""
+    """Rigid contact; see contact.Contact. The points are on rings and at angles on one half of the
+    disc. For a translation, a single point suffices."""
 
     sticks = False
     grading = GRADING
@@ -70,8 +71,8 @@ class RigidContact(contact.Contact):
         return np.zeros_like(state)
 
     def mirrored(self, state: np.ndarray) -> np.ndarray:
-        """Return the mirror image of a state under lateral -> -lateral.  The reflection negates
-        lateral tractions."""
+        """Return the mirror image of a state, in which the lateral direction is reversed.  The
+        reflection negates lateral tractions."""
         return state[:, ::-1, :] * contact.MIRROR
 
     def march(
@@ -110,7 +111,7 @@ class DahlContact(contact.Contact):
         return state / self.stiffness
 
     def mirrored(self, state: np.ndarray) -> np.ndarray:
-        """Return the state with its lateral traction negated."""
+        """Return the state with the sign of its lateral traction reversed."""
         return state * contact.MIRROR
 
     def march(

@@ -184,8 +184,8 @@ class RingContact(Contact):
         return interpolate(fine.radius, coarse.radius, state / coarse.bound) * self.bound
 
     def mirrored(self, state: np.ndarray) -> np.ndarray:
-        """Return the mirror image of a state under lateral -> -lateral, which negates lateral
-        tractions."""
+        """Return the mirror image of a state, in which the lateral direction is reversed and the
+        lateral tractions are negated."""
         return (state if self.mirror_rows is None else state[:, self.mirror_rows]) * MIRROR
 
     def march(
@@ -267,11 +267,12 @@ class RingContact(Contact):
         """Effective radii, as an array of shape (cells + 1,).
 
         Without slip, a contact whose radius is entry k of the array has the same stiffness as the
-        first k rings.  This entry is slightly smaller than the outer radius of these k rings.  A
-        ring joins the contact when the contact radius reaches the mean of the effective radii
-        without and with this ring.  The stiffness of a growing contact is then correct on average.
-        If the ring joined as soon as the contact reached the ring's inner edge, it would stick too
-        early, which would cause an error of first order.
+        first k rings.  The radius in entry k is slightly smaller than the outer radius of the first
+        k rings.  A ring joins the contact when the contact radius reaches the mean of two effective
+        radii. The first is computed without this ring, and the second with this ring.  The
+        stiffness of a growing contact is then correct on average.  Suppose that the ring joined as
+        soon as the contact reached the ring's inner edge.  The ring would then stick too early, and
+        the error would be of first order.
         """
         weighted = self.area[:, None] * self.influence
         part = np.linalg.solve(np.linalg.cholesky(0.5 * (weighted + weighted.T)), self.area)
@@ -297,9 +298,9 @@ class RingContact(Contact):
 
         The result has the shape (1 + steps stages, cells).
 
-        Rings join or leave the contact only at the last stage of a step, because the integrator
-        would carry over a jump from an earlier stage to the later stages.  A ring that joins at the
-        last stage is strained during the fraction 1 / (1 + carried) of the step.  On average, the
+        Rings join or leave the contact only at the last stage of a step. The integrator would carry
+        over a jump at an earlier stage to the later stages.  If a ring joins at the last stage, the
+        integrator strains it during the fraction 1 / (1 + carried) of the step.  On average, the
         ring should be strained during half of the step.  To make up for the difference, the contact
         radius is evaluated at an earlier time.
         """

@@ -76,7 +76,7 @@ def interrupted() -> bool:
 
 
 def best_penalty(scale: np.ndarray, rings: int) -> np.ndarray:
-    """Return the best penalty for each ring if half of the points stick.
+    """Return the best penalty for each ring, for the case that half of the points stick.
 
     The splitting converges fastest if the penalty is the geometric mean of the smallest and the
     largest eigenvalue of A.  The smallest eigenvalue belongs to a narrow ring, and the largest

@@ -1,7 +1,7 @@
 """Contact of equal rectangular cells with a compiled convolution, for any nu and any outline.
 
 The cells cover the rectangle around the contact, with the same number of cells along both axes.
-For a round contact, the cells are squares, as in the paper, and this model is the reference for the
+For a round contact, the cells are squares, as in the paper. This model is the reference for the
 other models.
 
 Tractions have the symmetries that the rigid displacement, the pressure and the influence operator
@@ -47,8 +47,8 @@ class CartesianContact(Contact):
     """Contact of equal cells that cover the rectangle around the contact; see contact.Contact.
 
     States have the shape (2, cells, cells), with the forward coordinate along axis 1 and the
-    lateral coordinate along axis 2.  If symmetry is used, either axis 1 or both axes have half the
-    length.  A cell cut by the edge of the contact carries only the load inside the contact.
+    lateral coordinate along axis 2.  If symmetries are used, either axis 1 or both axes have half
+    of this length.  A cell cut by the edge of the contact carries only the load inside the contact.
 
     Parameters
     ----------
@@ -218,7 +218,7 @@ def _images(loads: np.ndarray, symmetry: str, poisson: float) -> int:
 
     Displacements in a translation are symmetric under a half turn.  Displacements in a rotation are
     symmetric under a reflection across the lateral axis.  For translations at nu = 0, forward and
-    lateral displacements are independent, and each is even along both axes.
+    lateral displacements are independent. Each of the two fields is even along both axes.
     """
     if len(loads) % 2 or not symmetry:
         return 1

@@ -129,7 +129,7 @@ def path_of(problem: Problem, contact: Any, steps: int, integrator: Integrator =
 def tractions_at_phases(
     contact: Contact, path: Path, march: March, rows: np.ndarray | slice = slice(None)
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Return the tractions of a march and the friction bounds at phases of its path.
+    """Return two arrays for phases of the path: the tractions of a march, and the friction bounds.
 
     The two arrays have the shapes (phases, 2, ...) and (phases, ...).  `rows` contains the indices
     of the phases.  By default, all phases are used.  If the last stage of a step lies before the
@@ -150,7 +150,7 @@ def tractions_at_phases(
 def bounds_at_phases(contact: Contact, path: Path) -> np.ndarray:
     """Return the friction bounds at every phase.
 
-    The shape is (steps + 1, 1, n), or (1, ...) if the bounds are constant.
+    The shape is (steps + 1, 1, n). If the bounds are constant, the first axis has the length 1.
     """
     if path.depth is None:
         return contact.bound[None]

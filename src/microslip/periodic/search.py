@@ -2,11 +2,11 @@
 
 A march is the time integration over a period or half a period.  A march maps the state at the start
 to the state at the end.  The periodic state is the fixed point of this map.  The transients of
-plain marches last about 1/(2 pi v~) periods.  Anderson acceleration of the map finds its fixed
-point much sooner.  Convergence is judged by three quantities: the residual of the plain map
-(without acceleration), the distance to the next state, and an error computed from the residual and
-the drift rate of the motion.  The last quantity is needed near the static limit, where the state
-changes so slowly that a small residual is no evidence of convergence.
+plain marches last about 1/(2 pi v~) periods.  Anderson acceleration finds the fixed point of the
+map much sooner.  Convergence is judged by three quantities: the residual of the plain map (without
+acceleration), the distance to the next state, and an error computed from the residual and the drift
+rate of the motion.  The last quantity is needed near the static limit, where the state changes so
+slowly that a small residual is no evidence of convergence.
 
 The state of a driven body includes two more numbers, its position x and rate x' (see
 contact/march.py).  In one period, unbalanced forces hardly change the state of a heavy body or of a
@@ -46,7 +46,8 @@ DRIFTING, MOST_RETURNS = 0.5, 3
 """DRIFTING: in a march, the drift adds a certain force.  A state below the static limit is stuck if
 its residual exceeds this fraction of that force.  Such a state drifts without slip, so its change
 does not measure the distance to the periodic state.  The search then goes halfway back to the last
-state that was not stuck.  MOST_RETURNS: largest number of such returns in a row."""
+state that was not stuck.  MOST_RETURNS: largest number of times that the search goes halfway back
+in succession."""
 FORGETFUL = 0.2
 """The plain map is not accelerated if its contraction factor is below this value."""
 CAUTION = 0.3
@@ -255,7 +256,8 @@ class PeriodMap:
         return image, change
 
     def norm(self, change: np.ndarray) -> float:
-        """Return an upper bound on the force due to a change of the state."""
+        """Return an upper bound on the change of the force that results from a change of the
+        state."""
         tractions, body = self.tractions(change), self.body
         force, held = energy_norm(self.contact, tractions), 0.0
         if body is None:

@@ -106,9 +106,8 @@ def steady_state(
 SLOW_EXCESS, LARGEST_EXCESS = 4.0, 0.6
 """A search starts from the static limit plus a forward traction.  This traction, divided by the
 friction bound, is `SLOW_EXCESS` times drift^(2/3), but at most `LARGEST_EXCESS`.  The rise of the
-friction is proportional to the same power of the drift.  SLOW_EXCESS is large enough that the
-search starts with too much forward traction.  An accelerated search converges faster from such a
-start."""
+friction is also proportional to drift^(2/3).  SLOW_EXCESS is large enough that the search starts
+with too much forward traction.  An accelerated search converges faster from such a start."""
 MARCHES_FROM_COARSER = 50
 """Largest number of marches in a search that starts from interpolated tractions.  If more marches
 are needed, a search from the usual start is faster."""
@@ -135,9 +134,9 @@ def simulate(
 ) -> Run:
     """Simulate a problem with a model at one resolution.
 
-    The problem determines the state that is computed.  Without oscillation, this is the steady
-    state of the motion.  At velocity 0, it is the static limit, or the state of rest under a force.
-    In all other cases, the periodic state is computed.
+    The problem determines which state is computed.  Without oscillation, this is the steady state
+    of the motion.  At velocity 0, it is the static limit, or the state of rest under a force.  In
+    all other cases, the periodic state is computed.
 
     Parameters
     ----------
@@ -384,8 +383,8 @@ class _Search:
             yield Start(tractions, np.array([place, 0.0]), friction=run.mu)
 
     def _similar_runs(self, guess: Run | None) -> Iterator[Run]:
-        """Yield runs with a similar state: the guess, and a Run with fewer steps (see
-        `COARSENING`)."""
+        """Yield runs with a similar state. The first is the guess, if there is one, and the second
+        is a run with fewer steps (see `COARSENING`)."""
         if guess is not None:
             yield guess
         if self.resolution.steps >= PREPARED_FROM:

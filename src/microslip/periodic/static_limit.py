@@ -10,15 +10,15 @@ forward component that the bound allows:
                                   + max s_forward : |q(t) + s| <= g(t) for all t } dA.
 
 For ratcheting, this equation is the counterpart of Melan's shakedown theorem.  Some points slip in
-every period even if only the oscillation acts.  There, q reaches the bound in several directions,
-so that no constant traction can be added, and s is 0.  The mean of q at these points is not 0 for a
-loop without half-period symmetry.  The reason is that the oscillation drags the contact along.  At
-points that never slip, q contains an arbitrary constant.  The sum q + s does not depend on this
-constant.
+every period even if only the oscillation acts.  At such points, q reaches the bound in several
+directions. No constant traction can then be added, so s is 0.  The mean of q at these points is not
+0 for a loop without half-period symmetry.  The reason is that the oscillation drags the contact
+along.  At points that never slip, q contains an arbitrary constant.  The sum q + s does not depend
+on this constant.
 
 For a motion on a line under a constant load, q(t) moves along the segment between the tractions at
-the two turning points.  After their mean is subtracted, these tractions are +-q.  So only the two
-turning points matter.
+the two turning points.  After the mean of these tractions is subtracted, they are +q and -q.  So
+only the two turning points matter.
 
 Coarse runs of the static limit also give the edges of the stick zone in slow motions.  No formula
 gives the edges for motions on a loop, or for pressures without a closed form.  For rotating
@@ -131,7 +131,7 @@ class StaticLimit(NamedTuple):
 def at_turning_points(problem: Problem) -> bool:
     """Return whether the tractions at the turning points determine the static limit.
 
-    This is the case for a motion on a line under a constant load.
+    The result is true for a motion on a line under a constant load.
     """
     return problem.straight and not problem.motion.loads
 

@@ -5,8 +5,8 @@ sample.  The header line names one or more of the columns `forward`, `lateral`, 
 `indentation`.  A file cannot have both a `load` and an `indentation`.  The end point of the period
 is omitted, because it equals the first point.  Without units, displacements are in u_lim, angles in
 u_lim / a, and loads and indentations are divided by their reference values.  Files with units are
-used for predictions in SI units; see si/strokes.py.  The format can be described by
-",decimal=comma" and ",encoding=cp1252" after the path.
+used for predictions in SI units; see si/strokes.py.  Options such as ",decimal=comma" and
+",encoding=cp1252" after the path describe the format.
 
 If there is a column `time`, it is used to check that the samples are equally spaced.
 
@@ -127,8 +127,8 @@ LEAST_COORDINATES = 4
 """Evenly spaced values are interpreted as coordinates if there are at least this many values.
 Three pressures can be evenly spaced by chance."""
 EVEN = 0.05
-"""Largest difference between the steps of evenly spaced coordinates, divided by the first step.
-This value allows for coordinates rounded to 1/40 of the step."""
+"""Largest difference between the steps of coordinates that count as evenly spaced, divided by the
+first step.  This value allows for coordinates rounded to 1/40 of the step."""
 PITCH = re.compile(r"\d+\.?\d*(?:[eE][+-]?\d+)?|\.\d+", re.A)
 ALLOWED_PITCH = "allowed: a length such as 0.5 mm, or forward x lateral as in 0.5 mm x 0.6 mm"
 NETCDF = (".nc", ".nc4", ".cdf")

@@ -17,8 +17,8 @@ from microslip.foundation.errors import InputError
 AXES = ("forward", "lateral")
 READINGS = ("cells", "samples")
 """Possible meanings of the values on a grid.  With "cells", each value is the mean over the cell
-around its point; a cell is one grid step wide.  With "samples", values apply at the points and are
-interpolated bilinearly.  The pressure is 0 outside the grid."""
+around its point; a cell is one grid step wide.  The reading "samples" means that the values apply
+at the points and are interpolated bilinearly.  The pressure is 0 outside the grid."""
 FINE = 256
 """To compute u_lim and the torque, the contact is divided into this number of squares along each
 side."""
@@ -71,8 +71,8 @@ def checked(
 
 
 def _step(label: str, axis: np.ndarray) -> float:
-    """Return the spacing of coordinates, an array of shape (n,).  The spacing must be uniform:
-    deviations are at most `REGULAR` times the spacing.
+    """Return the spacing of coordinates, which are given as an array of shape (n,).  The spacing
+    must be uniform: deviations are at most `REGULAR` times the spacing.
 
     Raises InputError for other coordinates.  The error message shows the pair of neighbours whose
     distance deviates most.

@@ -227,7 +227,8 @@ class Ring(RoundPressure):
         return self._top * np.sqrt(np.maximum((r - self.inner) * (1.0 - r), 0.0))[()]
 
     def _ring_integrals(self, psi: np.ndarray, power: int) -> np.ndarray:
-        """Integrate the bound times 2 pi r^power between neighbouring radii sin(psi)."""
+        """Integrate the friction bound times 2 pi r^power over each ring between neighbouring radii
+        sin(psi)."""
         at = np.arccos(np.clip((self._middle - np.sin(psi)) / self._half, -1.0, 1.0))
         turn = at[:-1, None] + np.diff(at)[:, None] * 0.5 * (_NODES + 1.0)
         r = self._middle - self._half * np.cos(turn)
@@ -251,7 +252,8 @@ class Ring(RoundPressure):
 
     @cached_property
     def G_star(self) -> float:
-        """G* in working units, which equals the largest displacement under full slip for G* = 1.
+        """G* in working units. This value equals the largest displacement under full slip of a
+        contact with G* = 1.
 
         Let m be 1 - ((r - s)/(r + s))^2.  A unit traction on a narrow ring of radius s causes a
         displacement at the radius r.  Per unit width of the ring, this displacement is 4 s/(r + s)

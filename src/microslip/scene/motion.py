@@ -84,11 +84,11 @@ class Wave(NamedTuple):
 class Motion(spec.Named):
     """A prescribed motion.
 
-    A subclass declares its waves, from which all symmetries are derived.  The fields of the class
-    are the parameters in a string such as "elliptic:forward=0.5,phase=30", where they follow the
-    name of the motion.  `str` returns this string.  The motion's name is derived from the class
-    name: ContinuousBore has the name "continuous-bore".  A motion that is not a sum of waves
-    overrides `displacement` and the properties of the symmetries that it has.
+    A subclass declares its waves, from which all symmetries are derived.  In a string such as
+    "elliptic:forward=0.5,phase=30", the parameters after the name of the motion are the fields of
+    the class.  `str` returns this string.  The motion's name is derived from the class name:
+    ContinuousBore has the name "continuous-bore".  A motion that is not a sum of waves overrides
+    `displacement` and the properties of the symmetries that it has.
 
     Attributes
     ----------
@@ -164,7 +164,7 @@ class Motion(spec.Named):
 
     @cached_property
     def components(self) -> dict[str, Wave]:
-        """Waves with a share above 0.
+        """Waves with a nonzero share in the motion.
 
         If there is a single wave, its phase lead has no effect and is set to 0.
         """
@@ -196,8 +196,8 @@ class Motion(spec.Named):
 
     @cached_property
     def half_period_mirror(self) -> bool:
-        """Whether the second half of a period equals the first half with the lateral displacement
-        and the angle reversed.
+        """Whether the second half of a period is the first half with the lateral displacement and
+        the angle reversed.
 
         If False, the time integration covers a whole period.
         """
@@ -276,7 +276,8 @@ class Motion(spec.Named):
     ) -> np.ndarray:
         """Return the three arrays of `displacement` as one array.
 
-        Raises InputError unless they are finite real numbers with the shape of `phase`.
+        Raises InputError unless the three arrays contain finite real numbers and have the shape of
+        `phase`.
         """
         parts = self.displacement(phase, velocity, amplitude, poisson)
         if self._sines:

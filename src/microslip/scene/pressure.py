@@ -10,9 +10,10 @@ computed with the compliance averaged over directions,
 
 For an axisymmetric indenter at the depth d, u_lim is mu d E*/G*.  For a sphere, this length is 3 mu
 F_z/(4 G* a).  A round contact that moves in one direction from rest slides everywhere once the
-displacement exceeds u_lim.  At nu = 0, the same applies to contacts of any shape.  At nu > 0, other
-contacts reach full slip at a displacement that differs from u_lim by a few percent.  The difference
-depends on the direction.  The reduced shear modulus G* in working units is 3/4 for a sphere.
+displacement exceeds u_lim.  At nu = 0, contacts of any shape also slide everywhere beyond this
+displacement.  At nu > 0, other contacts reach full slip at a displacement that differs from u_lim
+by a few percent.  The difference depends on the direction.  The reduced shear modulus G* in working
+units is 3/4 for a sphere.
 """
 
 from __future__ import annotations
@@ -50,8 +51,8 @@ NO_UNITS: Units = None, None
 class Pressure(spec.Named):
     """A distribution of the load over the contact, in working units (see the module pressure).
 
-    Each pressure is a subclass.  The fields of the subclass are the parameters in a string such as
-    "power:exponent=1", where they follow the name.  `str` returns this string.
+    Each pressure is a subclass.  In a string such as "power:exponent=1", the parameters after the
+    name are the fields of the subclass.  `str` returns this string.
 
     Attributes
     ----------
@@ -209,10 +210,10 @@ class Pressure(spec.Named):
 class RoundPressure(Pressure):
     """Base class of pressures that depend on the radius alone, computed from integrals over rings.
 
-    A subclass defines `ring_loads`, the integral of the friction bound over each ring, and
-    `ring_moments`, the integral of the bound times the radius.  The rings have the edges r =
-    sin(psi), where psi is an array of shape (n + 1,).  Both functions return an array of shape
-    (n,).
+    A subclass defines two methods. `ring_loads` returns the integral of the friction bound over
+    each ring, and `ring_moments` returns the integral of the bound times the radius.  The rings
+    have the edges r = sin(psi), where psi is an array of shape (n + 1,).  Both functions return an
+    array of shape (n,).
     """
 
     def ring_loads(self, psi: np.ndarray) -> np.ndarray:
@@ -236,7 +237,7 @@ class RoundPressure(Pressure):
 
 def numbers(name: str, values: Any) -> np.ndarray:
     """Convert an argument to an array of floats.  Raise an InputError that names the argument if
-    this is impossible."""
+    the conversion is impossible."""
     try:
         return np.array(values, float, order="C")
     except (TypeError, ValueError):
@@ -285,9 +286,9 @@ class Measured(spec.NamedByText, Pressure):
     ) -> Measured:
         """Create a pressure with the given name.
 
-        The attribute `readings` contains two further pressures.  The first has the same values with
-        the other meaning in `grid.READINGS`, and the second has the values at half the resolution.
-        An InputError is raised in the same cases as by `grid.checked`.
+        The attribute `readings` contains two further pressures.  The first pressure has the same
+        values, but the other meaning in `grid.READINGS`. The second pressure has the values at half
+        the resolution.  An InputError is raised in the same cases as by `grid.checked`.
         """
         points, values, step = checked(forward, lateral, values)
         peak = float(values.max())

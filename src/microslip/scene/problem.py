@@ -192,8 +192,8 @@ class Problem:
 
     @property
     def force(self) -> float | None:
-        """Prescribed force.  It is None if the velocity is prescribed directly, or if a spring
-        pulls the contact."""
+        """Prescribed force.  The force is None if the velocity is prescribed directly, or if a
+        spring pulls the contact."""
         return None if self.drive is None else self.drive.force
 
     @property

@@ -74,8 +74,8 @@ class SampledPath(_Samples):
 
     @classmethod
     def of_columns(cls, columns: Mapping[str, Any]) -> SampledPath:
-        """Create the path from named columns; see PLANE and NORMAL.  A quantity is constant if its
-        column is None.
+        """Create the path from columns with the names in PLANE and NORMAL.  A quantity is constant
+        if its column is None.
 
         Raises
         ------
@@ -123,7 +123,7 @@ class Sampled(spec.NamedByText, _Samples):
     """One period of a motion of any shape, given by equally spaced samples.
 
     With the amplitude A, the indenter moves by A times the interpolated displacements.  A sample h
-    of the load or indentation becomes 1 + A (h - 1).
+    of the load or the indentation is replaced by 1 + A (h - 1).
 
     Attributes
     ----------
@@ -147,8 +147,8 @@ class Sampled(spec.NamedByText, _Samples):
 
     @classmethod
     def of_columns(cls, columns: Mapping[str, Any]) -> Sampled:
-        """Create the motion from named columns; see PLANE and NORMAL.  A quantity is constant if
-        its column is None.
+        """Create the motion from columns with the names in PLANE and NORMAL.  A quantity is
+        constant if its column is None.
 
         Raises
         ------
@@ -181,7 +181,8 @@ class Sampled(spec.NamedByText, _Samples):
 
     @cached_property
     def _loop(self) -> np.ndarray:
-        """Displacements at the phases LOOP for A = 1, as an array of shape (phases, 3)."""
+        """Displacements at the phases `LOOP` for the amplitude 1, as an array of shape (phases,
+        3)."""
         return self._plane(LOOP)
 
     @cached_property
@@ -293,18 +294,19 @@ FEWEST_SAMPLES = 4
 number of rows."""
 ROUGHER = 2.0
 """If the last row equals the first row, the roughness is compared with and without the last row.
-If the ratio is above this value, the last row is the end of the period.  The ratio is below 1.9 for
-waves without an end point, such as cosines and pulses of 4 to 64 rows.  For a sine with its end
-point, the ratio is 3 to 1e6."""
+If the ratio is above this value, the last row is the end of the period.  For waves without an end
+point, such as cosines or pulses, with 4 to 64 rows, the ratio is below 1.9.  For a sine with its
+end point, the ratio is 3 to 1e6."""
 FEWEST_LEVELS = 4
-"""Smallest number of different values in a column with a value that marks missing samples.  Of n
-equally spaced values, the first is one step away from the second, and the values between both ends
-extend over n - 3 steps.  Therefore, both ends of fewer than 4 equally spaced values would count as
-marks."""
+"""Smallest number of different values in a column. In a column with fewer different values, no
+value counts as the mark of a missing sample.  Consider n equally spaced values. The first value is
+one step away from the second, and the values between the first and the last extend over n - 3
+steps.  With n below 4, the first and the last value would therefore count as marks of missing
+samples."""
 ABSURD = 100.0
 """A single value is refused if its distance from all other values, divided by their range, is above
-this limit.  In a motion of 1000 rows, neighbours of the top of a sharp pulse are at a hundredth of
-its height."""
+this limit.  In a motion of 1000 rows, the rows next to the top of a sharp pulse can have a
+hundredth of the pulse's height."""
 NINES = re.compile(r"-?99(9+|9*\.9+)")
 """Pattern of a number of nines, such as -9999 or -99.99."""
 UNUSUAL = (
@@ -316,10 +318,10 @@ UNUSUAL = (
 def unusual_rows(values: np.ndarray, is_record: bool = False) -> np.ndarray:
     """Return the rows of values that probably mark missing samples.
 
-    The distance of these values from all others exceeds the range of the others.  In addition, the
-    values either consist of nines (with or without noise), or are equal and repeated in a record.
-    A value without a neighbour in time is also returned if its distance is `ABSURD` times the
-    range.
+    The distance of these values from all others exceeds the range of the others.  In addition, at
+    least one of two conditions is met. Either the values consist of nines, with or without noise,
+    or they are equal and repeated in a record.  A value without a neighbour in time is also
+    returned if it lies at least `ABSURD` times the range away from the other values.
     """
     levels = np.unique(values)
     if len(levels) < FEWEST_LEVELS:
@@ -373,8 +375,8 @@ def checked_columns(
     """Convert columns to arrays of one length.
 
     names, fewest, most: names of the allowed columns, smallest number of rows and largest absolute
-    value.  A column can be None, except the first.  Raises InputError if a column is invalid, or if
-    both a load and an indentation are given.
+    value.  Every column except the first can be None.  Raises InputError if a column is invalid, or
+    if both a load and an indentation are given.
     """
     arrays: dict[str, np.ndarray] = {}
     for name, values in columns.items():
@@ -402,8 +404,9 @@ def checked_columns(
 
 
 def _rows_of(columns: Mapping[str, Any], fewest: int) -> tuple[np.ndarray, np.ndarray | None, bool]:
-    """Convert columns to three values: the displacements as an array of shape (rows, 3), the load
-    or indentation as an array of shape (rows,) or None, and True if this array is a load."""
+    """Convert columns to three values. The first value is an array of the displacements, of shape
+    (rows, 3). The second is an array of the loads or indentations, of shape (rows,), or None. The
+    third is True if the second value is a load."""
     arrays = checked_columns(columns, PLANE + NORMAL, fewest, LARGEST["amplitude"])
     heights = [name for name in NORMAL if name in arrays]
     for name in heights:

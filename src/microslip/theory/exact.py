@@ -18,7 +18,7 @@ bound on the dissipation.  With the force F (|F| <= 1) and d = 1 - mu, it follow
 For the transverse motion, the dissipated energy per radian equals the work, which is v mu + y
 <F_lateral cos t>. This energy is at least v. It is at most v (1 - d) + y sqrt(d), and hence at most
 v + y^2 / (4 v). For the bore motion, consider the dissipated energy per radian, divided by phi.
-This energy is at least v and at most v + 1 / (20 (v - 1)). If b is the upper bound on d, both
+This energy is at least v and at most v + 1 / (20 (v - 1)). Let b be the upper bound on d. Then both
 energies are at most v (1 + b / (4 - 2 b)). Longitudinal motions with v >= x obey the same bound.
 
 The bounds apply to any nu and any stiffness. The functions take the dimensionless groups of the
@@ -73,8 +73,8 @@ def largest_drop_bore(velocity: float, amplitude: float) -> float:
 
 
 def largest_drop_longitudinal(velocity: float, amplitude: float) -> float:
-    """Return an upper bound on 1 - mu_macro, which is 0 or 1, for velocity >= 0 and amplitude >=
-    0."""
+    """Return an upper bound on 1 - mu_macro, for velocity >= 0 and amplitude >= 0. The bound is
+    either 0 or 1."""
     return 0.0 if velocity >= amplitude else 1.0
 
 

@@ -25,7 +25,8 @@ SMALLEST_STICK_RADIUS = 1e-6
 
 
 def static_transverse(pressure: IndenterPressure, amplitude: float) -> float:
-    """Compute the static friction under transverse oscillation, for v -> 0 and nu = 0.
+    """Compute the static friction under transverse oscillation at nu = 0, in the limit of zero
+    velocity.
 
     The static friction is the integral of sqrt(g^2 - (g - g_c)^2) over the stick zone; see
     paper.static_limit_transverse.
@@ -176,7 +177,7 @@ def torsion_energy(pressure: IndenterPressure, angle: float, poisson: float = 0.
 
 
 def static_bore(pressure: IndenterPressure, angle: float, poisson: float = 0.0) -> float:
-    """Compute the static friction under oscillating bore, for v -> 0.
+    """Compute the static friction under oscillating bore, in the limit of zero velocity.
 
     The static friction is 4 Integral_0^c g arccos(tau / g) r dr; see paper.static_limit_bore.
 

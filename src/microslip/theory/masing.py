@@ -23,8 +23,8 @@ below the flat end slip together at phi = 1.
 In the discrete model, the contact radius is divided into intervals. One element replaces all
 elements of an interval. Its stiffness and its limit force are the sums over these elements. Hence
 the model has the initial stiffness of the contact and the correct force at full slip. In the first
-loading, the force of the model follows tangents of F at the ends of the intervals, so it is never
-below F.
+loading, the force of the model follows the tangents of F at the ends of the intervals. Since F is
+concave, the force of the model is never below F.
 """
 
 from __future__ import annotations

@@ -27,10 +27,10 @@ from microslip.theory.hertz import Numbers, checked, unit_rule
 def large_amplitude_transverse(velocity: Numbers, amplitude: Numbers) -> Numbers:
     """Return the friction of a rigid slider under transverse oscillation (Eq 6).
 
-    This is the large-amplitude limit of the contact. The friction is (2/pi) K(m =
-    -(amplitude/velocity)^2). The friction is 1 at amplitude 0, and 0 at velocity 0 for every
-    amplitude above 0. Raises ValueError unless velocity >= 0 and amplitude >= 0; the arguments are
-    broadcast.
+    This is the large-amplitude limit of the contact. The friction is (2/pi) K(m), where K is the
+    complete elliptic integral of the first kind. Its parameter is m = -(amplitude/velocity)^2. The
+    friction is 1 at amplitude 0, and 0 at velocity 0 for every amplitude above 0. Raises ValueError
+    unless velocity >= 0 and amplitude >= 0; the arguments are broadcast.
     """
     velocity, amplitude = checked("velocity", velocity), checked("amplitude", amplitude)
     # K(-m) = q K'(q) with q = v/sqrt(v^2 + A^2) is accurate for every ratio v/A.
@@ -131,8 +131,8 @@ def torque_kernel(ratio: Numbers) -> Numbers:
 
     Raises ValueError unless ratio >= 0; the argument can have any shape. For ratio <= 1, the kernel
     is 4 (E - (1 - k^2) K)/k at the modulus k = ratio. For ratio > 1, the kernel is Q_Y(1/ratio).
-    The kernel is about pi*ratio at small ratios, is 4 at ratio 1, and approaches 2 pi at large
-    ratios.
+    At small ratios, the kernel is about pi times the ratio. The kernel is 4 at ratio 1, and
+    approaches 2 pi at large ratios.
     """
     inside, even, odd = _ring_integrals(ratio)
     return np.where(inside, odd, even)[()]
@@ -264,8 +264,8 @@ def static_bore_printed(amplitude: Numbers) -> Numbers:
 def static_limit_transverse(amplitude: Numbers) -> Numbers:
     """Return the exact static friction under transverse oscillation for Poisson's ratio 0.
 
-    The static friction is the limit v -> 0. The friction is the integral of sqrt(g^2 - (g - g_c)^2)
-    over the stick zone, where g_c is the inner bound of mindlin_traction. The friction is 0 for
+    The static friction is the limit v -> 0. Let g_c be the inner bound of mindlin_traction. The
+    friction is the integral of sqrt(g^2 - (g - g_c)^2) over the stick zone. The friction is 0 for
     amplitude >= 1. For other Poisson's ratios, Mindlin's traction and this limit are
     approximations. Raises ValueError unless amplitude >= 0; the argument can have any shape.
     """
@@ -286,7 +286,7 @@ def static_limit_longitudinal(amplitude: Numbers) -> Numbers:
 
 
 def static_limit_bore(amplitude: Numbers) -> Numbers:
-    """Return the static friction under oscillating bore, v -> 0.
+    """Return the static friction under oscillating bore, in the limit of zero velocity.
 
     The friction is the integral of (2/pi) g arccos(tau/g) over the stick zone. The integrand is the
     average over the angle of the largest forward traction. The limit is exact for every Poisson's
@@ -325,8 +325,8 @@ def _stick_zone_rule(
 
 _FASTEST = 1e6
 """Largest velocity of a steady bore. At this velocity, the friction 1 - 0.1/v^2 is within 1e-13 of
-full friction. Hence a rounding error of 1e-16 in the force changes the velocity by a fraction of
-1e-3."""
+full friction. Hence a rounding error of 1e-16 in the force causes a relative change of 1e-3 in the
+velocity."""
 
 
 def transverse_drift(force: Numbers, amplitude: Numbers) -> Numbers:

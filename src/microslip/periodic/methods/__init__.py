@@ -1,8 +1,8 @@
 """Methods for comparison with the shipped method, and the names of all methods.
 
 The methods named in `OWN` replace at most the integrator; see periodic.method.  Each of the other
-methods is a file in this folder.  For example, the file `some_name.py` defines METHOD, a
-`method.Method`, and this method is called `some-name` in `microslip.solve` and in configurations.
+methods is a file in this folder.  For example, the file `some_name.py` defines a `method.Method`
+with the name METHOD. In `microslip.solve` and in configurations, this method is called `some-name`.
 Files whose names start with an underscore contain shared code.  The name of a method can be
 followed by parameters, for example "projected-gradient:step=0.5".  A method can require a package
 that microslip does not depend on.  Studies omit a method if its package is not installed.
@@ -47,7 +47,7 @@ def names() -> tuple[str, ...]:
 def _parsed(name: str) -> ast.Module | str | None:
     """Return the syntax tree of a method's file.
 
-    Return the error message if parsing fails, and None if there is no file.
+    Return the error message if the file cannot be parsed. Return None if there is no file.
     """
     file = METHODS / f"{name.replace('-', '_')}.py"
     if not file.stem.isidentifier():

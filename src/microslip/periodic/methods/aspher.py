@@ -6,16 +6,16 @@ per backward Euler step by a projected conjugate gradient method.  The method su
 only, at any nu.
 
 The time integration starts without tractions.  The integration ends when the mean forces of two
-periods agree, or when the largest number of periods (`MOST_PERIODS`) is reached.  Within so few
-periods, only fast forward motions become periodic.  Two settings differ from the defaults of the
-package:
+periods agree, or when the largest number of periods (`MOST_PERIODS`) is reached.  With this limit
+on the number of periods, only fast forward motions become periodic.  Two settings differ from the
+defaults of the package:
 
 - The preconditioner is off.  The preconditioner is designed for sticking points.  When the slip
   changes direction, the preconditioned solver needs about five times as many iterations.  The mean
   forces do not become more accurate.
 
 - A step that the package rejects counts as failed, and the march continues from the best tractions.
-  By default, the package returns to the tractions before the step, which makes the mean forces
+  By default, the package restores the tractions before the rejected step. The mean forces are then
   wrong.
 
 In each iteration, the package computes two products with the influence operator, whereas the
@@ -45,7 +45,8 @@ change in a projected step is at most this fraction of the largest friction boun
 
 
 class Solver:
-    """A loaded sphere on `cells` x `cells` squares over [-1, 1]^2, in working units with mu = 1."""
+    """A loaded sphere on a grid of [-1, 1]^2 with `cells` squares in each direction, in working
+    units with mu = 1."""
 
     def __init__(self, cells: int, poisson: float):
         import aspher
@@ -73,7 +74,8 @@ class Solver:
     def step(self, forward: float, lateral: float) -> tuple[float, float]:
         """Move to a rigid displacement (in u_lim) and count the step, even if it fails.
 
-        Returns the forward force divided by mu F_z, and the residual, see contact.coulomb_residual.
+        Returns two numbers: the forward force divided by mu F_z, and the residual (see
+        contact.coulomb_residual).
         """
         step = self._solver.step(delta_t=(forward, lateral), tol_kkt=math.inf)
         self.iterations += step.tangential_iters

@@ -2,9 +2,9 @@
 
 The time integration starts from full slip. There is no search for the periodic state.
 
-In the paper, stresses are accurate to 0.1 %, and the result is the mean over the last period.
-Here, a period has 100 steps, and a step is solved when its residual is at most 0.1 % of the total
-friction.  The requested resolution is ignored.
+In the paper, stresses are accurate to 0.1 %. The result of the paper is the mean over the last
+period.  Here, a period has 100 steps, and a step is solved when its residual is at most 0.1 % of
+the total friction.  The requested resolution is ignored.
 
 Paper: R. Pohrt, Front. Mech. Eng. 6:566440, 2020.
 """
