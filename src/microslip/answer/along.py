@@ -469,8 +469,7 @@ def iwan(
     """Build the Iwan model (parallel springs with sliders) of a contact that moves along a line.
 
     At nu = 0, a model with many elements is exact.  At nu > 0, the model is compared with the full
-    contact along an initial loading and a loop, and the largest difference is included in the
-    error.
+    contact along an initial loading and a loop. The largest difference is included in the error.
 
     Parameters
     ----------

@@ -43,10 +43,10 @@ def closed_form(problem: Problem, tolerance: float) -> Exact | None:
     """Return the estimates of a closed form, or None if no closed form applies.
 
     Closed forms exist in four cases.  The first case is the steady state of a motion without
-    oscillation.  There, every point slips in the direction of its rigid velocity.  The second case
-    is the limit of vanishing velocity.  The third case is motion along one line at nu = 0.  The
-    fourth case is fast sliding.  In fast sliding, the midpoint of the bounds in theory/exact.py is
-    used if the midpoint is accurate to within the tolerance.
+    oscillation.  In the steady state, every point slips in the direction of its rigid velocity.
+    The second case is the limit of vanishing velocity.  The third case is motion along one line at
+    nu = 0.  The fourth case is fast sliding.  In fast sliding, the midpoint of the bounds in
+    theory/exact.py is used if the midpoint is accurate to within the tolerance.
 
     Parameters
     ----------

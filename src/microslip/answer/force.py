@@ -56,9 +56,9 @@ COARSE_TOLERANCE = 1e-2
 FIRST_VELOCITY = 0.1
 """Velocity at which the resolution of the coarse runs is chosen."""
 SLOWEST_SHARE = 0.3
-"""Smallest accepted ratio of two velocities.  The first is the velocity of the coarse run under the
-force.  The second is the estimate from coarse runs at prescribed velocities.  If the ratio is
-smaller, the coarse run under the force is not resolved, and is not used."""
+"""Smallest accepted ratio of two velocities.  The first velocity is that of the coarse run under
+the force.  The second velocity is the estimate from coarse runs at prescribed velocities.  If the
+ratio is smaller, the coarse run under the force is not resolved, and is not used."""
 SCALE_SHARE = 0.9
 """The relative tolerance refers to this fraction of the velocity in the coarse run."""
 ROUGH_TOLERANCE = 3e-2
@@ -228,7 +228,7 @@ def _velocity_near(request: Request) -> tuple[float, float]:
     """Estimate the velocity under the force, and the rise of the friction with the velocity.
 
     Coarse runs at prescribed velocities bracket the velocity.  A further run, at the prescribed
-    force, then improves the estimate, unless its velocity is too low to be resolved.
+    force, then improves the estimate, unless the velocity of this run is too low to be resolved.
     """
     # imported here because they load compiled code
     from microslip.periodic.run import Settings

@@ -144,11 +144,12 @@ WHOLE_DISC = ROTATION._replace(start=LOOP.start)
 """Rotations combined with a lateral motion.  In such motions, the slip fronts differ between the
 two halves of a period."""
 SQUARES = WHOLE_DISC
-"""Contacts resolved by squares, which are not graded towards the slip front."""
+"""Contacts resolved by squares. The squares are not graded towards the slip front."""
 LOAD = Kind(start=24, steps=4)
-"""Oscillating normal loads, under which the edge of the contact moves across the rings."""
+"""Oscillating normal loads. Under such loads, the edge of the contact moves across the rings."""
 STATIC = Kind(start=32, steps=0)
-"""Static limits, computed at turning points.  There, slip fronts cut through the cells."""
+"""Static limits, computed at turning points.  In static limits, slip fronts cut through the
+cells."""
 ANGLES_OF_ROTATION, ANGLES_OF_TRANSLATION = 0.5, 0.125
 """Ratio of the number of angles on half the disc to the level, for rotations and for translations.
 A rotation needs more angles, because the centre of rotation is in the contact.  In a translation,

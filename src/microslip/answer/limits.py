@@ -248,9 +248,10 @@ def choose_model(problem: Problem, model: str = "auto") -> str:
     For "auto", the result is the cheapest exact model.  Any other `model` is returned unchanged.
     Rings are chosen if the traction depends only on the radius (translation at nu = 0).  Angular
     modes are chosen for other motions of a round contact, and squares in all other cases.  Squares
-    are also chosen for the static limit of a contact without symmetry, because its stick zone is
-    not round.  The slider and the rigid contact are never chosen.  The model errors of these two
-    could only be bounded with a run on rings, and such a run already gives the result.
+    are also chosen for the static limit of a contact without symmetry, because the stick zone of
+    such a contact is not round.  The slider and the rigid contact are never chosen.  For these two
+    models, the model error could only be bounded with a run on rings, and such a run already gives
+    the result.
 
     Parameters
     ----------

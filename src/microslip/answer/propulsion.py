@@ -2,12 +2,12 @@
 
 The sphere moves forward at a prescribed velocity v, like a body too heavy for its velocity to
 change during a period.  The contact exerts the force -mu(v) on the body.  The stall force is the
-load that stops the body. It equals -mu in the limit v -> 0.  The no-load velocity is the root of
-mu(v).  Friction never decreases with the velocity (theory/exact.py), so two velocities at which
-friction has opposite signs bracket the root.
+load that stops the body. The stall force equals -mu in the limit v -> 0.  The no-load velocity is
+the root of mu(v).  Friction never decreases with the velocity (theory/exact.py), so two velocities
+at which friction has opposite signs bracket the root.
 
-A body without mass under a constant load is not propelled.  It follows the forward oscillation (see
-limits.without_forward_motion).
+A body without mass under a constant load is not propelled.  Such a body follows the forward
+oscillation (see limits.without_forward_motion).
 """
 
 from __future__ import annotations
@@ -144,10 +144,10 @@ def _at_rest(ahead: Result, back: Result) -> Propulsion:
 def _root(friction: Callable[[float], Result], first: float) -> tuple[float, float]:
     """Find the velocity at which friction vanishes, with its error estimate.
 
-    Brent's method finds a velocity at which the friction is 0 to within its error.  From this
-    velocity, the search takes steps of doubling length in both directions.  These steps lead to two
-    velocities that bracket the root.  At these two velocities, the friction has opposite signs, and
-    its magnitude exceeds its error.
+    Brent's method finds a velocity at which the magnitude of the friction is at most the error of
+    the friction.  From this velocity, the search takes steps of doubling length in both directions.
+    These steps lead to two velocities that bracket the root.  At these two velocities, the friction
+    has opposite signs. The magnitude of the friction exceeds its error at both velocities.
 
     Parameters
     ----------

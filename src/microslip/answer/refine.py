@@ -65,8 +65,8 @@ three levels can agree by chance.  The calibration by benchmarks/error_estimates
 value was then increased, because benchmarks/attacks.py found errors of up to 0.75 times the
 tolerance at points where the levels agree."""
 LARGEST_REST = 0.5
-"""Finer runs reduce only the error due to the resolution.  They are started only if the sum of all
-other errors is at most this fraction of the tolerance."""
+"""Finer runs reduce only the error due to the resolution.  Finer runs are started only if the sum
+of all other errors is at most this fraction of the tolerance."""
 
 
 class Extrapolation(NamedTuple):

@@ -4,7 +4,8 @@ A run that does not converge is repeated.  The slower the forward motion, the lo
 In long transients, even small errors of the steps accumulate until the state is wrong.  The search
 then needs a better initial guess.  So the second attempt solves the steps to a tighter tolerance.
 The second attempt first finds the periodic state at a higher velocity, where the search is easier.
-Then it lowers the velocity step by step, and each run starts from the previous run's state.
+Then the second attempt lowers the velocity step by step. Each run starts from the state of the
+previous run.
 """
 
 from __future__ import annotations

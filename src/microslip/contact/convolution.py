@@ -5,19 +5,20 @@ The convolution gives the surface displacement due to tractions.
 Along an axis with n cells, the cell j has the coordinate x = j - (n - 1) / 2.  A field is a sum of
 cosines and sines of 2 pi k x / (2 n - 1) for k = 0 .. n - 1.  This period is long enough that the
 convolution does not wrap around.  The influence of tractions on displacements in the same direction
-(forward or lateral) is even along both axes.  It multiplies each wave by a number.  The influence
-of forward tractions on lateral displacements, and of lateral tractions on forward displacements, is
-odd along both axes.  This influence multiplies each wave by a number, and exchanges cosine and
-sine.
+(forward or lateral) is even along both axes.  This influence multiplies each wave by a number.  The
+influence of forward tractions on lateral displacements, and of lateral tractions on forward
+displacements, is odd along both axes.  This influence multiplies each wave by a number, and
+exchanges cosine and sine.
 
 If a symmetry determines the field at negative forward coordinates, only the cells with positive
 forward coordinates are resolved.  Each wave along the lateral axis is then either even or odd along
 the forward axis:
 
-- TURN, for translations: a half turn leaves a field unchanged, so that the parities along both axes
-  are equal.  A quarter of the cells is sufficient if fields are even along both axes.
-- MIRROR, for rotations: forward components are even along the forward axis, and lateral components
-  are odd.
+- TURN is the symmetry of translations.  A half turn leaves a field unchanged.  Therefore, a field
+  has the same parity along both axes.  A quarter of the cells is sufficient if fields are even
+  along both axes.
+- MIRROR is the symmetry of rotations.  Forward components are even along the forward axis, and
+  lateral components are odd along this axis.
 
 The waves are evaluated by matrix products, which are faster than fast Fourier transforms for up to
 about 64 cells along a side.

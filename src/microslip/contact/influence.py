@@ -45,8 +45,8 @@ INNER_POINTS = 12
 CLUSTER_POWER = 4
 """OUTER_POINTS: number of Gauss points for the outer integral over a ring (averaging).
 INNER_POINTS: number of Gauss points for the inner, singular integral.  CLUSTER_POWER: exponent that
-clusters the inner points where the rings are closest.  There, the kernels have a logarithmic
-singularity."""
+clusters the inner points where the rings are closest.  Where the rings are closest, the kernels
+have a logarithmic singularity."""
 APART_POINTS = 5
 """Number of Gauss points on each ring, for two rings that are at least the width of a ring
 apart."""

@@ -7,7 +7,7 @@ for tractions q_i and slips r_i,
 
 where b_i = z + w(t + c_i h) - Sum_{j<i} (a_ij / gamma) r_j.
 
-The last stage is at the end of the step.  There, z is b - r - w.
+The last stage is at the end of the step.  At the end of the step, z is b - r - w.
 
 A body of mass m with a dashpot c, which is driven by a constant force or through a spring k, obeys
 

@@ -57,8 +57,8 @@ class Integrator:
 
 EULER = Integrator("euler", 1, (1.0,), ((0.0,),))
 SDIRK2 = Integrator("sdirk2", 2, (_GAMMA, 1.0), ((0.0, 0.0), ((1.0 - _GAMMA) / _GAMMA, 0.0)))
-"""Default integrator.  It is L-stable and of second order, and it has two stages.  For the same
-work, it is far more accurate than backward Euler."""
+"""Default integrator.  The integrator is L-stable and of second order, and has two stages.  For the
+same work, the integrator is far more accurate than backward Euler."""
 
 
 def theta_method(theta: float) -> Integrator:

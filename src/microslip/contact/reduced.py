@@ -1,8 +1,9 @@
 """Models that neglect elasticity, partial slip or the interaction of points.
 
 rigid: every point slips in the direction of its rigid velocity at every instant.  For a
-translation, this model is the rigid slider of Eq 6; for a rotation, it is the quasi-steady contact
-of Eqs 21, 22 and 29.  The model has no memory, so that only the forces at each phase are evaluated.
+translation, this model is the rigid slider of Eq 6. For a rotation, this model is the quasi-steady
+contact of Eqs 21, 22 and 29.  The model has no memory, so that only the forces at each phase are
+evaluated.
 
 slider: one friction element in series with an isotropic spring (Benad et al. 2019).  The element
 slides once the displacement exceeds u_lim, as the whole contact does. Therefore, the element and

@@ -18,8 +18,8 @@ approximate model neglects elasticity, partial slip or the interaction of points
 not remove the resulting error.
 
 Every model has the interface `contact.Contact`.  To add a model, add a file to this folder
-and an entry to `MODELS`.  A model is imported when its first contact is built, because compiled
-code takes a while to load and closed forms do not need it.
+and an entry to `MODELS`.  A model is imported when its first contact is built. Compiled code takes
+a while to load, and closed forms do not need any model.
 """
 
 from __future__ import annotations

@@ -269,10 +269,10 @@ class RingContact(Contact):
         Without slip, a contact whose radius is entry k of the array has the same stiffness as the
         first k rings.  The radius in entry k is slightly smaller than the outer radius of the first
         k rings.  A ring joins the contact when the contact radius reaches the mean of two effective
-        radii. The first is computed without this ring, and the second with this ring.  The
-        stiffness of a growing contact is then correct on average.  Suppose that the ring joined as
-        soon as the contact reached the ring's inner edge.  The ring would then stick too early, and
-        the error would be of first order.
+        radii. One of these radii is computed without this ring, and the other one with this ring.
+        The stiffness of a growing contact is then correct on average.  Suppose that the ring joined
+        as soon as the contact reached the ring's inner edge.  The ring would then stick too early,
+        and the error would be of first order.
         """
         weighted = self.area[:, None] * self.influence
         part = np.linalg.solve(np.linalg.cholesky(0.5 * (weighted + weighted.T)), self.area)

@@ -111,7 +111,8 @@ def respond(
     response: np.ndarray,
     slope: np.ndarray,
 ) -> None:
-    """Compute the tractions v for d = 1, and the forward force that they exert, for each penalty.
+    """For each penalty, compute the tractions v for d = 1, and the forward force that these
+    tractions exert.
 
     `unit` is a scratch field.
     """

@@ -5,8 +5,8 @@ For a round contact, the cells are squares, as in the paper. This model is the r
 other models.
 
 Tractions have the symmetries that the rigid displacement, the pressure and the influence operator
-have in common.  These symmetries divide the cells into sets.  Only one cell of each set is resolved
-(see `_images`).
+have in common.  The common symmetries divide the cells into sets.  Only one cell of each set is
+resolved (see `_images`).
 """
 
 from __future__ import annotations
@@ -47,8 +47,9 @@ class CartesianContact(Contact):
     """Contact of equal cells that cover the rectangle around the contact; see contact.Contact.
 
     States have the shape (2, cells, cells), with the forward coordinate along axis 1 and the
-    lateral coordinate along axis 2.  If symmetries are used, either axis 1 or both axes have half
-    of this length.  A cell cut by the edge of the contact carries only the load inside the contact.
+    lateral coordinate along axis 2.  If the contact uses symmetries, only half of the cells along
+    axis 1, or along both axes, are resolved.  A cell cut by the edge of the contact carries only
+    the load inside the contact.
 
     Parameters
     ----------
@@ -190,7 +191,8 @@ class DescentSolver:
         """Solve a step of a driven body; see march.py.  Returns the same values as `solve`.
 
         The secant method finds the displacement d at which the forces balance.  The forward force
-        never decreases as d increases, and its slope is at most the stiffness of the contact.
+        never decreases as d increases. The slope of the forward force is at most the stiffness of
+        the contact.
         """
         steepest = stiffness + self.contact.stiffness
         place, slope, low, high, before, last_gap = 0.0, steepest, -np.inf, np.inf, np.nan, np.nan

@@ -1,8 +1,8 @@
 """A numerical method: integrator, step solver and search for the periodic state.
 
 The shipped method is the default of `microslip.solve`.  The other methods are for comparison.  Each
-of them replaces one part (the integrator, the step solver, the search or its initial state) or the
-whole simulation.
+of these methods replaces one part (the integrator, the step solver, the search or its initial
+state) or the whole simulation.
 """
 
 from __future__ import annotations
@@ -69,5 +69,5 @@ OWN = {
     # opposite sign.
     "midpoint": Method("implicit midpoint rule, undamped", integrator=theta_method(0.5)),
 }
-"""Methods of the package that need no file, by name.  They replace the integrator of the shipped
-method, or nothing."""
+"""Methods of the package that need no file, by name.  These methods replace the integrator of the
+shipped method, or nothing."""

@@ -29,8 +29,8 @@ LOOKS = 1.5, 4.0 / 3.0
 """Factors by which the number of (half) periods grows from check to check.  The two factors
 alternate.  With these factors, the number of (half) periods remains a multiple of four."""
 STEP_SHARE = 1e-4
-"""Ratio of two tolerances.  The first is the tolerance of a step, as a force divided by mu F_z.
-The second is the tolerance of the displacement, in u_lim."""
+"""Ratio of two tolerances.  The first value is the tolerance of a step, as a force divided by mu
+F_z.  The second value is the tolerance of the displacement, in u_lim."""
 SLOWEST_RATIO = 0.9
 """Each doubling of the number of periods adds a displacement.  Let r be the ratio of the
 displacements in two successive doublings.  The remaining displacement is extrapolated only if r is

@@ -224,7 +224,7 @@ class Run:
 
 
 def unsolved(steps: Any, tolerance: float) -> str:
-    """Return the reason why the stages are not solved to their tolerance, or "" if they are.
+    """Return the reason why the stages are not solved to their tolerance, or "" if they are solved.
 
     Parameters
     ----------

@@ -11,9 +11,9 @@ slowly that a small residual is no evidence of convergence.
 The state of a driven body includes two more numbers, its position x and rate x' (see
 contact/march.py).  In one period, unbalanced forces hardly change the state of a heavy body or of a
 body on a soft spring.  To match the stiffness of the contact, the map scales up the changes of x
-and x'.  This has the same effect as a stiffer spring and a lighter body.  This scaling does not
-change the fixed point of the map.  A contact in full slip is much more compliant than a sticking
-contact.  For a contact in full slip, the stiffness is the rise of the mean force with the
+and x'.  The scaling has the same effect as a stiffer spring and a lighter body.  This scaling does
+not change the fixed point of the map.  A contact in full slip is much more compliant than a
+sticking contact.  For a contact in full slip, the stiffness is the rise of the mean force with the
 displacement.
 """
 
@@ -44,10 +44,10 @@ march.  The rate at which an error of the state decays is at most the rate at wh
 drifts."""
 DRIFTING, MOST_RETURNS = 0.5, 3
 """DRIFTING: in a march, the drift adds a certain force.  A state below the static limit is stuck if
-its residual exceeds this fraction of that force.  Such a state drifts without slip, so its change
-does not measure the distance to the periodic state.  The search then goes halfway back to the last
-state that was not stuck.  MOST_RETURNS: largest number of times that the search goes halfway back
-in succession."""
+its residual exceeds this fraction of the added force.  Such a state drifts without slip, so its
+change does not measure the distance to the periodic state.  The search then goes halfway back to
+the last state that was not stuck.  MOST_RETURNS: largest number of times that the search goes
+halfway back in succession."""
 FORGETFUL = 0.2
 """The plain map is not accelerated if its contraction factor is below this value."""
 CAUTION = 0.3

@@ -119,7 +119,7 @@ largest tolerance of that state, as a force divided by mu F_z."""
 COARSENING, PREPARED_FROM = 6, 96
 """PREPARED_FROM: a run of a driven contact with at least this number of steps starts from a run
 with fewer steps.  COARSENING: ratio of these numbers of steps.  Runs with fewer steps than
-`PREPARED_FROM` are cheap and start directly.  They suffice for a tolerance of 1e-3."""
+`PREPARED_FROM` are cheap and start directly.  Such runs suffice for a tolerance of 1e-3."""
 MOST_SCALED = 4.0
 """Largest factor by which the initial tractions are scaled to match the prescribed force."""
 
@@ -135,8 +135,8 @@ def simulate(
     """Simulate a problem with a model at one resolution.
 
     The problem determines which state is computed.  Without oscillation, this is the steady state
-    of the motion.  At velocity 0, it is the static limit, or the state of rest under a force.  In
-    all other cases, the periodic state is computed.
+    of the motion.  At velocity 0, the computed state is the static limit, or the state of rest
+    under a force.  In all other cases, the periodic state is computed.
 
     Parameters
     ----------
@@ -209,8 +209,9 @@ class _Search:
     `unit` is the force, divided by mu F_z, that corresponds to an error of 1 in the result.  If the
     velocity is prescribed or a spring pulls the contact, the result is a force.  For a prescribed
     force, the result is a velocity, and `unit` is the smaller of two estimates.  The first estimate
-    is the stiffness of the contact times the displacement of the contact in an interval at velocity
-    1.  The second estimate is the rise of the friction force with the velocity.
+    is the product of two numbers: the stiffness of the contact, and the displacement of the contact
+    in an interval at velocity 1.  The second estimate is the rise of the friction force with the
+    velocity.
     """
 
     def __init__(
@@ -383,8 +384,8 @@ class _Search:
             yield Start(tractions, np.array([place, 0.0]), friction=run.mu)
 
     def _similar_runs(self, guess: Run | None) -> Iterator[Run]:
-        """Yield runs with a similar state. The first is the guess, if there is one, and the second
-        is a run with fewer steps (see `COARSENING`)."""
+        """Yield runs with a similar state. The first run is the guess, if there is one. The second
+        run has fewer steps (see `COARSENING`)."""
         if guess is not None:
             yield guess
         if self.resolution.steps >= PREPARED_FROM:

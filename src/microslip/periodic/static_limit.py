@@ -10,11 +10,11 @@ forward component that the bound allows:
                                   + max s_forward : |q(t) + s| <= g(t) for all t } dA.
 
 For ratcheting, this equation is the counterpart of Melan's shakedown theorem.  Some points slip in
-every period even if only the oscillation acts.  At such points, q reaches the bound in several
-directions. No constant traction can then be added, so s is 0.  The mean of q at these points is not
-0 for a loop without half-period symmetry.  The reason is that the oscillation drags the contact
-along.  At points that never slip, q contains an arbitrary constant.  The sum q + s does not depend
-on this constant.
+every period even if only the oscillation acts.  At points that slip in every period, q reaches the
+bound in several directions. No constant traction can then be added, so s is 0.  The mean of q at
+these points is not 0 for a loop without half-period symmetry.  The reason is that the oscillation
+drags the contact along.  At points that never slip, q contains an arbitrary constant.  The sum q +
+s does not depend on this constant.
 
 For a motion on a line under a constant load, q(t) moves along the segment between the tractions at
 the two turning points.  After the mean of these tractions is subtracted, they are +q and -q.  So
@@ -97,7 +97,8 @@ ENOUGH = 4.0
 """Largest accepted ratio of the distance from the periodic state to its tolerance.  Rounding errors
 can prevent a search from reaching the tolerance."""
 ROUNDING = 1e-12
-"""Tolerance of the periodic state of a contact that never sticks, which takes a few marches."""
+"""Tolerance of the periodic state of a contact that never sticks. A search finds this state in a
+few marches."""
 LARGEST_SHIFT = 1e-2
 """Largest shift of a ring outside the stick radius, divided by the largest friction bound."""
 

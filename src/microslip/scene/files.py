@@ -2,11 +2,11 @@
 
 A motion is given by equally spaced samples of one period.  The CSV file has one line for each
 sample.  The header line names one or more of the columns `forward`, `lateral`, `angle`, `load` and
-`indentation`.  A file cannot have both a `load` and an `indentation`.  The end point of the period
-is omitted, because it equals the first point.  Without units, displacements are in u_lim, angles in
-u_lim / a, and loads and indentations are divided by their reference values.  Files with units are
-used for predictions in SI units; see si/strokes.py.  Options such as ",decimal=comma" and
-",encoding=cp1252" after the path describe the format.
+`indentation`.  A file cannot have both a `load` and an `indentation`.  The file omits the end point
+of the period, because this point equals the first point.  Without units, displacements are in
+u_lim, angles in u_lim / a, and loads and indentations are divided by their reference values.  Files
+with units are used for predictions in SI units; see si/strokes.py.  Options such as
+",decimal=comma" and ",encoding=cp1252" after the path describe the format.
 
 If there is a column `time`, it is used to check that the samples are equally spaced.
 
@@ -48,16 +48,16 @@ UNITS = {"forward": "m", "lateral": "m", "angle": "rad", "load": "N", "indentati
 FORM = UNITS | {"time": "s"}
 """SI unit of each column of a file."""
 EVEN_TIMES = 1e-2
-"""Largest allowed deviation of a time from equal spacing, divided by the spacing.  Such a deviation
-changes the values of a sine with N samples.  Relative to the amplitude of the sine, the change is
-at most 2 pi EVEN_TIMES / N."""
+"""Largest allowed deviation of a time from equal spacing, divided by the spacing.  A deviation of
+this size changes the values of a sine with N samples.  Relative to the amplitude of the sine, the
+change is at most 2 pi EVEN_TIMES / N."""
 
 
 def columns_of(table: Table, is_record: bool = False) -> dict[str, np.ndarray]:
     """Return the columns of a table of samples as arrays, in the units of the file.
 
-    is_record: True for many periods.  Raises ValueError if a value is not a number or far outside
-    of the others, if there are no samples, or if no column is a displacement or a load.
+    is_record: True for many periods.  Raises ValueError in three cases: a value is not a number or
+    is far outside of the others, there are no samples, or no column is a displacement or a load.
     """
     columns = {name: np.array(one) for name, one in table.numbers().items()}
     if not columns.keys() & set(COLUMNS):
@@ -141,8 +141,9 @@ of netCDF have up to 16 MB."""
 VARIABLES = "allowed: a variable pressure with the dimensions and coordinates forward and lateral"
 
 Values = tuple[Sequence[np.ndarray], Mapping[str, str | None]]
-"""Coordinates as arrays of shapes (n,) and (m,), pressures as an array of shape (n, m), and the
-unit of each of the three quantities."""
+"""The result contains the coordinates, the pressures, and the unit of each of the three quantities.
+The coordinates are arrays of shapes (n,) and (m,), and the pressures are an array of shape (n,
+m)."""
 
 
 def create_pressure(file: NamedFile, content: bytes) -> Measured:
@@ -213,8 +214,8 @@ def _points(file: NamedFile, content: bytes) -> Values:
 
 
 def _distinct(column: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Return two arrays.  The first contains the distinct coordinates in increasing order, and has
-    the shape (n,).  The second contains the index of the coordinate of each point."""
+    """Return two arrays.  The first array contains the distinct coordinates in increasing order,
+    and has the shape (n,).  The second array contains the index of the coordinate of each point."""
     values, which = np.unique(column, return_inverse=True)
     group = np.concatenate([[0], np.cumsum(np.diff(values) > SAME * np.ptp(values))])
     return values[np.unique(group, return_index=True)[1]], group[which.reshape(-1)]

@@ -172,10 +172,11 @@ _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(12)
 
 @dataclass(frozen=True)
 class Ring(RoundPressure):
-    """A pressure proportional to sqrt((r - b)(1 - r)) on the ring from r = b = `inner` to r = 1.
+    """A pressure proportional to sqrt((r - b)(1 - r)) on the ring between the radii b and 1, where
+    b is `inner`.
 
     This is the Hertz pressure of a line contact that is bent into a circle.  For a slender torus,
-    this pressure is an approximation; for a wide ring, it is an assumption.
+    this pressure is an approximation. For a wide ring, it is an assumption.
 
     Parameters
     ----------

@@ -12,9 +12,9 @@ superposition of flat punches gives
 where load(r, c) is the load outside the radius r.  The substitution x = r cosh(eta) makes these
 integrals smooth.
 
-Power is an indenter with the profile f(r) ~ r^n.  It is a cone for n = 1 and a sphere for n = 2.
-Indenters with larger n have a flatter end.  Punch is a flat punch with a rounded edge: f(r) is 0
-within the flat end, and a parabola outside.
+Power is an indenter with the profile f(r) ~ r^n.  The indenter is a cone for n = 1 and a sphere for
+n = 2.  Indenters with larger n have a flatter end.  Punch is a flat punch with a rounded edge: f(r)
+is 0 within the flat end, and a parabola outside.
 """
 
 from __future__ import annotations
@@ -213,8 +213,8 @@ class Power(Indenter):
     def largest(self) -> float:
         """Largest friction bound.
 
-        For exponents n up to 2, the largest bound is the bound at the centre, (G*/pi) Integral_0^1
-        n x^(n - 2) dx = (n + 1) / (2 pi (n - 1)).
+        For exponents n up to 2, the largest bound is the bound at the centre. This bound is (G*/pi)
+        Integral_0^1 n x^(n - 2) dx = (n + 1) / (2 pi (n - 1)).
         """
         if self.exponent > 2.0:
             return super().largest

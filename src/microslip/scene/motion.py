@@ -226,8 +226,8 @@ class Motion(spec.Named):
         and the load is the same as before.  The signs of the lateral component and of the angle do
         not matter.  The reason is that, under a symmetric pressure, two images of a solution are
         solutions as well.  The mirror image reverses the forward component and the angle.  The
-        point reflection q(-forward, -lateral) reverses the angle; it is a solution because the
-        influence of one point on another is an even function of the vector between them.  The
+        point reflection q(-forward, -lateral) reverses the angle. This image is a solution, because
+        the influence of one point on another is an even function of the vector between them.  The
         solution -q reverses all components.  Combinations of these three images give every
         combination of signs.  In all images, the forward force has the sign of the forward motion.
         """

@@ -1,4 +1,4 @@
-"""The motions of the package.  Most of them are declared by their waves."""
+"""The motions of the package.  Most motions are declared by their waves."""
 
 from __future__ import annotations
 

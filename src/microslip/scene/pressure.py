@@ -2,7 +2,7 @@
 point.
 
 Working units are dimensionless: mu F_z = 1, u_lim = 1 and a = 1.  The length a is the outer radius
-of a round contact; for other contacts, it is half the longer side of the bounding rectangle.  The
+of a round contact. For other contacts, a is half the longer side of the bounding rectangle.  The
 displacement u_lim is the largest displacement of a point under full slip of the whole contact,
 computed with the compliance averaged over directions,
 
@@ -175,7 +175,7 @@ class Pressure(spec.Named):
 
     @property
     def is_indenter(self) -> bool:
-        """Whether the pressure is that of an axisymmetric indenter."""
+        """Whether the pressure belongs to an axisymmetric indenter."""
         return self.depth is not None
 
     @property
@@ -197,7 +197,7 @@ class Pressure(spec.Named):
 
         The displacement is in u_lim, and must be >= 0.  The stick radius is the contact radius at
         the depth 1 - displacement (Ciavarella, Jaeger).  The result is 0.0 at full slip.  If the
-        pressure is not that of an axisymmetric indenter, the result is None.
+        pressure does not belong to an axisymmetric indenter, the result is None.
         """
         if self.depth is None:
             return None

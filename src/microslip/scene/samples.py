@@ -294,8 +294,8 @@ FEWEST_SAMPLES = 4
 number of rows."""
 ROUGHER = 2.0
 """If the last row equals the first row, the roughness is compared with and without the last row.
-If the ratio is above this value, the last row is the end of the period.  For waves without an end
-point, such as cosines or pulses, with 4 to 64 rows, the ratio is below 1.9.  For a sine with its
+If the ratio is above this value, the last row is the end of the period.  For waves of 4 to 64 rows
+without an end point, the ratio is below 1.9. Examples are cosines and pulses.  For a sine with its
 end point, the ratio is 3 to 1e6."""
 FEWEST_LEVELS = 4
 """Smallest number of different values in a column. In a column with fewer different values, no
@@ -318,10 +318,10 @@ UNUSUAL = (
 def unusual_rows(values: np.ndarray, is_record: bool = False) -> np.ndarray:
     """Return the rows of values that probably mark missing samples.
 
-    The distance of these values from all others exceeds the range of the others.  In addition, at
-    least one of two conditions is met. Either the values consist of nines, with or without noise,
-    or they are equal and repeated in a record.  A value without a neighbour in time is also
-    returned if it lies at least `ABSURD` times the range away from the other values.
+    The distance of these values from all others exceeds the range of the others.  In addition,
+    these values consist of nines (with or without noise), or they are equal and occur several times
+    in a record.  A value without a neighbour in time is also returned if it lies at least `ABSURD`
+    times the range away from the other values.
     """
     levels = np.unique(values)
     if len(levels) < FEWEST_LEVELS:

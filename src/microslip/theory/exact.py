@@ -5,21 +5,22 @@ forces is dissipated, because the elastic energy is periodic. Every point slips 
 times period, and the length of its slip path is at least this distance. This distance gives a lower
 bound on the dissipation.  With the force F (|F| <= 1) and d = 1 - mu, it follows that:
 
-- transverse (forward v t, lateral y sin t): v mu + y <F_lateral cos t> >= v, where by the
-  inequalities of Schwarz and Jensen <F_lateral cos t>^2 <= (1 - mu^2) / 2 = d (1 - d/2). Hence
-  d <= 1 / ((v/y)^2 + 1/2).
-- bore (forward v phi t, angle phi sin t): the work of the torque takes the place of the work of the
-  lateral force. Forward tractions contribute at most phi d to the mean power of the torque. Lateral
-  tractions contribute at most phi sqrt(d/5), where 1/5 is the second moment of Hertz pressure about
-  a diameter. Hence d <= 1 / (5 (v - 1)^2) for v > 1.
-- longitudinal (forward v t + x sin t): if v >= x, the sphere never moves backward.
-  In this case, d = 0.
+- Transverse motion has the forward displacement v t and the lateral displacement y sin t. Then
+  v mu + y <F_lateral cos t> >= v. By the inequalities of Schwarz and Jensen,
+  <F_lateral cos t>^2 <= (1 - mu^2) / 2 = d (1 - d/2). Hence d <= 1 / ((v/y)^2 + 1/2).
+- Bore motion has the forward displacement v phi t and the angle phi sin t. The work of the torque
+  takes the place of the work of the lateral force. Forward tractions contribute at most phi d to
+  the mean power of the torque. Lateral tractions contribute at most phi sqrt(d/5), where 1/5 is the
+  second moment of Hertz pressure about a diameter. Hence d <= 1 / (5 (v - 1)^2) for v > 1.
+- Longitudinal motion has the forward displacement v t + x sin t. If v >= x, the sphere never moves
+  backward, and d = 0.
 
 For the transverse motion, the dissipated energy per radian equals the work, which is v mu + y
-<F_lateral cos t>. This energy is at least v. It is at most v (1 - d) + y sqrt(d), and hence at most
-v + y^2 / (4 v). For the bore motion, consider the dissipated energy per radian, divided by phi.
-This energy is at least v and at most v + 1 / (20 (v - 1)). Let b be the upper bound on d. Then both
-energies are at most v (1 + b / (4 - 2 b)). Longitudinal motions with v >= x obey the same bound.
+<F_lateral cos t>. This energy is at least v. This energy is at most v (1 - d) + y sqrt(d), and
+hence at most v + y^2 / (4 v). For the bore motion, consider the dissipated energy per radian,
+divided by phi.  This energy is at least v and at most v + 1 / (20 (v - 1)). Let b be the upper
+bound on d. Then both energies are at most v (1 + b / (4 - 2 b)). Longitudinal motions with v >= x
+obey the same bound.
 
 The bounds apply to any nu and any stiffness. The functions take the dimensionless groups of the
 paper as arguments.
@@ -32,8 +33,8 @@ function of the velocity. Hence friction is never negative for v > 0. Other moti
 contact (Motion.propels).
 
 For some motions under Hertz pressure, closed forms replace simulations. Stored results depend on
-this file and on the functions that it uses. They do not depend on datasets/catalogue.py, which
-contains the names of these and other formulas.
+this file and on the functions that it uses. Stored results do not depend on datasets/catalogue.py,
+which contains the names of these and other formulas.
 
 As a function of velocity and amplitude, friction can have kinks. At a kink, friction is continuous,
 but its slope or curvature is not. One kink is at the amplitude above which no point sticks during

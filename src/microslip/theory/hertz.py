@@ -67,7 +67,7 @@ def friction_bound(r: Numbers) -> Numbers:
     """Return the friction bound g(r) = mu p(r) = 3/(2 pi) sqrt(1 - r^2) under Hertz pressure.
 
     r: distance from the centre, as an array of any shape. Raises ValueError unless r >= 0. The
-    result is dimensionless. It equals 0 outside the contact.
+    result is dimensionless. The result equals 0 outside the contact.
     """
     r = checked("r", r)
     return 1.5 / np.pi * np.sqrt(np.maximum((1 - r) * (1 + r), 0.0))
@@ -77,7 +77,7 @@ def load_inside(r: Numbers) -> Numbers:
     """Return the fraction of the Hertz load within the radius r, which is 1 - (1 - r^2)^(3/2).
 
     Raises ValueError unless r >= 0; the argument can have any shape. The result is dimensionless.
-    It equals 1 for r >= 1.
+    The result equals 1 for r >= 1.
     """
     return mindlin_force(np.minimum(checked("r", r), 1.0) ** 2)
 
@@ -200,7 +200,7 @@ def mindlin_stick_radius(u: Numbers) -> Numbers:
     """Return the stick radius after the displacement u from rest, which is sqrt(1 - u) (Eq 8).
 
     Raises ValueError unless u >= 0 in u_lim; the argument can have any shape. The radius is in
-    units of a. It equals 0 for u >= 1.
+    units of a. The radius equals 0 for u >= 1.
     """
     return np.sqrt(1 - np.minimum(checked("u", u), 1.0))
 
@@ -260,9 +260,9 @@ def lubkin_torque(stick_radius: Numbers) -> Numbers:
 
     Raises ValueError unless 0 <= stick_radius <= 1; the argument can have any shape. The torque is
     in mu*F_z*a. For every Poisson's ratio, the torque is 0 at the stick radius 1 and
-    TORQUE_FULL_SLIP at the stick radius 0. The torque is the integral of lubkin_traction. It also
-    equals the sum of the torques of rotating punches whose radii s range from c to 1 (Lubkin 1951).
-    A punch of radius s contributes (16/3) G s^3 (-d phi_lk(s)).
+    TORQUE_FULL_SLIP at the stick radius 0. The torque is the integral of lubkin_traction. The
+    torque also equals the sum of the torques of rotating punches whose radii s range from c to 1
+    (Lubkin 1951).  A punch of radius s contributes (16/3) G s^3 (-d phi_lk(s)).
     """
     c = checked("stick_radius", stick_radius, high=1.0)[..., None]
     # With dD/ds = -E(k)/s, the integrand is s^2 E(k). After the substitution s = t^2, its only

@@ -21,10 +21,10 @@ displacement, because both the model and the contact follow Masing's rules. For 
 below the flat end slip together at phi = 1.
 
 In the discrete model, the contact radius is divided into intervals. One element replaces all
-elements of an interval. Its stiffness and its limit force are the sums over these elements. Hence
-the model has the initial stiffness of the contact and the correct force at full slip. In the first
-loading, the force of the model follows the tangents of F at the ends of the intervals. Since F is
-concave, the force of the model is never below F.
+elements of an interval. The stiffness and the limit force of this element are the sums over the
+replaced elements. Hence the model has the initial stiffness of the contact and the correct force at
+full slip. In the first loading, the force of the model follows the tangents of F at the ends of the
+intervals. Since F is concave, the force of the model is never below F.
 """
 
 from __future__ import annotations

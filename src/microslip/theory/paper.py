@@ -28,7 +28,7 @@ def large_amplitude_transverse(velocity: Numbers, amplitude: Numbers) -> Numbers
     """Return the friction of a rigid slider under transverse oscillation (Eq 6).
 
     This is the large-amplitude limit of the contact. The friction is (2/pi) K(m), where K is the
-    complete elliptic integral of the first kind. Its parameter is m = -(amplitude/velocity)^2. The
+    complete elliptic integral of the first kind. The parameter is m = -(amplitude/velocity)^2. The
     friction is 1 at amplitude 0, and 0 at velocity 0 for every amplitude above 0. Raises ValueError
     unless velocity >= 0 and amplitude >= 0; the arguments are broadcast.
     """
@@ -85,8 +85,8 @@ def rotation_centre(velocity: Numbers, time: Numbers = 0.0) -> tuple:
     """Return the instantaneous centre of rotation (lateral, forward) in the frame at rest (Eq 14).
 
     Raises ValueError unless velocity >= 0 and time t~ = t v0/a >= 0; the arguments are broadcast.
-    Returns the pair of arrays (-velocity, time). The paper writes t/(v0 a) in Eq 13, which is not
-    dimensionless.
+    Returns the pair of arrays (-velocity, time). In Eq 13, the paper writes t/(v0 a). This
+    expression is not dimensionless.
     """
     velocity, time = checked("velocity", velocity), checked("time", time)
     return 0 * time - velocity, time + 0 * velocity
@@ -242,7 +242,7 @@ def bore_stick_radius(amplitude: Numbers) -> Numbers:
 def static_bore(amplitude: Numbers) -> Numbers:
     """Return the paper's static friction under oscillating bore (Eq 33, corrected).
 
-    The friction is 1 - (1 - c^2)^(3/2). This is Eq 10 at the stick radius c, which is given by Eq
+    The friction is 1 - (1 - c^2)^(3/2). This expression is Eq 10. The stick radius c is given by Eq
     32. For the exact limit, see static_limit_bore. Raises ValueError unless amplitude >= 0; the
     argument can have any shape.
     """

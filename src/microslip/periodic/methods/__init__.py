@@ -76,7 +76,8 @@ def split(text: str) -> tuple[str, dict[str, float]]:
 
 
 def missing(text: str) -> str:
-    """Return an error message if the package that a method requires is not installed, otherwise "".
+    """Return an error message if a method requires a package that is not installed. Otherwise,
+    return "".
 
     The function imports neither the solver nor the package.  Raises InputError if the string does
     not name a method.

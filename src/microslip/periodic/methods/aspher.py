@@ -1,9 +1,9 @@
 """Incremental friction solver of the package aspher, on the squares and the path of microslip.
 
 V. A. Yastrebov, https://github.com/cofebem/aspher (BSD-3-Clause).  The package must be installed.
-First, the method solves the normal contact on the squares.  Then it solves one tangential problem
-per backward Euler step by a projected conjugate gradient method.  The method supports translations
-only, at any nu.
+First, the method solves the normal contact on the squares.  Then the method solves one tangential
+problem in each backward Euler step, by a projected conjugate gradient method.  The method supports
+translations only, at any nu.
 
 The time integration starts without tractions.  The integration ends when the mean forces of two
 periods agree, or when the largest number of periods (`MOST_PERIODS`) is reached.  With this limit
