@@ -6,8 +6,9 @@ force.
 
 A vibrated contact under a force below the static limit comes to rest (shakedown).  Period by
 period, the slip zones relax and transfer their load to the stick zone, until no point slips forward
-any more.  The displacement of the contact depends on the loading history.  Here, the force is first
-applied to a contact without tangential load.  Then the vibration starts at its mean position.
+any more.  The displacement of the contact depends on the loading history.  In this computation, the
+force is first applied to a contact without tangential load.  Then the vibration starts at its mean
+position.
 """
 
 from __future__ import annotations

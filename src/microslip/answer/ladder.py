@@ -234,11 +234,11 @@ def _imposing(ladder: Ladder, tolerance: float, cells: int | None, steps: int | 
 def with_mass(ladder: Ladder, problem: Problem, model: str, tolerance: float) -> tuple[Ladder, str]:
     """Shorten the steps of a ladder until they resolve the natural oscillation of the mass.
 
-    The natural frequency divided by the vibration frequency is sqrt(stiffness / mass).  Here, the
-    stiffness is the sum of the stiffnesses of the contact (1.5 for a sphere at nu = 0) and the
-    spring.  Time integration changes this frequency.  If a resonance is shifted, runs can agree
-    with each other and still be wrong.  Therefore the steps are so short that the relative change
-    of the frequency is at most the tolerance.
+    The natural frequency divided by the vibration frequency is sqrt(stiffness / mass).  The
+    stiffness is the sum of two values: the stiffness of the contact (1.5 for a sphere at nu = 0),
+    and the stiffness of the spring.  Time integration changes this frequency.  If a resonance is
+    shifted, runs can agree with each other and still be wrong.  Therefore the steps are so short
+    that the relative change of the frequency is at most the tolerance.
 
     Parameters
     ----------

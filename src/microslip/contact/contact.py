@@ -113,7 +113,8 @@ class Body:
 
     @property
     def remembers(self) -> bool:
-        """Whether x and x' are part of the state.  Otherwise, x is computed from the tractions."""
+        """Whether x and x' are part of the state.  If x and x' are not part of the state, x is
+        computed from the tractions."""
         return self.mass > 0.0 or self.damping > 0.0
 
     def along(self, path: Path, start: np.ndarray | None) -> tuple[np.ndarray, np.ndarray]:

@@ -107,7 +107,7 @@ def elliptic_integrals(kc: np.ndarray, big_k: np.ndarray, big_e: np.ndarray) -> 
 def toroidal_kernels(
     r: float, s: float, integrals: tuple[float, float], n: int, out: np.ndarray
 ) -> None:
-    """Compute out[m] = G_m(r, s) for m = 0 .. n - 1.
+    """Compute G_m(r, s) for m = 0 .. n - 1, and store it in out[m].
 
     G_m(r, s) is the integral of J_m(k r) J_m(k s) over k.  The radii r and s must be positive and
     different.  The argument `integrals` contains K and E for the complementary modulus |r - s| / (r
@@ -153,7 +153,7 @@ def modes_for(r: float, s: float, n: int) -> int:
 
 @kernel
 def coupling_kernels(r: float, s: float, toroidal: np.ndarray, n: int, out: np.ndarray) -> None:
-    """Compute out[j] = C_{j+1}(r, s) for j = 0 .. n - 1.
+    """Compute C_{j+1}(r, s) for j = 0 .. n - 1, and store it in out[j].
 
     C_{j+1}(r, s) is the integral of J_{j+1}(k r) J_{j-1}(k s) over k.  `toroidal` contains at least
     `modes_for(r, s, n)` values G_m(r, s).  Multiplying e^{2 i alpha}/|z-z'| by conj(z - z') gives

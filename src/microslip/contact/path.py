@@ -204,7 +204,7 @@ def phases_between(
     """Return phases from the first turning point to the last one.
 
     There are `steps` steps between neighbouring turning points.  Therefore, the path has
-    (len(turns) - 1) steps + 1 phases.  The steps are graded towards both turning points.  For
+    (len(turns) - 1) * steps + 1 phases.  The steps are graded towards both turning points.  For
     `grading` and `width`, see turning_point_grading and turning_point_width.
     """
     t = np.arange(steps + 1) * (np.pi / steps) - np.pi / 2

@@ -221,7 +221,7 @@ class RingContact(Contact):
         return March(end, forces, residual, iterations, len(history) - 1, history, moves)
 
     def energy(self, change: np.ndarray) -> float:
-        """Return twice the elastic energy of tractions, <q, A q>."""
+        """Return <q, A q>, which is twice the elastic energy of the tractions q."""
         return strain_energy(self.operators, self.points[0], np.ascontiguousarray(change))
 
     def _bounds_of(self, path: Path) -> np.ndarray:
@@ -296,7 +296,7 @@ class RingContact(Contact):
     def bounds_along(self, path: Path) -> np.ndarray:
         """Return the friction bounds at the start and at every stage of a path.
 
-        The result has the shape (1 + steps stages, cells).
+        The result has the shape (1 + steps * stages, cells).
 
         Rings join or leave the contact only at the last stage of a step. The integrator would carry
         over a jump at an earlier stage to the later stages.  If a ring joins at the last stage, the

@@ -127,8 +127,8 @@ class CartesianContact(Contact):
         return out
 
     def mirrored(self, state: np.ndarray) -> np.ndarray:
-        """Return the mirror image of a state under lateral -> -lateral.  The reflection negates
-        lateral tractions."""
+        """Return the mirror image of a state, in which the lateral direction is reversed.  The
+        reflection negates lateral tractions."""
         return (state if self.images == 4 else state[:, :, ::-1]) * MIRROR
 
     def march(

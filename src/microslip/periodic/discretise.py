@@ -54,7 +54,8 @@ class Resolution:
 def focus_strength(drift: float) -> float:
     """Return the strength of the ring grading towards the stick radius.
 
-    `drift` is the forward displacement per radian of phase, in u_lim; 0 for the static limit.
+    `drift` is the forward displacement per radian of phase, in u_lim. The drift is 0 for the static
+    limit.
 
     In a layer of width drift^(2/3) at the stick radius, the slip is as small as the drift.  Ring
     widths grow quadratically from the stick radius.  Therefore, the ratio of the smallest to the

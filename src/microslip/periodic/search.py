@@ -117,8 +117,8 @@ class PeriodicState:
 class DriftRate:
     """Data for the error estimate of slow motions, whose states change little in a period.
 
-    Let r be the force by which the plain map still changes the state.  Then the velocity of the
-    state has a relative error of r / `gain`.  Only the difference between the force and the static
+    Let r be the force by which the plain map still changes the state.  The velocity of the state
+    then has a relative error of r / `gain`.  Only the difference between the force and the static
     limit depends on the velocity.  Therefore, the error of the force is at most r / `gain` times
     the difference between the force and the static limit.
 

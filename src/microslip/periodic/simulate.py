@@ -118,7 +118,7 @@ LOOSEST_START = 1e-4
 largest tolerance of that state, as a force divided by mu F_z."""
 COARSENING, PREPARED_FROM = 6, 96
 """PREPARED_FROM: a run of a driven contact with at least this number of steps starts from a run
-with fewer steps.  COARSENING: ratio of these numbers of steps.  Runs with fewer steps than
+with fewer steps.  COARSENING: ratio of the two numbers of steps.  Runs with fewer steps than
 `PREPARED_FROM` are cheap and start directly.  Such runs suffice for a tolerance of 1e-3."""
 MOST_SCALED = 4.0
 """Largest factor by which the initial tractions are scaled to match the prescribed force."""

@@ -175,8 +175,8 @@ class Ring(RoundPressure):
     """A pressure proportional to sqrt((r - b)(1 - r)) on the ring between the radii b and 1, where
     b is `inner`.
 
-    This is the Hertz pressure of a line contact that is bent into a circle.  For a slender torus,
-    this pressure is an approximation. For a wide ring, it is an assumption.
+    The pressure is the Hertz pressure of a line contact that is bent into a circle.  For a slender
+    torus, this pressure is an approximation. For a wide ring, it is an assumption.
 
     Parameters
     ----------

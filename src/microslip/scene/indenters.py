@@ -56,7 +56,8 @@ class Indenter(RoundPressure):
     flat = 0.0
 
     def depth(self, c: np.ndarray) -> np.ndarray:
-        """Return the indentation depth for the contact radius c; depth(1) = 1."""
+        """Return the indentation depth for the contact radius c. At the contact radius 1, the depth
+        is 1."""
         raise NotImplementedError
 
     def slope(self, c: np.ndarray) -> np.ndarray:

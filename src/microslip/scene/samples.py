@@ -337,9 +337,9 @@ def unusual_rows(values: np.ndarray, is_record: bool = False) -> np.ndarray:
 
 
 def _ends_with_first(values: np.ndarray) -> bool:
-    """Return whether the last row is the end of the period.  In this case, the last row equals the
-    first row, and the motion is smoother without the last row.  values: array of shape (rows,
-    columns)."""
+    """Return whether the last row is the end of the period.  If the last row is the end of the
+    period, it equals the first row. The motion is then smoother without the last row.  values:
+    array of shape (rows, columns)."""
     values = values / np.maximum(np.ptp(values, axis=0), np.finfo(float).tiny)
     longer, shorter = (
         np.sum(np.diff(np.concatenate([rows, rows[:4]]), n=4, axis=0) ** 2)

@@ -3,7 +3,8 @@
 Upper bounds limit the reduction of friction by vibration. Over a period, all work of the contact
 forces is dissipated, because the elastic energy is periodic. Every point slips forward by velocity
 times period, and the length of its slip path is at least this distance. This distance gives a lower
-bound on the dissipation.  With the force F (|F| <= 1) and d = 1 - mu, it follows that:
+bound on the dissipation.  Let F be the force, with |F| <= 1, and let d be 1 - mu. The bounds on d
+follow for three motions:
 
 - Transverse motion has the forward displacement v t and the lateral displacement y sin t. Then
   v mu + y <F_lateral cos t> >= v. By the inequalities of Schwarz and Jensen,
@@ -16,11 +17,10 @@ bound on the dissipation.  With the force F (|F| <= 1) and d = 1 - mu, it follow
   backward, and d = 0.
 
 For the transverse motion, the dissipated energy per radian equals the work, which is v mu + y
-<F_lateral cos t>. This energy is at least v. This energy is at most v (1 - d) + y sqrt(d), and
-hence at most v + y^2 / (4 v). For the bore motion, consider the dissipated energy per radian,
-divided by phi.  This energy is at least v and at most v + 1 / (20 (v - 1)). Let b be the upper
-bound on d. Then both energies are at most v (1 + b / (4 - 2 b)). Longitudinal motions with v >= x
-obey the same bound.
+<F_lateral cos t>. This energy is between v and v (1 - d) + y sqrt(d). The upper limit is at most v
++ y^2 / (4 v). For the bore motion, consider the dissipated energy per radian, divided by phi.  This
+energy is at least v and at most v + 1 / (20 (v - 1)). Let b be the upper bound on d. Then both
+energies are at most v (1 + b / (4 - 2 b)). Longitudinal motions with v >= x obey the same bound.
 
 The bounds apply to any nu and any stiffness. The functions take the dimensionless groups of the
 paper as arguments.

@@ -1,7 +1,7 @@
 """Constants and closed forms of a Hertz contact under normal load, tangential load and torsion.
 
 Unless a docstring states otherwise, quantities are in working units: the contact radius a, mu*F_z
-and u_lim are 1. Here u_lim is the displacement at which the whole contact slides. In these units,
+and u_lim are 1. Here u_lim is the displacement at which the whole contact slides. In working units,
 the reduced shear modulus is 3/4. Tractions are in mu*F_z/a^2, torques are in mu*F_z*a, and angles
 are in u_lim/a.
 
@@ -105,7 +105,7 @@ def D(c: Numbers) -> Numbers:
 
     Raises ValueError unless 0 < c <= 1; the argument can have any shape. The result is
     dimensionless. For small c, D is about ln(4/c) - 1, so D tends to infinity as c tends to 0. D
-    decreases with c, and D(1) is 0.
+    decreases as c increases, and D(1) is 0.
     """
     return _D_of_log(np.log(checked("c", c, high=1.0, low_open=True)))[()]
 
@@ -156,7 +156,7 @@ def lubkin_stick_radius(angle: Numbers, poisson: float = 0.0) -> Numbers:
 
 
 def bore_angle(amplitude: Numbers, poisson: float = 0.0) -> Numbers:
-    """Convert a bore amplitude to an angle, phi0 = phi~ phi_lk(1/2) (Eq 27).
+    """Convert a bore amplitude phi~ to the angle phi0 = phi~ phi_lk(1/2) (Eq 27).
 
     Raises ValueError unless amplitude >= 0 and 0 <= poisson <= 0.5; the arguments are broadcast.
     Returns an angle in u_lim/a.
@@ -186,10 +186,10 @@ def _twist_unit(poisson: Numbers) -> np.ndarray:
 
 
 def mindlin_force(u: Numbers) -> Numbers:
-    """Return the tangential force after the displacement u from rest, 1 - (1 - u)^(3/2).
+    """Return the tangential force after the displacement u from rest, which is 1 - (1 - u)^(3/2).
 
-    This is the formula of Cattaneo and Mindlin. The force is divided by mu*F_z, and is 1 for u >=
-    1. Raises ValueError unless u >= 0 in u_lim; the argument can have any shape.
+    This expression is the formula of Cattaneo and Mindlin. The force is divided by mu*F_z, and is 1
+    for u >= 1. Raises ValueError unless u >= 0 in u_lim; the argument can have any shape.
     """
     u = np.minimum(checked("u", u), 1.0)
     with np.errstate(divide="ignore"):  # ln 0 = -inf gives the force 1 of full sliding

@@ -11,7 +11,7 @@ contact at the time T is
 because at every time tau, the stretch is at most the stretch at which the spring slides. Let phi(t)
 = d(t) - v t. At any x, the stretch is smaller than this limit by phi(t) - min phi. The mean over
 the springs is an integral over T. The result is exact for Poisson's ratio 0. Quantities are
-dimensionless, in the working units of an indenter's pressure.Pressure.
+dimensionless, in the working units of the indenter (see pressure.Pressure).
 
 Under a sinusoidal indentation, a contact of constant stiffness, for example a flat end, acts as a
 single spring. M. Popov (Front. Mech. Eng. 6:69, 2020) gives two empirical formulas for its

@@ -27,10 +27,11 @@ from microslip.theory.hertz import Numbers, checked, unit_rule
 def large_amplitude_transverse(velocity: Numbers, amplitude: Numbers) -> Numbers:
     """Return the friction of a rigid slider under transverse oscillation (Eq 6).
 
-    This is the large-amplitude limit of the contact. The friction is (2/pi) K(m), where K is the
-    complete elliptic integral of the first kind. The parameter is m = -(amplitude/velocity)^2. The
-    friction is 1 at amplitude 0, and 0 at velocity 0 for every amplitude above 0. Raises ValueError
-    unless velocity >= 0 and amplitude >= 0; the arguments are broadcast.
+    The rigid slider is the large-amplitude limit of the contact. The friction is (2/pi) K(m), where
+    K is the complete elliptic integral of the first kind. The parameter is m =
+    -(amplitude/velocity)^2. The friction is 1 at amplitude 0, and 0 at velocity 0 for every
+    amplitude above 0. Raises ValueError unless velocity >= 0 and amplitude >= 0; the arguments are
+    broadcast.
     """
     velocity, amplitude = checked("velocity", velocity), checked("amplitude", amplitude)
     # K(-m) = q K'(q) with q = v/sqrt(v^2 + A^2) is accurate for every ratio v/A.
@@ -63,7 +64,8 @@ def stick_radius_transverse(amplitude: Numbers) -> Numbers:
 
 
 def static_stick_zone(stick_radius: Numbers) -> Numbers:
-    """Return the fraction of the Hertz load inside the stick radius, 1 - (1 - c^2)^(3/2) (Eq 10).
+    """Return the fraction of the Hertz load inside the stick radius, which is 1 - (1 - c^2)^(3/2)
+    (Eq 10).
 
     Raises ValueError unless 0 <= stick_radius <= 1; the argument can have any shape.
     """
@@ -126,8 +128,8 @@ def forward_kernel(ratio: Numbers) -> Numbers:
 def torque_kernel(ratio: Numbers) -> Numbers:
     """Return the kernel Q_M of the torque of a ring (Eq 20).
 
-    The kernel is the torque of a ring, divided by the friction bound and the radius. The radius of
-    the ring is ratio*velocity.
+    The kernel is the torque of a ring, divided by the product of the friction bound and the radius.
+    The radius of the ring is ratio*velocity.
 
     Raises ValueError unless ratio >= 0; the argument can have any shape. For ratio <= 1, the kernel
     is 4 (E - (1 - k^2) K)/k at the modulus k = ratio. For ratio > 1, the kernel is Q_Y(1/ratio).
@@ -250,7 +252,7 @@ def static_bore(amplitude: Numbers) -> Numbers:
 
 
 def static_bore_printed(amplitude: Numbers) -> Numbers:
-    """Return the static friction by Eq 33 as printed, 1 - (1 - c)^(3/2).
+    """Return the static friction by Eq 33 as printed, which is 1 - (1 - c)^(3/2).
 
     The printed equation contains c in place of the c^2 of Eq 10. This function is for comparison
     only. Raises ValueError unless amplitude >= 0; the argument can have any shape.
@@ -278,9 +280,9 @@ def static_limit_transverse(amplitude: Numbers) -> Numbers:
 def static_limit_longitudinal(amplitude: Numbers) -> Numbers:
     """Return the static friction under longitudinal oscillation, which is (1 - amplitude)^(3/2).
 
-    The friction is the integral of the inner bound g_c of mindlin_traction. For amplitude >= 1, the
-    friction is 0. The limit is exact for Poisson's ratio 0. Raises ValueError unless amplitude >= 0
-    in u_lim; the argument can have any shape.
+    The friction is the integral of g_c, the inner bound of mindlin_traction. For amplitude >= 1,
+    the friction is 0. The limit is exact for Poisson's ratio 0. Raises ValueError unless amplitude
+    >= 0 in u_lim; the argument can have any shape.
     """
     return (1 - np.minimum(checked("amplitude", amplitude), 1.0)) ** 1.5
 

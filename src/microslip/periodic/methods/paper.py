@@ -3,8 +3,8 @@
 The time integration starts from full slip. There is no search for the periodic state.
 
 In the paper, stresses are accurate to 0.1 %. The result of the paper is the mean over the last
-period.  Here, a period has 100 steps, and a step is solved when its residual is at most 0.1 % of
-the total friction.  The requested resolution is ignored.
+period.  In this module, a period has 100 steps, and a step is solved when its residual is at most
+0.1 % of the total friction.  The requested resolution is ignored.
 
 Paper: R. Pohrt, Front. Mech. Eng. 6:566440, 2020.
 """
@@ -36,7 +36,7 @@ def path_of(problem: Problem, steps: int = STEPS) -> Path:
 
 
 def last_means(march: March) -> tuple[float, float]:
-    """Return the mean forward forces over the last and over the second-to-last period."""
+    """Return two mean forward forces: over the last period, and over the second-to-last period."""
     force = march.forces[1:, FORWARD]
     last, before = force[-STEPS_PER_PERIOD:], force[-2 * STEPS_PER_PERIOD : -STEPS_PER_PERIOD]
     return float(last.mean()), float(before.mean())
