@@ -1,7 +1,7 @@
 """Forces of a contact along a path.
 
 `history` integrates an oscillation or a steady motion in time, at one resolution.  `response`
-integrates along a prescribed path, which need not be periodic, and refines the resolution until the
+integrates along a prescribed path, which need not be periodic. The resolution is refined until the
 errors of the forces are within the tolerance.
 
 `iwan` builds an Iwan model.  If Poisson's ratio is above 0, `iwan` compares this model with the
@@ -38,8 +38,8 @@ from microslip.theory.masing import Iwan, with_elements, with_tolerance
 STARTS = ("stress-free", "full-slip", "full-rotation")
 """Names of the initial states."""
 CELLS, ANGLES, STEPS = 32, 16, 256
-"""Default resolution of a history: numbers of rings or squares, of angles, and of steps in a
-period."""
+"""Default resolution of a history: the number of rings or squares, the number of angles, and the
+number of steps in a period."""
 STEP_TOLERANCE = 1e-7
 """Tolerance of a step in a history or a period, as a force divided by mu F_z."""
 LONGEST_PHASE = 1e12

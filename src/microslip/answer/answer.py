@@ -69,8 +69,8 @@ DIGITS = 6
 class Estimate:
     """A quantity with its error estimate.
 
-    Estimates can be added to each other and multiplied by numbers.  The error of a sum is the sum
-    of the errors of its terms, separately for each source.
+    Estimates can be added to each other and multiplied by numbers.  For each source, the error of a
+    sum is the sum of the errors of the terms.
 
     Attributes
     ----------

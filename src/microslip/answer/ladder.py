@@ -1,6 +1,6 @@
 """Levels of resolution of a problem: cells, angles and time steps refined together.
 
-Level n has n cells, and its numbers of angles and steps are proportional to n.  So the error has a
+Level n has n cells. The numbers of angles and of steps are proportional to n.  So the error has a
 single leading term, C / n^2.  This term is estimated from runs at the levels n/4, n/2 and n.
 LEVELS interleaves two series of doublings: 2, 4, 8, ... and 3, 6, 12, ....  The cost therefore
 grows moderately from level to level. In addition, level n can reuse the runs at the levels n/2 and
@@ -212,8 +212,8 @@ def _imposing(ladder: Ladder, tolerance: float, cells: int | None, steps: int | 
     """Change a ladder so that its first level has the imposed resolution.
 
     If only the number of steps is imposed, the number of cells follows from the tolerance.  If only
-    the number of cells is imposed, the number of steps follows from the tolerance or from the
-    number of cells, whichever gives more steps.
+    the number of cells is imposed, the number of steps is the larger of two values. One value
+    follows from the tolerance, and the other from the number of cells.
     """
     cells, steps = cells if ladder.cells else None, steps if ladder.steps else None
     if cells is None and steps is None:

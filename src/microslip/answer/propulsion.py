@@ -1,10 +1,10 @@
 """Stall force and no-load velocity of a self-propelled motion.
 
-The sphere moves forward at a prescribed velocity v, like a body too heavy for its velocity to
-change during a period.  The contact exerts the force -mu(v) on the body.  The stall force is the
-load that stops the body. The stall force equals -mu in the limit v -> 0.  The no-load velocity is
-the root of mu(v).  Friction never decreases with the velocity (theory/exact.py), so two velocities
-at which friction has opposite signs bracket the root.
+The sphere moves forward at a prescribed velocity v. A body moves in this way if it is too heavy for
+its velocity to change during a period.  The contact exerts the force -mu(v) on the body.  The stall
+force is the load that stops the body. The stall force equals -mu in the limit v -> 0.  The no-load
+velocity is the root of mu(v).  Friction never decreases with the velocity (theory/exact.py), so two
+velocities at which friction has opposite signs bracket the root.
 
 A body without mass under a constant load is not propelled.  Such a body follows the forward
 oscillation (see limits.without_forward_motion).

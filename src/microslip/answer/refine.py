@@ -26,8 +26,8 @@ far above 2.  The last level then need not be better than the second-to-last lev
 the difference of the first two levels.
 
 If the differences increase, n/4 is too coarse for the leading term to dominate.  A slightly finer
-level is probably too coarse as well.  The next level n is therefore chosen such that its two
-coarser levels have already been computed.
+level is probably too coarse as well.  The next level n is therefore chosen such that runs at the
+levels n/2 and n/4 already exist.
 """
 
 from __future__ import annotations
@@ -206,8 +206,8 @@ def _estimates(
 ) -> tuple[dict[str, Estimate], float]:
     """Return estimates of all values, and the observed order of convergence of the requested value.
 
-    `runs` contains the runs at n/4, n/2 and n, followed by further runs at n, which use other
-    interpolations.  `goal` is the largest accepted resolution error of the value `name`.  The other
+    `runs` contains the runs at n/4, n/2 and n. Further runs at n, with other interpolations,
+    follow.  `goal` is the largest accepted resolution error of the value `name`.  The other
     arguments have the same meaning as for `refine`.
     """
     three, others, imposed = runs[:3], runs[3:], ladder.imposed > 0.0

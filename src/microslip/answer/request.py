@@ -350,7 +350,8 @@ def result_of_runs(
 
 
 def within_friction(problem: Problem, friction: Estimate) -> Estimate:
-    """Clip the friction to its range: 0 to 1, or -1 to 1 for motions that can propel the contact.
+    """Clip the friction to its range. The range is 0 to 1, or -1 to 1 for motions that can propel
+    the contact.
 
     Values outside this range result from rounding and discretisation errors.  If the error exceeds
     the width of the range, the result is the middle of the range.  The error of this result is half

@@ -50,7 +50,7 @@ TURN, MIRROR = "half turn", "mirror image"
 class Convolution(NamedTuple):
     """Matrices of the convolution on R x C resolved cells.
 
-    Along the lateral axis, there are W waves for each parity; the last waves are padding.  The
+    Along the lateral axis, there are W waves for each parity. The last waves are padding.  The
     number of parities P is 1 if only cells with positive coordinates are resolved, and 2 otherwise.
     Along the forward axis, there are F waves.  F is 2 n if both parities occur, and n otherwise.
 

@@ -29,7 +29,7 @@ from microslip.theory.hertz import G_STAR
 EPSILON = float(np.finfo(float).eps)
 """Distance from 1 to the next larger floating-point number."""
 ACCURACY = 1e-10
-"""Relative accuracy of the kernels, which is much better than that of the averages over rings."""
+"""Relative accuracy of the kernels. The averages over rings are much less accurate."""
 MOST_GROWTH = np.log(ACCURACY / EPSILON)
 """Logarithm of the largest accepted growth of rounding errors in an upward recurrence."""
 HALF_PRECISION = np.sqrt(EPSILON)

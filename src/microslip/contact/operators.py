@@ -1,7 +1,7 @@
 """Compiled elastic operators for contacts that are discretised into rings.
 
 A field is an array of shape (2, points) with the forward and lateral components at the points of a
-contact.  The points are ordered by angle, then by ring.  Each angle has `width` points; the points
+contact.  The points are ordered by angle, then by ring.  Each angle has `width` points. The points
 beyond the last ring are padding, with area 0 and friction bound 0.
 
 An operator acts in three steps: it transforms the values at the angles to amplitudes of angular
@@ -101,7 +101,7 @@ def transform(
     """Multiply rows of `source` by a matrix, and store the results in rows of `target`.
 
     Row k of the argument is row taken[0] + taken[1] k of `source`.  Row k of the result is row
-    filled[0] + filled[1] k of `target`.  Rows are computed in groups of four; the last group can
+    filled[0] + filled[1] k of `target`.  Rows are computed in groups of four. The last group can
     overlap the previous one.
     """
     (begin, stride), (at, step) = taken, filled

@@ -84,7 +84,7 @@ GRADED_STROKE = 2.0
 
 
 def turning_point_grading(drift: float, stroke: float) -> float:
-    """Return the grading g of the steps, which is between 0 and 0.8.
+    """Return the grading g of the steps. The grading is between 0 and 0.8.
 
     A step at a turning point is (1 - g) times as long as the mean step.
 

@@ -18,7 +18,7 @@ dahl: the Dahl model in two directions (Tsai and Tseng 2005),
 where k is the stiffness of the contact without slip.  The model has the stiffness and the friction
 bound of the contact, but it never sticks.  Therefore, under any vibration, the friction of the
 model tends to 0 as the velocity tends to 0.  Along a straight segment of the path, the equation has
-a closed-form solution, which is linear in the initial force.
+a closed-form solution. This solution is linear in the initial force.
 
 mdr: the method of dimensionality reduction, which replaces the contact by a row of independent
 springs with friction.  The model is exact for tangential loading of an axisymmetric indenter in one

@@ -24,8 +24,8 @@ from microslip.scene.pressure import Pressure
 def load_on_rings(pressure: Pressure, edges: np.ndarray, depth: np.ndarray) -> np.ndarray:
     """Return the load inside each of n + 1 radii (`edges`), for each of k depths.
 
-    A depth is the indentation divided by its value in the reference state.  In this state, the
-    contact radius is a and the load is F_z.  The result has the shape (k, n + 1).
+    A depth is the indentation divided by the indentation in the reference state.  In this state,
+    the contact radius is a and the load is F_z.  The result has the shape (k, n + 1).
     """
     return pressure.load(edges, pressure.radius(depth)[:, None])
 
@@ -158,7 +158,7 @@ class RingContact(Contact):
         return out.reshape(*shape, rows * out.shape[-1])
 
     def unpack(self, fields: np.ndarray) -> np.ndarray:
-        """Convert fields of compiled code back to values; this method is the inverse of `pack`."""
+        """Convert fields of compiled code back to values. This method is the inverse of `pack`."""
         _, rows, cells = self.shape
         return fields.reshape(*fields.shape[:-1], rows, -1)[..., :cells]
 

@@ -62,8 +62,8 @@ _occurred = types.ExternalFunction("PyOS_InterruptOccurred", types.intc())
 
 @kernel
 def interrupted() -> bool:
-    """Return whether Ctrl-C was pressed since the last call; the result is always false except in
-    the main thread.
+    """Return whether Ctrl-C was pressed since the last call. Outside the main thread, the result is
+    always false.
 
     Python handles signals only between its own instructions, and a time integration in compiled
     code can take minutes.  After an interrupt, the time integration ends early, and the calling
@@ -172,7 +172,7 @@ def imbalance(
     stiffness: float,
     advance: float,
 ) -> float:
-    """Return the residual of the equation of the body after its displacement has grown by
+    """Return the residual of the body's equation after the displacement of the body has grown by
     `advance`.
 
     The advance is added to the slip of the points that slip.  `excess` is the residual for an

@@ -1,6 +1,6 @@
 """Settings, effort and result of a run, and the budget of a point.
 
-A run is one simulation at one resolution; a march is one time integration over a period or half a
+A run is one simulation at one resolution. A march is one time integration over a period or half a
 period.  The budget limits the work and the wall-clock time of a point.  Both limits are checked
 after every march, so that they also end long searches.  With a limit on the work, the result is the
 same on every machine.  The time limit depends on the machine, so a result that reached the time
@@ -31,7 +31,7 @@ if TYPE_CHECKING:
 
 
 class Effort(NamedTuple):
-    """Computational effort of one or several runs; efforts can be added and subtracted.
+    """Computational effort of one or several runs. Efforts can be added and subtracted.
 
     Attributes
     ----------

@@ -8,11 +8,11 @@ acceleration), the distance to the next state, and an error computed from the re
 rate of the motion.  The last quantity is needed near the static limit, where the state changes so
 slowly that a small residual is no evidence of convergence.
 
-The state of a driven body includes two more numbers, its position x and rate x' (see
-contact/march.py).  In one period, unbalanced forces hardly change the state of a heavy body or of a
-body on a soft spring.  To match the stiffness of the contact, the map scales up the changes of x
-and x'.  The scaling has the same effect as a stiffer spring and a lighter body.  This scaling does
-not change the fixed point of the map.  A contact in full slip is much more compliant than a
+The state of a driven body includes two more numbers: the position x and the rate x' of the body
+(see contact/march.py).  In one period, unbalanced forces hardly change the state of a heavy body or
+of a body on a soft spring.  To match the stiffness of the contact, the map scales up the changes of
+x and x'.  The scaling has the same effect as a stiffer spring and a lighter body.  This scaling
+does not change the fixed point of the map.  A contact in full slip is much more compliant than a
 sticking contact.  For a contact in full slip, the stiffness is the rise of the mean force with the
 displacement.
 """
@@ -216,7 +216,7 @@ class PeriodMap:
         return state if self.body is None else state[:-2].reshape(self.shape)
 
     def march(self, state: np.ndarray, tolerance: float, previous: March | None) -> March:
-        """March along the path; `previous` is a march from a similar state."""
+        """March along the path. The argument `previous` is a march from a similar state."""
         place, contact = (self.path, self.tractions(state), tolerance, previous), self.contact
         if self.body is None:
             march = contact.march(*place)

@@ -22,8 +22,8 @@ only the two turning points matter.
 
 Coarse runs of the static limit also give the edges of the stick zone in slow motions.  No formula
 gives the edges for motions on a loop, or for pressures without a closed form.  For rotating
-indenters, the radius of the edge is also the root of an integral (indenters.torsion_stick_radius);
-a test compares both results.
+indenters, the radius of the edge is also the root of an integral (indenters.torsion_stick_radius).
+A test compares both results.
 """
 
 from __future__ import annotations
@@ -94,8 +94,8 @@ LOOP_STEP_SHARE = 1e-4
 """Ratio of the step tolerance to the tolerance of the periodic state.  A point's shift depends on
 the square root of the distance between its traction and the bound."""
 ENOUGH = 4.0
-"""Largest accepted ratio of the distance from the periodic state to its tolerance.  Rounding errors
-can prevent a search from reaching the tolerance."""
+"""Largest accepted distance from the periodic state, divided by the tolerance of this distance.
+Rounding errors can prevent a search from reaching the tolerance."""
 ROUNDING = 1e-12
 """Tolerance of the periodic state of a contact that never sticks. A search finds this state in a
 few marches."""
@@ -187,9 +187,9 @@ def loop_energy(
     u_lim.
 
     Each slipping point slips in a constant direction.  By Masing's rule, a point slips twice as far
-    between the turning points as in the initial loading.  Therefore, each point contributes four
-    times its friction bound times its slip in the initial loading.  The energy is the sum over all
-    points.
+    between the turning points as in the initial loading.  Therefore, the contribution of a point is
+    four times the product of its friction bound and its slip in the initial loading.  The energy is
+    the sum over all points.
 
     Parameters
     ----------

@@ -17,7 +17,7 @@ from microslip.foundation.errors import InputError
 AXES = ("forward", "lateral")
 READINGS = ("cells", "samples")
 """Possible meanings of the values on a grid.  With "cells", each value is the mean over the cell
-around its point; a cell is one grid step wide.  The reading "samples" means that the values apply
+around its point. A cell is one grid step wide.  The reading "samples" means that the values apply
 at the points and are interpolated bilinearly.  The pressure is 0 outside the grid."""
 FINE = 256
 """To compute u_lim and the torque, the contact is divided into this number of squares along each

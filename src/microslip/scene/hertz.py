@@ -100,7 +100,7 @@ class Ellipse(Pressure):
 def hertz_loads(cells: int) -> np.ndarray:
     """Compute the load of Hertz pressure on each cell of the rectangle around the ellipse.
 
-    The result is an array of shape (cells, cells), which does not depend on the ratio of the
+    The result is an array of shape (cells, cells). The loads do not depend on the ratio of the
     semi-axes.
     """
     edges = np.arange(cells + 1) * 2.0 / cells - 1.0

@@ -34,7 +34,7 @@ SMALLEST_RADIUS = 1e-7
 """Smallest ratio of radius to contact radius.  Smaller ratios are replaced by this value, because
 the friction bound of some indenters is infinite at the centre."""
 SMALLEST_CONTACT = 1e-100
-"""Smallest contact radius, which keeps divisions by the contact radius finite."""
+"""Smallest contact radius. This limit keeps divisions by the contact radius finite."""
 _GRID = np.linspace(0.0, 1.0, 257)
 _CORRECTIONS = 6
 """Number of Newton steps, starting from an initial guess from a table."""
@@ -61,11 +61,12 @@ class Indenter(RoundPressure):
         raise NotImplementedError
 
     def slope(self, c: np.ndarray) -> np.ndarray:
-        """Return the derivative of `depth`, which is 0 for c below the radius of the flat end."""
+        """Return the derivative of `depth`. The derivative is 0 for c below the radius of the flat
+        end."""
         raise NotImplementedError
 
     def radius(self, depth: np.ndarray) -> np.ndarray:
-        """Return the contact radius at a depth; this function is the inverse of `depth`."""
+        """Return the contact radius at a depth. This function is the inverse of `depth`."""
         raise NotImplementedError
 
     @cached_property
@@ -226,7 +227,7 @@ class Power(Indenter):
 LARGEST_FLAT = 0.99
 """Largest allowed radius of the flat end, divided by the contact radius."""
 _HALVINGS = 100
-"""Number of bisections, which is enough for full precision."""
+"""Number of bisections. This number is enough for full precision."""
 
 
 @dataclass(frozen=True)

@@ -221,15 +221,16 @@ class Motion(spec.Named):
         Propulsion is impossible if a shift of the oscillation in time has the same effect as a
         reversal of its forward component.  Let d be the greatest common divisor of the numbers of
         cycles of all components.  After a fraction 1/(2 d) of the period, a component with n cycles
-        has the opposite value if n / d is odd, and the same value as before if n / d is even.  The
-        oscillation cannot propel the contact if, after this time, the forward component is reversed
-        and the load is the same as before.  The signs of the lateral component and of the angle do
-        not matter.  The reason is that, under a symmetric pressure, two images of a solution are
-        solutions as well.  The mirror image reverses the forward component and the angle.  The
-        point reflection q(-forward, -lateral) reverses the angle. This image is a solution, because
-        the influence of one point on another is an even function of the vector between them.  The
-        solution -q reverses all components.  Combinations of these three images give every
-        combination of signs.  In all images, the forward force has the sign of the forward motion.
+        has the opposite value if n / d is odd. If n / d is even, the component has the same value
+        as before.  The oscillation cannot propel the contact if, after this time, the forward
+        component is reversed and the load is the same as before.  The signs of the lateral
+        component and of the angle do not matter.  The reason is that, under a symmetric pressure,
+        two images of a solution are solutions as well.  The mirror image reverses the forward
+        component and the angle.  The point reflection q(-forward, -lateral) reverses the angle.
+        This image is a solution, because the influence of one point on another is an even function
+        of the vector between them.  The solution -q reverses all components.  Combinations of these
+        three images give every combination of signs.  In all images, the forward force has the sign
+        of the forward motion.
         """
         if "forward" not in self.components:
             return False
@@ -363,7 +364,7 @@ class Motion(spec.Named):
         return waves[0] if waves else Wave(0.0)
 
     def _depth_at(self, height: np.ndarray, pressure: Pressure) -> np.ndarray:
-        """Convert a load or an indentation to the indentation depth, which is 0 if there is no
+        """Convert a load or an indentation to the indentation depth. The depth is 0 if there is no
         contact."""
         height = np.maximum(height, 0.0)
         return pressure.of_load(height) if "load" in self.components else height

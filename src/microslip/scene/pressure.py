@@ -1,5 +1,5 @@
-"""Pressures: distributions of the load over the contact, which give the friction bound at each
-point.
+"""Pressures are distributions of the load over the contact. A pressure gives the friction bound at
+each point.
 
 Working units are dimensionless: mu F_z = 1, u_lim = 1 and a = 1.  The length a is the outer radius
 of a round contact. For other contacts, a is half the longer side of the bounding rectangle.  The
@@ -350,7 +350,8 @@ class Measured(spec.NamedByText, Pressure):
 
     @property
     def size_m(self) -> float | None:
-        """Half the longer side of the contact, in m; None if the coordinates have no unit."""
+        """Half the longer side of the contact, in m. The value is None if the coordinates have no
+        unit."""
         metre = self.units[0]
         return None if metre is None else self._half * self.step * metre
 

@@ -304,9 +304,9 @@ one step away from the second, and the values between the first and the last ext
 steps.  With n below 4, the first and the last value would therefore count as marks of missing
 samples."""
 ABSURD = 100.0
-"""A single value is refused if its distance from all other values, divided by their range, is above
-this limit.  In a motion of 1000 rows, the rows next to the top of a sharp pulse can have a
-hundredth of the pulse's height."""
+"""A single value is refused if its distance from all other values exceeds this limit times the
+range of the other values.  In a motion of 1000 rows, the rows next to the top of a sharp pulse can
+have a hundredth of the pulse's height."""
 NINES = re.compile(r"-?99(9+|9*\.9+)")
 """Pattern of a number of nines, such as -9999 or -99.99."""
 UNUSUAL = (

@@ -25,12 +25,12 @@ energies are at most v (1 + b / (4 - 2 b)). Longitudinal motions with v >= x obe
 The bounds apply to any nu and any stiffness. The functions take the dimensionless groups of the
 paper as arguments.
 
-Friction never decreases as the forward velocity increases, because Coulomb's law at a given
-pressure is monotone, and the half-space is elastic. For periodic states of the same oscillation at
-the velocities v1 and v2, it follows that (mu1 - mu2)(v1 - v2) >= 0. Assume that, after half a
-period, the forward oscillation is reversed and the load is the same. Then friction is an odd
-function of the velocity. Hence friction is never negative for v > 0. Other motions can propel the
-contact (Motion.propels).
+Friction never decreases as the forward velocity increases. The reasons are that Coulomb's law at a
+given pressure is monotone, and that the half-space is elastic. For periodic states of the same
+oscillation at the velocities v1 and v2, it follows that (mu1 - mu2)(v1 - v2) >= 0. Assume that,
+after half a period, the forward oscillation is reversed and the load is the same. Then friction is
+an odd function of the velocity. Hence friction is never negative for v > 0. Other motions can
+propel the contact (Motion.propels).
 
 For some motions under Hertz pressure, closed forms replace simulations. Stored results depend on
 this file and on the functions that it uses. Stored results do not depend on datasets/catalogue.py,

@@ -64,7 +64,7 @@ def checked(
 
 
 def friction_bound(r: Numbers) -> Numbers:
-    """Return the friction bound g(r) = mu p(r) = 3/(2 pi) sqrt(1 - r^2) under Hertz pressure.
+    """Return the friction bound g(r) under Hertz pressure, which is 3/(2 pi) sqrt(1 - r^2).
 
     r: distance from the centre, as an array of any shape. Raises ValueError unless r >= 0. The
     result is dimensionless. The result equals 0 outside the contact.

@@ -2,8 +2,8 @@
 
 The static limits and the torsion of an indenter are accurate to about 1e-8. The limit for
 transverse oscillation applies to Poisson's ratio 0, and the limit for bore applies to any ratio.
-For a sphere, both limits agree with the closed forms of `paper`, which are faster. Quantities are
-dimensionless, as in the module `paper`.
+For a sphere, both limits agree with the closed forms of `paper`. The closed forms are faster.
+Quantities are dimensionless, as in the module `paper`.
 
 Eqs 9, 17 and 18 of the paper, which apply to any axisymmetric pressure, are evaluated by adaptive
 quadrature.
@@ -115,8 +115,8 @@ def torsion_stick_radius(pressure: IndenterPressure, angle: float, poisson: floa
 def torsion_traction(pressure: IndenterPressure, r: np.ndarray, stick_radius: float) -> np.ndarray:
     """Compute the circumferential traction of pure torsion inside the stick circle.
 
-    The traction is a superposition of the tractions of rotating punches. With the stick radius c
-    and t^2 = c^2 + (c^2 - r^2) tan^2 theta, the result is (2 r/pi) Integral g(t)/t d(theta).
+    The traction is a superposition of the tractions of rotating punches. Let c be the stick radius,
+    and t^2 = c^2 + (c^2 - r^2) tan^2 theta. Then the result is (2 r/pi) Integral g(t)/t d(theta).
 
     Parameters
     ----------

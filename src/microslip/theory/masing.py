@@ -11,8 +11,8 @@ An Iwan model consists of parallel Jenkins elements, each of which is a spring i
 slider. Let F(u) be the force of the first loading along one line at nu = 0. Let P(d) be the load at
 the indentation depth d. Then F(u) is 1 - P(1 - u). The slope of F is 2 G* c, where c is the contact
 radius at the depth 1 - u. Consider an Iwan model in which the elements with slip displacements from
-phi to phi + dphi have the stiffness rho dphi. The slope of its force is Integral_u^1 rho dphi.
-Hence
+phi to phi + dphi have the stiffness rho dphi. The slope of the model's force is Integral_u^1 rho
+dphi.  Hence
 
     rho(phi) = -F''(phi) = 2 G* / h'(c)    at the depth h(c) = 1 - phi,
 

@@ -94,7 +94,8 @@ def friction(velocity: float, amplitude: float, by_load: bool, pressure: Indente
 
 
 class _Motion:
-    """Indentation during a period, from its minimum at t = 0 to its maximum at pi and back."""
+    """Indentation during a period. The indentation increases from its minimum at t = 0 to its
+    maximum at pi, and then decreases again."""
 
     def __init__(
         self, velocity: float, amplitude: float, by_load: bool, pressure: IndenterPressure
