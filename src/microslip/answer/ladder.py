@@ -28,7 +28,7 @@ from microslip.periodic.static_limit import SLOW_LOOP, at_turning_points
 from microslip.scene.problem import Problem
 
 ORDER = 2
-"""Order of convergence of rings, angles and time steps."""
+"""Order of convergence in the numbers of rings, angles and time steps."""
 RATIO = 2
 """Ratio of successive levels in an extrapolation.  The first level is multiplied by this ratio per
 decade of the tolerance, since extrapolated errors decrease with about the third power of the

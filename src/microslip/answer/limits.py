@@ -77,7 +77,7 @@ CLOSEST_STEADY_FORCE = 1.0 - 1e-7
 of the friction, 1.1e-16, causes a relative error of 1.1e-16 / (2 (1 - force)) in the velocity.  At
 this force, the relative error is close to the error estimate of 1e-9."""
 STEPLESS = ("rigid", "dahl")
-"""Models that evaluate a formula at every step, without a step solver."""
+"""Models that need no step solver, because they evaluate a formula at every step."""
 
 
 def within(name: str, value: object, **changes: Any) -> Any:

@@ -14,16 +14,16 @@ The error estimate has four sources:
 The methods are of second order, so that f(n) is approximately f + C / n^2.  The difference D of the
 last two levels therefore gives the correction D / 3.  Assume that the differences decrease with
 another order p.  The differences beyond the last level then add up to D / (2^p - 1).  Therefore,
-the extrapolated value is wrong by D (1 / (2^p - 1) - 1 / 3).  The error estimate is a safety factor
-times this error, evaluated at the observed order.  The estimate is between the correction and D,
+the extrapolated value is wrong by D (1 / (2^p - 1) - 1 / 3).  The error estimate is this error at
+the observed order, multiplied by a safety factor.  The estimate is between the correction and D,
 both multiplied by the safety factor.
 
 Two levels can agree by chance.  Therefore D is at least a quarter of the difference of the first
-two levels.  At second order, D is expected to equal this quarter.  This is the grid convergence
-index of Roache (J. Fluids Eng. 116, 1994), applied to both pairs of levels.  In two cases, the
-last two levels are taken to agree by chance: the differences change sign, or the observed order is
-far above 2.  The last level then need not be better than the second-to-last level.  Therefore, D is
-the difference of the first two levels.
+two levels.  At second order, D is expected to equal a quarter of this difference.  This is the grid
+convergence index of Roache (J. Fluids Eng. 116, 1994), applied to both pairs of levels.  In two
+cases, the last two levels are taken to agree by chance: the differences change sign, or the
+observed order is far above 2.  The last level then need not be better than the second-to-last
+level.  Therefore, D is the difference of the first two levels.
 
 If the differences increase, n/4 is too coarse for the leading term to dominate.  A slightly finer
 level is probably too coarse as well.  The next level n is therefore chosen such that runs at the

@@ -198,7 +198,7 @@ def rebalance(
     """Shift y, in place, to the displacement at which the forces on the body balance.
 
     The splitting alone converges slowly if nearly all points slip and the drive is soft.  The shift
-    is at most LONGEST_ADVANCE.  If a larger shift were needed, y remains unchanged.
+    is at most LONGEST_ADVANCE.  If a larger shift would be needed, y remains unchanged.
     """
     residual = imbalance(points, bound, y, excess, stiffness, 0.0)
     if not abs(residual) > tolerance:

@@ -1,4 +1,6 @@
-"""Simulate a problem at one resolution: build the contact and the path, then find the state.
+"""Simulate a problem at one resolution.
+
+A simulation builds the contact and the path, and then finds the state.
 
 The steady state of a motion without oscillation is the fixed point of a march over a path of any
 length.

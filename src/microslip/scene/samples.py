@@ -405,8 +405,8 @@ def checked_columns(
 
 def _rows_of(columns: Mapping[str, Any], fewest: int) -> tuple[np.ndarray, np.ndarray | None, bool]:
     """Convert columns to three values. The first value is an array of the displacements, of shape
-    (rows, 3). The second is an array of the loads or indentations, of shape (rows,), or None. The
-    third is True if the second value is a load."""
+    (rows, 3). The second value is an array of the loads or indentations, of shape (rows,), or None.
+    The third value is True if the second value is a load."""
     arrays = checked_columns(columns, PLANE + NORMAL, fewest, LARGEST["amplitude"])
     heights = [name for name in NORMAL if name in arrays]
     for name in heights:
