@@ -1,5 +1,6 @@
 """Fits of friction with known parameters: intervals contain them with the stated probability."""
 
+import json
 import math
 import re
 from types import SimpleNamespace
@@ -9,9 +10,10 @@ import pandas as pd
 import pytest
 import xarray as xr
 from scipy.stats import binom
+from stubs.eq6_map import eq6_map
+from stubs.in_process import answer
 
 import microslip
-from microslip.app import cli
 from microslip.foundation.errors import InputError
 from microslip.si import fit as module
 from microslip.theory import paper
@@ -48,8 +50,11 @@ def conditions(rows=16):
     return {"speed": speed, "amplitude": np.repeat([0.7, 2.0], rows // 2) * U_LIM}
 
 
-def force(table, u_lim=U_LIM, load=LOAD):
-    return MU * load * ratio(table["speed"] / (OMEGA * u_lim), table["amplitude"] / u_lim)
+def force(table, u_lim=U_LIM):
+    """Exact friction forces of the rows.  u_lim: that at the load LOAD."""
+    load = table.get("load", LOAD)
+    unit = u_lim * (load / LOAD) ** (2.0 / 3.0)
+    return MU * load * ratio(table["speed"] / (OMEGA * unit), table["amplitude"] / unit)
 
 
 def fitted(table, **more):
@@ -64,14 +69,27 @@ def contains_the_truth(result):
 # Data without and with noise
 
 
-def test_rows_without_noise_give_the_truth(closed):
-    table = conditions()
-    result = fitted(table | {"friction": force(table)})
-    assert (result.mu, result.u_lim_m) == pytest.approx((MU, U_LIM), rel=1e-4)
+@pytest.mark.parametrize(
+    ("columns", "digits"),
+    [
+        ({}, 1e-4),
+        ({"load": np.tile([5.0, 10.0, 15.0, 10.0], 4)}, 1e-4),
+        # rows without vibration, which have the full friction
+        ({"amplitude": np.repeat([0.0, 0.7, 2.0], [4, 4, 8]) * U_LIM}, 1e-3),
+    ],
+)
+def test_rows_without_noise_give_the_truth(closed, columns, digits):
+    """u_lim is proportional to the load to the power 2/3."""
+    table = conditions() | columns
+    exact, shared = force(table), {"load": None if "load" in columns else LOAD}
+    result = fitted(table | {"friction": exact}, **shared)
+    assert (result.load_N, result.mu) == pytest.approx((LOAD, MU), rel=1e-4)
+    assert result.u_lim_m == pytest.approx(U_LIM, rel=digits)
     assert contains_the_truth(result) and result.reason == ""
-    assert result.rows["fitted"] == pytest.approx(force(table), rel=1e-3)
-    assert result.rows["velocity"] == pytest.approx(table["speed"] / (OMEGA * U_LIM), rel=1e-3)
-    assert result.rows["amplitude"] == pytest.approx(table["amplitude"] / U_LIM, rel=1e-3)
+    assert result.rows["fitted"] == pytest.approx(exact, rel=1e-4)
+    unit = U_LIM * (table.get("load", LOAD) / LOAD) ** (2.0 / 3.0)
+    assert result.rows["velocity"] == pytest.approx(table["speed"] / (OMEGA * unit), rel=1e-3)
+    assert result.rows["amplitude"] == pytest.approx(table["amplitude"] / unit, rel=1e-3)
 
 
 def test_a_coefficient_and_a_force_are_one_measurement(closed):
@@ -80,22 +98,8 @@ def test_a_coefficient_and_a_force_are_one_measurement(closed):
     by_force, by_mu = fitted(table | {"friction": noisy}), fitted(table | {"mu": noisy / LOAD})
     numbers = by_mu.mu, by_mu.u_lim_m, LOAD * by_mu.standard_error
     assert (by_force.mu, by_force.u_lim_m, by_force.standard_error) == pytest.approx(numbers, 1e-5)
-
-
-def test_u_lim_is_proportional_to_the_load_to_the_power_of_two_thirds(closed):
-    table, loads = conditions(), np.tile([5.0, 10.0, 15.0, 10.0], 4)
-    friction = force(table, U_LIM * (loads / 10.0) ** (2.0 / 3.0), loads)
-    result = fitted(table | {"friction": friction, "load": loads}, load=None)
-    assert (result.load_N, result.mu, result.u_lim_m) == pytest.approx((10.0, MU, U_LIM), rel=1e-4)
-
-
-def test_a_row_without_vibration_has_the_full_friction(closed):
-    table = conditions()
-    table["amplitude"][:4] = 0.0
-    friction = np.where(table["amplitude"] > 0.0, force(table), MU * LOAD)
-    result = fitted(table | {"friction": friction})
-    assert result.rows["fitted"][:4] == pytest.approx(MU * LOAD, rel=1e-4)
-    assert result.u_lim_m == pytest.approx(U_LIM, rel=1e-3)
+    large = fitted(table | {"mu": 5.0 * noisy / LOAD})
+    assert large.mu > 1.0 and any("Coulomb" in text for text in large.warnings)
 
 
 @pytest.mark.parametrize(("counterbody", "bodies"), [(None, 1.0), ("same", 2.0)])
@@ -182,24 +186,25 @@ def test_two_minima_are_two_answers(closed):
 # Undetermined numbers
 
 
-def test_rows_on_the_plateau_determine_mu_alone(closed):
-    """At small amplitudes and a large u_lim, friction is mu times the load."""
-    table = {"speed": np.geomspace(0.01, 0.1, 8) * OMEGA * U_LIM, "amplitude": [0.02 * U_LIM] * 8}
-    table["friction"] = MU * LOAD + 0.01 * np.random.default_rng(1).standard_normal(8)
+@pytest.mark.parametrize(
+    ("size", "speeds", "sigma", "sides"),
+    [
+        # most of the contact sticks, and friction is mu times the load
+        (0.02 * U_LIM, (0.5, 5.0), 0.01, ["above", "below"]),
+        # all of the contact slides, and friction follows Eq 6, which does not contain u_lim
+        (1e-3, (0.1, 3.0), 0.02, ["below", "above"]),
+    ],
+)
+def test_rows_of_one_state_determine_mu_alone(closed, size, speeds, sigma, sides):
+    """The shear modulus is unknown on the other side, because it decreases with u_lim."""
+    table = {"amplitude": np.full(8, size), "speed": np.geomspace(*speeds, 8) * OMEGA * size}
+    table["friction"] = force(table) + sigma * np.random.default_rng(1).standard_normal(8)
     result, real = fitted(table), fitted(table, **BALL)
-    assert result.reason.startswith("the rows determine mu alone: any u_lim above")
-    assert result.u_lim_m is None and result.u_lim_high_m is None and result.u_lim_low_m < U_LIM
-    assert result.mu_low <= MU <= result.mu_high < 1.02 * result.mu_low
-    assert "any shear modulus below" in real.reason and real.shear_modulus_Pa is None
-
-
-def test_large_amplitudes_do_not_determine_u_lim(closed):
-    """At amplitudes far above u_lim, friction follows Eq 6, which does not contain u_lim."""
-    table = {"amplitude": np.full(8, 1e-3), "speed": np.geomspace(0.1, 3.0, 8) * OMEGA * 1e-3}
-    noise = 0.02 * np.random.default_rng(2).standard_normal(8)
-    result = fitted(table | {"friction": force(table) + noise})
-    assert "any u_lim below" in result.reason and result.u_lim_low_m is None
-    assert result.mu_low <= MU <= result.mu_high
+    bounds = {"above": result.u_lim_low_m, "below": result.u_lim_high_m}
+    assert result.reason.startswith(f"the rows determine mu alone: any u_lim {sides[0]} ")
+    assert [result.u_lim_m, bounds[sides[1]]] == [None, None] and bounds[sides[0]] > 0.0
+    assert result.mu_low <= MU <= result.mu_high < (1.0 + 2.0 * sigma) * result.mu_low
+    assert f"any shear modulus {sides[1]}" in real.reason and real.shear_modulus_Pa is None
 
 
 # Tables
@@ -220,22 +225,39 @@ def test_a_file_and_its_frame_are_read_alike(closed, tmp_path):
     assert units == ["N", "1", "m s-1"] and data.label.values.tolist() == list("abcdefgh")
 
 
-def test_the_command_names_the_lines_that_it_leaves_out(closed, tmp_path, capsys):
-    unit = OMEGA * U_LIM * 1e3
-    rows = [f"r{v},{v * unit},{0.3 * float(ratio(v, 1.5))}" for v in (0.2, 0.5, 1.0, 2.0)]
-    rows += ["bad,fast,0.1", "empty,1,", "low,-1,0.1"]
-    (tmp_path / "m.csv").write_text("\n".join(["label,speed [mm/s],mu", *rows]))
-    words = ["fit", "transverse", str(tmp_path / "m.csv"), "--amplitude", "300 nm"]
-    words += ["--frequency", "1 kHz", "--load", "10 N", "--output", str(tmp_path / "fit.nc")]
-    assert cli.main(words) == 1
-    out, complaint = capsys.readouterr()
-    reasons = ["line 6: speed is 'fast'", "line 7: mu is empty", "line 8: speed = '-1 mm/s'"]
-    for text, reason in zip(complaint.splitlines(), reasons, strict=True):
-        assert text.startswith(f"microslip fit: {reason}") and text.endswith("; left out")
-    assert re.search(r"^rows +4, of", out, re.M)
-    assert re.search(r"^u_lim +[\d.]+ nm, from", out, re.M)
-    labels = xr.load_dataset(tmp_path / "fit.nc").label.values
-    assert labels.tolist() == ["r0.2", "r0.5", "r1.0", "r2.0"]
+@pytest.mark.slow
+def test_the_command_fits_by_a_map_and_names_the_lines_that_it_leaves_out(tmp_path, monkeypatch):
+    """The rows are exact values of the map, whose error estimates are bounds."""
+    monkeypatch.chdir(tmp_path)
+    table, dataset = conditions(12), eq6_map(1e-3)
+    place = table["speed"] / (OMEGA * U_LIM), table["amplitude"] / U_LIM
+    macro = dataset.microslip.at(*(xr.DataArray(one, dims="row") for one in place)).mu_macro
+    columns = {"speed [m/s]": table["speed"], "amplitude [m]": table["amplitude"]}
+    frame = pd.DataFrame({"label": list("abcdefghijkl"), **columns, "mu": MU * macro})
+    frame.to_csv("m.csv", index=False)
+    dataset.to_netcdf("map.nc")
+    line = "fit transverse m.csv --load '10 N' --frequency '1 kHz' --map map.nc"
+    message = json.loads(answer(f"{line} --figure fit.png --json"))
+    assert (message["mu"], message["u_lim_m"]) == pytest.approx((MU, U_LIM), rel=1e-5)
+    assert message["u_lim_low_m"] < U_LIM < message["u_lim_high_m"] and message["reason"] == ""
+    assert (tmp_path / "fit.png").read_bytes().startswith(b"\x89PNG")
+    answer(f"{line} --nu 0.3", 2, ["--nu = '0.3': allowed is 0"])
+    answer(f"{line} --amplitude '1 mm'", 2, ["--amplitude = '1 mm': it is both"])
+    with open("m.csv", "a") as file:
+        file.write("bad,fast,1,0.1\nempty,1,1,\nlow,-1,1,0.1\n")
+    reasons = ["14: speed is 'fast'", "15: mu is empty", "16: speed = '-1 m/s'"]
+    complaints = [f"microslip fit: line {reason}" for reason in reasons]
+    text = answer(f"{line} --output fit.nc", 1, complaints)
+    assert re.search(r"^rows +12, of", text, re.M)
+    assert re.search(r"^u_lim +200\.0\ nm,\ from", text, re.M)
+    rows = xr.load_dataset("fit.nc")
+    assert float(rows.mu) == message["mu"] and rows.label.values.tolist() == [*frame.label]
+    still = {"speed [m/s]": OMEGA * U_LIM * np.geomspace(0.03, 0.3, 12)}
+    still |= {"amplitude [m]": 0.06 * U_LIM, "mu": MU * (1.0 + 1e-3 * np.cos(3.0 * np.arange(12)))}
+    frame.assign(**still).to_csv("m.csv", index=False)
+    text = answer(line, 1)
+    assert "NOT DETERMINED: the rows determine mu alone: any u_lim above" in text
+    assert re.search(r"^mu +0\.3", text, re.M) and "\nu_lim" not in text
 
 
 GOOD = conditions() | {"friction": force(conditions())}
@@ -290,10 +312,3 @@ def test_the_solver_recovers_its_own_parameters():
     assert result.shear_modulus_low_Pa <= 1.05e11 <= result.shear_modulus_high_Pa
     assert result.u_lim_low_m <= u_lim <= result.u_lim_high_m
     assert str(again.to_dict()) == str(result.to_dict())  # in texts NaN equals NaN
-
-
-def test_a_large_fitted_mu_has_the_warning_of_predict():
-    rows = {"speed [mm/s]": [1, 2, 4, 8, 1000], "mu": [0.6, 0.9, 1.2, 1.4, 1.5]}
-    common = {"amplitude": "1 um", "frequency": "1 kHz", "load": "10 N"}
-    result = microslip.fit("transverse", rows, **common, tolerance=0.02)
-    assert result.mu > 1.0 and any("Coulomb" in text for text in result.warnings)

@@ -2,6 +2,7 @@
 
 import io
 import os
+import shlex
 import subprocess
 import sys
 from contextlib import redirect_stderr, redirect_stdout
@@ -25,6 +26,22 @@ def run(*arguments):
         except SystemExit as end:  # raised by argparse after --help
             code = end.code or 0
     return CompletedProcess(arguments, code, out.getvalue(), err.getvalue())
+
+
+def options(**settings):
+    """Options of a command line with these settings.  None: no such option."""
+    given = {name.replace("_", "-"): one for name, one in settings.items() if one is not None}
+    return shlex.join(f"--{name}={one}" for name, one in given.items())
+
+
+def answer(line, code=0, complaints=()):
+    """Standard output of a command line with this exit code, and with a line of standard error for
+    each complaint, which it contains."""
+    process = run(*shlex.split(line))
+    assert process.returncode == code, process.stderr
+    for message, part in zip(process.stderr.splitlines(), complaints, strict=True):
+        assert part in message
+    return process.stdout
 
 
 def run_apart(*words, folder=None, **environment):
