@@ -15,7 +15,7 @@ from microslip.scene.hertz import HERTZ
 from microslip.scene.problem import Force, Problem
 from microslip.theory import indenters, paper
 
-CONE, BLUNT = pressure_named("power:exponent=1"), pressure_named("power:exponent=8")
+CONE = pressure_named("power:exponent=1")
 PLACES = {
     "bore": ("bore", 0.2, 1.0),
     "longitudinal": ("longitudinal", 0.1, 0.5),
@@ -173,8 +173,6 @@ def test_a_soft_spring_pulls_a_contact_that_lifts_off_and_oscillates_sideways():
     free = microslip.solve(*place, stiffness=0.3)
     held = microslip.solve(*place, stiffness=0.3, damping=dashpot)
     assert_agree(free, held)
-    # 0.05777 with 48 rings and 1024 steps of the plain march of reference_pull.py
-    assert abs(free.mu_macro - 0.0577) <= free.mu_macro_error
 
 
 @pytest.mark.parametrize(
@@ -195,43 +193,6 @@ def test_what_runs_away_says_so(motion, force, reason):
 
 def test_a_body_that_goes_along_with_its_contact_stays_under_any_force():
     assert microslip.solve("longitudinal", amplitude=0.5, force=0.99999).velocity == 0.0
-
-
-UNLIKE_ESTIMATES = [
-    # Friction hardly rises there, so a small unbalanced force is a large error of the velocity.
-    ("elliptic", {"amplitude": 15.0, "force": 0.93, "mass": 1.0}, (2e-3, 1e-4)),
-    # The mass moves far slower than a contact without mass: the tolerance is relative to the
-    # resulting velocity, not to the initial estimate.
-    (
-        "elliptic:forward=0.5,phase=0,forward_cycles=2",
-        {"amplitude": 4.189, "force": 0.2761, "mass": 0.04953, "poisson": 0.3, "pressure": BLUNT},
-        (1e-3, 5e-4),
-    ),
-]
-
-
-@pytest.mark.parametrize(("motion", "place", "tolerances"), UNLIKE_ESTIMATES)
-def test_the_error_of_the_velocity_covers_a_finer_one(motion, place, tolerances):
-    result, finer = (microslip.solve(motion, **place, tolerance=one) for one in tolerances)
-    assert result.velocity_error <= tolerances[0] * max(1.0, result.velocity)
-    assert_agree(result, finer)
-
-
-LIGHT = [
-    ({"amplitude": 2.356, "force": 0.8082, "mass": 0.001453}, 1.65908),
-    ({"amplitude": 0.8955, "force": 0.8108, "mass": 0.001146}, 0.38067),
-]
-"""Natural frequencies 32 and 36."""
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize("tolerance", [1e-2, 1e-3])
-@pytest.mark.parametrize(("place", "velocity"), LIGHT)
-def test_steps_resolve_the_natural_oscillation_of_a_light_mass(place, velocity, tolerance):
-    """The expected velocities come from runs with 3072 imposed steps in a period."""
-    result = microslip.solve("zigzag", **place, tolerance=tolerance)
-    assert result.converged
-    assert result.velocity == pytest.approx(velocity, abs=result.velocity_error)
 
 
 @pytest.mark.slow

@@ -3,13 +3,28 @@ order."""
 
 import numpy as np
 import pytest
-from stubs.agreement import assert_agree
 
 import microslip
 from microslip.scene.by_name import motion_named
 from microslip.scene.problem import Problem
 
 SLOW = {"marks": pytest.mark.slow}
+SHARP, POWER = "punch:flat=0.95", "power:exponent=30"
+FIGURE, TIGHT = "elliptic:forward_cycles=2,", (1e-2, 5e-3)
+# motion, pressure, velocity, amplitude, sizes of a reference, and tolerances
+CHANCE = [
+    (FIGURE + "forward=0.97,phase=90", SHARP,
+     0.00022886554043705838, 0.9254990785352156, {"cells": 24, "steps": 512}, TIGHT),
+    (FIGURE + "forward=0.44,phase=60", POWER,
+     7.71668330440097e-05, 0.6332575478397949, {"cells": 64, "steps": 256}, TIGHT),
+    ("elliptic:forward=0.81,phase=0", POWER,
+     0.0005146847055429344, 0.7300692973793619, {"cells": 64, "steps": 128}, TIGHT),
+    # Under a wide tolerance the search once ended at a force of 0.015 instead of 0.114: a slow loop
+    # that lost what it takes long to gain is not periodic.
+    ("elliptic:forward=0.73,phase=90,forward_cycles=3,lateral_cycles=2", "punch:flat=0.8",
+     0.00013964177566075554, 0.7675388662707612, {"cells": 24, "steps": 288}, (0.1,)),
+]  # fmt: skip
+"""Points at which few rings and steps agree by chance."""
 COVERED = [
     # A body that resonates with the fourth harmonic of the vibration: sqrt(k / m) is 3.8.  All runs
     # with 48 steps or fewer agree on another friction.
@@ -60,23 +75,39 @@ COVERED = [
     # angles, the error was twice its estimate.
     pytest.param(("bore", 0.289, 2.07), {}, {}, {"tolerance": 2e-4}, **SLOW),
     pytest.param(("transverse-bore", 0.1, 1.0), {}, {}, {"tolerance": 4e-4}, **SLOW),
+    # Only a thin ring slips: the runs that suffice for the friction hardly resolve the energy.
+    *(
+        pytest.param(("bore", *place), {}, {"tolerance": 1e-2}, {"tolerance": 1e-4}, **SLOW)
+        for place in ((0.0112889, 0.586235), (0.0519, 0.595))
+    ),
+    # Friction hardly rises there, so a small unbalanced force is a large error of the velocity.
+    (
+        ("elliptic", None, 15.0),
+        {"force": 0.93, "mass": 1.0},
+        *({"tolerance": 2e-3}, {"tolerance": 1e-4}),
+    ),
+    # The mass moves far slower than a contact without mass: the tolerance is relative to the
+    # resulting velocity, not to the initial estimate.
+    (
+        ("elliptic:forward=0.5,phase=0,forward_cycles=2", None, 4.189),
+        {"force": 0.2761, "mass": 0.04953, "poisson": 0.3, "pressure": "power:exponent=8"},
+        *({"tolerance": 1e-3}, {"tolerance": 5e-4}),
+    ),
+    *(
+        ((motion, *place), {"pressure": pressure}, {"tolerance": one}, {"tolerance": None} | sizes)
+        for motion, pressure, *place, sizes, tolerances in CHANCE
+        for one in tolerances
+    ),
 ]
 
 
 @pytest.mark.parametrize(("place", "body", "coarse", "fine"), COVERED)
 def test_the_error_estimate_covers_a_finer_answer(place, body, coarse, fine):
     one, other = (microslip.solve(*place, **body, **settings) for settings in (coarse, fine))
-    assert_agree(one, other)
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize(("velocity", "amplitude"), [(0.0112889, 0.586235), (0.0519, 0.595)])
-def test_the_energy_of_a_small_rotation_is_within_its_error_estimate(velocity, amplitude):
-    """Only a thin ring slips, which the runs that suffice for the friction hardly resolve."""
-    coarse = microslip.solve("bore", velocity, amplitude, tolerance=1e-2).dissipation
-    fine = microslip.solve("bore", velocity, amplitude, tolerance=1e-4).dissipation
-    assert abs(coarse.value - fine.value) <= coarse.error + fine.error
-    assert fine.error < 0.2 * coarse.error
+    assert one.converged and other.converged
+    assert abs(one.answer.value - other.answer.value) <= one.answer.error
+    apart = abs(one.dissipated_energy - other.dissipated_energy)
+    assert apart <= one.dissipated_energy_error + other.dissipated_energy_error
 
 
 def test_an_imposed_resolution_has_the_error_estimate_of_the_same_chosen_one():
@@ -86,37 +117,6 @@ def test_an_imposed_resolution_has_the_error_estimate_of_the_same_chosen_one():
     imposed = microslip.solve("transverse", 0.3, 1.0, **sizes, tolerance=None)
     apart = abs(imposed.mu_macro - chosen.mu_macro)
     assert imposed.mu_macro_error == pytest.approx(chosen.mu_macro_error + apart, rel=0.1)
-
-
-SHARP, POWER = "punch:flat=0.95", "power:exponent=30"
-FIGURE, TIGHT = "elliptic:forward_cycles=2,", (1e-2, 5e-3)
-# motion, pressure, velocity, amplitude, cells and steps of a reference, and tolerances
-OFF = [
-    (FIGURE + "forward=0.97,phase=90", SHARP,
-     0.00022886554043705838, 0.9254990785352156, 24, 512, TIGHT),
-    (FIGURE + "forward=0.44,phase=60", POWER,
-     7.71668330440097e-05, 0.6332575478397949, 64, 256, TIGHT),
-    ("elliptic:forward=0.81,phase=0", POWER,
-     0.0005146847055429344, 0.7300692973793619, 64, 128, TIGHT),
-    # Under a wide tolerance the search once ended at a force of 0.015 instead of 0.114: a slow loop
-    # that lost what it takes long to gain is not periodic.
-    ("elliptic:forward=0.73,phase=90,forward_cycles=3,lateral_cycles=2", "punch:flat=0.8",
-     0.00013964177566075554, 0.7675388662707612, 24, 288, (0.1,)),
-]  # fmt: skip
-
-
-@pytest.mark.parametrize(
-    ("motion", "pressure", "velocity", "amplitude", "cells", "steps", "tolerances"), OFF
-)
-def test_errors_are_covered_where_few_rings_and_steps_agree_by_chance(
-    motion, pressure, velocity, amplitude, cells, steps, tolerances
-):
-    point = {"velocity": velocity, "amplitude": amplitude, "pressure": pressure}
-    many = microslip.solve(motion, **point, tolerance=None, cells=cells, steps=steps)
-    for tolerance in tolerances:
-        answer = microslip.solve(motion, **point, tolerance=tolerance)
-        assert answer.converged
-        assert abs(answer.mu_macro - many.mu_macro) <= answer.mu_macro_error
 
 
 @pytest.mark.parametrize("tolerance", [1e-3, 1e-4])
@@ -134,10 +134,32 @@ def test_a_zigzag_is_that_of_a_rigid_contact(velocity, amplitude, tolerance):
     assert -error <= over <= 1.0 / amplitude + error
 
 
+KNOWN = [
+    # From 8 to 16 rings the error of this bore falls at first order only.  Separate refinements
+    # from 24 to 96 rings give this friction.
+    ("bore", {"velocity": 0.11150298626945476, "amplitude": 3.3085697949922066}, 0.34733),
+    # A body without memory in a period that begins without contact: 48 rings and 1024 steps of the
+    # plain march of reference_pull.py.
+    (
+        "normal:lateral=0.9,phase=90",
+        {"velocity": 0.15, "amplitude": 1.3, "stiffness": 0.3},
+        0.0577,
+    ),
+    # Masses with natural frequencies 32 and 36: runs with 3072 imposed steps in a period.
+    *(
+        ("zigzag", place | {"tolerance": tolerance}, velocity)
+        for tolerance in (1e-2, 1e-3)
+        for place, velocity in (
+            ({"amplitude": 2.356, "force": 0.8082, "mass": 0.001453}, 1.65908),
+            ({"amplitude": 0.8955, "force": 0.8108, "mass": 0.001146}, 0.38067),
+        )
+    ),
+]
+
+
 @pytest.mark.slow
-def test_few_rings_that_converge_slowly_are_refined():
-    """From 8 to 16 rings the error of this bore falls at first order only.  Separate refinements
-    from 24 to 96 rings give 0.34733."""
-    result = microslip.solve("bore", 0.11150298626945476, 3.3085697949922066)
+@pytest.mark.parametrize(("motion", "arguments", "value"), KNOWN)
+def test_the_error_estimate_covers_another_computation(motion, arguments, value):
+    result = microslip.solve(motion, **arguments)
     assert result.converged
-    assert result.mu_macro == pytest.approx(0.34733, abs=result.mu_macro_error)
+    assert result.answer.value == pytest.approx(value, abs=result.answer.error)

@@ -7,7 +7,7 @@ from scipy.integrate import quad
 from scipy.optimize import brentq
 
 import microslip
-from microslip.theory import hertz
+from microslip.theory import exact, hertz
 from microslip.theory.exact import largest_drop_bore, largest_drop_transverse
 
 
@@ -42,6 +42,7 @@ def test_bore_drop_is_what_the_work_balance_allows(velocity):
 NUMERICAL = [
     *(("transverse", "radial", 0.0, r * a, a) for r in (0.75, 3.0) for a in (0.3, 40.0)),
     ("transverse", "slider", 0.0, 3.0, 3.0),
+    ("longitudinal", "radial", 0.0, 1.2, 1.0),
     ("transverse", "polar", 0.5, 6.0, 5.0),
     *(("bore", "polar", 0.5, 1.5, a) for a in (0.3, 2.0, 20.0)),
 ]
@@ -49,7 +50,7 @@ NUMERICAL = [
 
 @pytest.mark.parametrize(("motion", "model", "nu", "velocity", "amplitude"), NUMERICAL)
 def test_contacts_lie_within(motion, model, nu, velocity, amplitude):
-    drop = {"transverse": largest_drop_transverse, "bore": largest_drop_bore}[motion]
+    drop = getattr(exact, f"largest_drop_{motion}")
     result = microslip.solve(motion, velocity, amplitude, poisson=nu, model=model, tolerance=2e-3)
     assert result.model == model and result.converged
     lowest = 1.0 - drop(velocity, amplitude)
