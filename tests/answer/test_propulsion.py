@@ -29,6 +29,16 @@ def rigid_eight(velocity):
     return quad(forward, 0.0, 2.0 * np.pi, points=inside, limit=400)[0] / (2.0 * np.pi)
 
 
+def rigid_pressed(velocity, reach, load):
+    """Friction of a rigid contact under a load 1 + load sin(t), with the forward rate -reach
+    sin(t).
+
+    The contact slides forward while sin(t) < velocity / reach.
+    """
+    share = velocity / reach
+    return 2.0 / np.pi * (np.arcsin(share) - load * np.sqrt(1.0 - share**2))
+
+
 @pytest.mark.slow
 def test_a_rigid_contact_on_an_eight():
     stall = rigid_eight(0.0)
@@ -39,6 +49,17 @@ def test_a_rigid_contact_on_an_eight():
     assert line.converged, line.reason
     assert abs(line.stall_force + stall) <= line.stall_force_error
     assert abs(line.no_load_velocity - fastest) <= line.no_load_velocity_error
+
+
+@pytest.mark.slow
+def test_a_stiff_contact_under_an_oscillating_load_in_closed_form():
+    """The path is forty times u_lim, and an elastic contact lags by about one u_lim."""
+    line = microslip.propulsion("normal:forward=1,load=0.0125,phase=90", 40.0)
+    assert line.converged, line.reason
+    late = 2.0 / 40.0  # u_lim lost at each of two turns, over a half stroke
+    assert line.stall_force == pytest.approx(-rigid_pressed(0.0, 40.0, 0.5), abs=late)
+    fastest = brentq(lambda v: rigid_pressed(v, 40.0, 0.5), 0.0, 40.0)
+    assert line.no_load_velocity == pytest.approx(fastest, rel=2.0 * late)
 
 
 @pytest.mark.slow
