@@ -144,7 +144,7 @@ REFUSED = {
     "few points": (lambda c: c.isel(point=slice(20)), "point"),
     "thin": (lambda c: c.thin(node=2), "node"),
     "stacked": (lambda c: c.stack(z=["cell", "node"]), "cell"),
-    "averaged": (lambda c: c.mean("cell"), "cell"),
+    "averaged": (lambda c: c.mean("cell", keep_attrs=True), "cell"),
     "renamed": (lambda c: c.rename(mu_macro="friction"), "mu_macro"),
     "no border": (lambda c: c.drop_vars("cell_low"), "cell_low"),
     "no attributes": (lambda c: c.drop_attrs(), CHECKSUMS),
