@@ -234,8 +234,8 @@ def response(path: str, output: str | None = None, **arguments: Any) -> Answer:
 
     The result contains forces, torque, dissipated energy and stick fraction, with error estimates.
     The file can have the columns forward, lateral and angle.  The file can also have one of the
-    columns load and indentation.  Each heading contains the unit, as in forward [um].  `load` is
-    the load of the reference state.
+    columns load and indentation.  Each heading contains the unit, for example `forward [um]`.
+    `load` is the load of the reference state.
     """
     import microslip
 
@@ -257,7 +257,7 @@ def fold(record: str, output: str = "", rows: int = 32, **arguments: str) -> Ans
     The slow drift is removed, and the periods are averaged.  The standard error accounts for the
     scatter between the periods and for a slow drift of the frequency.  The record must have the
     column time.  The record can have the columns forward, lateral and angle, and one of the columns
-    load and indentation.  Each heading contains the unit, as in time [s],lateral [um].
+    load and indentation.  Each heading contains the unit, for example `time [s],lateral [um]`.
     """
     from microslip.foundation.number_text import number_text
     from microslip.si.fold import fold as fold_record

@@ -55,7 +55,8 @@ class Product(NamedTuple):
     rule : str
         Rule that makes the product: "dataset", "figure" or "explorer".
     stem : str
-        Name of the files without extension: the name of the product and the hash of its content.
+        Name of the files, without extension. It consists of the name of the product and the hash of
+        its content.
     links : dict of str to str
         Extension of each file, keyed by the plain name of the link to it.
     inputs : tuple of str
@@ -119,8 +120,8 @@ class Plan:
         return Product(kind, rule, stem, links, inputs)
 
     def _batches(self, name: str) -> dict[str, Batch | None]:
-        """Return the batches of a product in the order of the requests.  The keys are the paths of
-        the batches without extension.
+        """Return the batches of a product in the order of the requests.  The keys are the paths,
+        without extension, of the batch files.
 
         A certified map has one batch with all points.  The value of this batch in the dict is None,
         because the requests of the batch depend on results.
@@ -152,7 +153,7 @@ class Results:
     Attributes
     ----------
     stems : dict of str to str
-        Name of the files of each product without extension, keyed by the name of the product.
+        Name, without extension, of the files of each product, keyed by the name of the product.
     missing : dict of str to list of str
         Paths of the inputs of each product that the folder lacks, keyed by the name of the product.
         Datasets come first, then batches.
@@ -219,9 +220,9 @@ class Results:
         return {path: batch for path, batch in needed.items() if not path.exists()}
 
     def batches(self, certified: bool) -> list[str]:
-        """Return the names of the missing batch files that are needed for missing products, without
-        extension.  If `certified` is true, only batches of certified maps are returned.  If
-        `certified` is false, all other batches are returned."""
+        """Return the names, without extension, of the missing batch files that missing products
+        need.  If `certified` is true, only batches of certified maps are returned.  If `certified`
+        is false, all other batches are returned."""
         return [path.stem for path, b in self._needed.items() if (b is None) == certified]
 
     def new_points(self) -> str:

@@ -44,7 +44,7 @@ def make_products(job: Any) -> None:
 def make(plan: Plan, name: str, stem: Path, inputs: list[Path]) -> None:
     """Make the files of a product.  The plain names of the product become links to these files.
 
-    stem: path of the files without extension.  inputs: datasets, then batch files.
+    stem: path, without extension, of the files.  inputs: datasets, then batch files.
 
     Raises SourcesEdited if the code has changed since the job was planned.
     """

@@ -284,7 +284,8 @@ def _unit_gauss(n: int, power: int) -> tuple[np.ndarray, np.ndarray]:
 
 @lru_cache
 def _smooth_ends_gauss(n: int) -> tuple[np.ndarray, np.ndarray]:
-    """Return a Gauss-Legendre rule on [0, 1], clustered at both ends by t -> 3 t^2 - 2 t^3."""
+    """Return a Gauss-Legendre rule on [0, 1] whose nodes are clustered at both ends by the map
+    t -> 3 t^2 - 2 t^3."""
     x, w = np.polynomial.legendre.leggauss(n)
     t, w = 0.5 * (x + 1.0), 0.5 * w
     return t * t * (3.0 - 2.0 * t), w * 6.0 * t * (1.0 - t)

@@ -72,9 +72,9 @@ def _pairs(angles: int, symmetry: str) -> tuple[list[tuple[Wave, Wave]], list[tu
     """Return two lists of pairs of waves at nu > 0.  The first list contains the coupled pairs, and
     the second list contains the pairs without coupling.
 
-    A wave is described by (m, part): part 0 is e^{i m theta}, and part 1 is i e^{i m theta}.  The
-    shortest waves of a whole disc or a rotation are not coupled, because the cosine of these waves
-    is 0 at all points.
+    A wave is described by (m, part): part 0 is e^{i m theta}, and part 1 is i e^{i m theta}.  For a
+    whole disc or a rotation, the waves of the shortest wavelength are not coupled, because their
+    cosine is 0 at all points.
     """
     step = 2 if symmetry == TRANSLATION else 1
     parts = (0,) if symmetry == ROTATION else (0, 1)

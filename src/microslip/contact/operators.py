@@ -72,7 +72,7 @@ def plus(a: tuple, b: tuple) -> tuple:
 
 @kernel(inline="always")
 def plus_multiple(total: tuple, numbers: tuple, factor: float) -> tuple:
-    """Return the sum of `total` and `factor` times `numbers`."""
+    """Return `total` + `factor` * `numbers`."""
     return (
         fused(numbers[0], factor, total[0]),
         fused(numbers[1], factor, total[1]),

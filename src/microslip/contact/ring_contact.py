@@ -300,9 +300,9 @@ class RingContact(Contact):
 
         Rings join or leave the contact only at the last stage of a step. The integrator would carry
         over a jump at an earlier stage to the later stages.  If a ring joins at the last stage, the
-        integrator strains it during the fraction 1 / (1 + carried) of the step.  On average, the
-        ring should be strained during half of the step.  To make up for the difference, the contact
-        radius is evaluated at an earlier time.
+        integrator strains the ring only for a part of the step, namely the fraction
+        `1 / (1 + carried)`.  On average, the ring should be strained during half of the step.  To
+        make up for the difference, the contact radius is evaluated at an earlier time.
         """
         assert path.depth is not None  # otherwise the bounds are constant
         stages = len(path.carry)

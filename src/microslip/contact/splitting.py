@@ -1,4 +1,4 @@
-"""Douglas-Rachford splitting for the Coulomb steps of a contact on rings, in compiled code.
+"""Compiled Douglas-Rachford splitting that solves the Coulomb steps of a contact made of rings.
 
 The unknowns of a step are tractions q with |q| <= g.  The slip b - A q occurs only where |q| = g,
 in the direction of q.  A driven body adds one unknown, its displacement d, which is added to b, and

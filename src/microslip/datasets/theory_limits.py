@@ -16,7 +16,7 @@ CURVE_POINTS = 241
 
 
 def formulas(motion: str, pressure: str = "hertz") -> dict:
-    """Return the closed forms for a motion and a pressure, given by their names.
+    """Return the closed forms for the motion and the pressure with the given names.
 
     The result is a dict of catalogue.ClosedForm by name.  The dict is empty if no closed form is
     known.

@@ -23,8 +23,8 @@ constant force."""
 
 
 def without_array(value: Any) -> Any:
-    """Return the number in a NumPy array without dimensions, or in a DataArray with one value and
-    without a unit.  Return every other value unchanged.
+    """Extract the number from a NumPy array without dimensions, or from a DataArray with one value
+    and no unit.  Return every other value unchanged.
 
     Arrays of other libraries, masked arrays and arrays with a unit are also returned unchanged.
     """

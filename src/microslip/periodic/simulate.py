@@ -386,8 +386,8 @@ class _Search:
             yield Start(tractions, np.array([place, 0.0]), friction=run.mu)
 
     def _similar_runs(self, guess: Run | None) -> Iterator[Run]:
-        """Yield runs with a similar state. The first run is the guess, if there is one. The second
-        run has fewer steps (see `COARSENING`)."""
+        """Yield runs with a similar state. If a guess is given, it is the first run. The second run
+        has fewer steps (see `COARSENING`)."""
         if guess is not None:
             yield guess
         if self.resolution.steps >= PREPARED_FROM:

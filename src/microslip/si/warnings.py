@@ -87,8 +87,8 @@ def _checks(text: str) -> tuple[tuple[Rule, ...], ...]:
     """Parse groups of rules.
 
     text: a line "condition; condition: sentence" for each rule, and an empty line between groups.
-    A condition is "left > right" or "left > number right", where left and right are measures or
-    numbers.
+    A condition is "left > right" or "left > k right". Here, left and right are measures or numbers.
+    The number k multiplies the right side.
     """
 
     def side(word: str) -> float | str:

@@ -1,9 +1,9 @@
 """Compare the static limit of the two oscillating motions with the paper's formulas for this limit.
 
-Inside the stick zone, the paper's formulas include the whole friction bound, although the
-oscillation uses a part of it (see microslip.periodic.static_limit).  The paper's own runs do not
-show the resulting difference, because their velocity is too large and their resolution is too
-coarse.
+Inside the stick zone, the paper's formulas let the whole friction bound resist the forward motion,
+although the oscillation uses a part of this bound (see microslip.periodic.static_limit).  The
+paper's own runs do not show the resulting difference, because their velocity is too large and their
+resolution is too coarse.
 """
 
 from __future__ import annotations

@@ -89,7 +89,9 @@ def shown_by(checks: pd.DataFrame) -> str:
 
 
 def where(checks: pd.DataFrame) -> str:
-    """Return a text that states where a part holds, such as "amplitude 1 to 3; not at amplitude 5".
+    """Return a string that states where a part holds.
+
+    An example is "amplitude 1 to 3; not at amplitude 5".
 
     Checks are grouped by amplitude, or by velocity for a steady motion.  If some checks of a group
     hold and some fail, the text lists the velocities of the failing checks.

@@ -1,4 +1,4 @@
-"""Results about friction without simulation: upper bounds, closed forms and kinks.
+"""Results about friction that need no simulation: upper bounds, closed forms and kinks.
 
 Upper bounds limit the reduction of friction by vibration. Over a period, all work of the contact
 forces is dissipated, because the elastic energy is periodic. Every point slips forward by velocity

@@ -50,8 +50,8 @@ def checked(
 ) -> np.ndarray:
     """Check the range of `values`, and return them as a float array.
 
-    Raises ValueError unless all values are finite with low <= value <= high (low < value if
-    `low_open`).
+    Raises ValueError if a value is not finite or is outside [low, high]. If `low_open` is true, the
+    value low is also refused.
     """
     array = np.asarray(values, dtype=float)
     good = np.isfinite(array) & (array <= high) & ((array > low) if low_open else (array >= low))
@@ -76,7 +76,7 @@ def friction_bound(r: Numbers) -> Numbers:
 def load_inside(r: Numbers) -> Numbers:
     """Return the fraction of the Hertz load within the radius r, which is 1 - (1 - r^2)^(3/2).
 
-    Raises ValueError unless r >= 0; the argument can have any shape. The result is dimensionless.
+    Raises ValueError unless r >= 0. The argument can have any shape. The result is dimensionless.
     The result equals 1 for r >= 1.
     """
     return mindlin_force(np.minimum(checked("r", r), 1.0) ** 2)
@@ -103,7 +103,7 @@ def D(c: Numbers) -> Numbers:
     """Return the difference K(k) - E(k) of the elliptic integrals at the modulus k = sqrt(1 - c^2)
     (Eqs 25, 26).
 
-    Raises ValueError unless 0 < c <= 1; the argument can have any shape. The result is
+    Raises ValueError unless 0 < c <= 1. The argument can have any shape. The result is
     dimensionless. For small c, D is about ln(4/c) - 1, so D tends to infinity as c tends to 0. D
     decreases as c increases, and D(1) is 0.
     """
@@ -127,7 +127,7 @@ def D_half() -> float:
 def lubkin_angle(stick_radius: Numbers, poisson: float = 0.0) -> Numbers:
     """Return the angle of pure torsion from rest as a function of the stick radius (Eq 24).
 
-    Raises ValueError unless 0 < stick_radius <= 1 and 0 <= poisson <= 0.5; the arguments are
+    Raises ValueError unless 0 < stick_radius <= 1 and 0 <= poisson <= 0.5. The arguments are
     broadcast. Returns an angle in u_lim/a.
     """
     stick_radius = checked("stick_radius", stick_radius, high=1.0, low_open=True)
@@ -137,7 +137,7 @@ def lubkin_angle(stick_radius: Numbers, poisson: float = 0.0) -> Numbers:
 def lubkin_stick_radius(angle: Numbers, poisson: float = 0.0) -> Numbers:
     """Return the stick radius after pure torsion from rest by `angle` (inverse of Eq 24).
 
-    Raises ValueError unless angle >= 0 in u_lim/a and 0 <= poisson <= 0.5; the arguments are
+    Raises ValueError unless angle >= 0 in u_lim/a and 0 <= poisson <= 0.5. The arguments are
     broadcast. Returns a radius above 0 and at most 1. At the angle 0, the radius is 1. Because the
     centre never slips, a radius that would underflow is replaced by the smallest normal float.
     """
@@ -158,7 +158,7 @@ def lubkin_stick_radius(angle: Numbers, poisson: float = 0.0) -> Numbers:
 def bore_angle(amplitude: Numbers, poisson: float = 0.0) -> Numbers:
     """Convert a bore amplitude phi~ to the angle phi0 = phi~ phi_lk(1/2) (Eq 27).
 
-    Raises ValueError unless amplitude >= 0 and 0 <= poisson <= 0.5; the arguments are broadcast.
+    Raises ValueError unless amplitude >= 0 and 0 <= poisson <= 0.5. The arguments are broadcast.
     Returns an angle in u_lim/a.
     """
     return checked("amplitude", amplitude) * _twist_unit(poisson) * D_half()
@@ -174,7 +174,7 @@ def bore_amplitude(angle: Numbers, poisson: float = 0.0) -> Numbers:
     """Convert an angle to a bore amplitude (Eq 27, the inverse of bore_angle).
 
     The amplitude is phi~ = phi0 / phi_lk(1/2). Raises ValueError unless angle >= 0 in u_lim/a and 0
-    <= poisson <= 0.5; the arguments are broadcast. Returns a dimensionless array.
+    <= poisson <= 0.5. The arguments are broadcast. Returns a dimensionless array.
     """
     return checked("angle", angle) / (_twist_unit(poisson) * D_half())
 
@@ -189,7 +189,7 @@ def mindlin_force(u: Numbers) -> Numbers:
     """Return the tangential force after the displacement u from rest, which is 1 - (1 - u)^(3/2).
 
     This expression is the formula of Cattaneo and Mindlin. The force is divided by mu*F_z, and is 1
-    for u >= 1. Raises ValueError unless u >= 0 in u_lim; the argument can have any shape.
+    for u >= 1. Raises ValueError unless u >= 0 in u_lim. The argument can have any shape.
     """
     u = np.minimum(checked("u", u), 1.0)
     with np.errstate(divide="ignore"):  # ln 0 = -inf gives the force 1 of full sliding
@@ -199,7 +199,7 @@ def mindlin_force(u: Numbers) -> Numbers:
 def mindlin_stick_radius(u: Numbers) -> Numbers:
     """Return the stick radius after the displacement u from rest, which is sqrt(1 - u) (Eq 8).
 
-    Raises ValueError unless u >= 0 in u_lim; the argument can have any shape. The radius is in
+    Raises ValueError unless u >= 0 in u_lim. The argument can have any shape. The radius is in
     units of a. The radius equals 0 for u >= 1.
     """
     return np.sqrt(1 - np.minimum(checked("u", u), 1.0))
@@ -211,7 +211,7 @@ def mindlin_traction(r: Numbers, u: Numbers) -> Numbers:
     The traction is g - g_c in the stick zone, and the friction bound g in the slip annulus
     (Cattaneo and Mindlin). Here g_c = 3/(2 pi) sqrt(c^2 - r^2) is the friction bound of an inner
     contact of radius c = sqrt(1 - u). The formula is exact for nu = 0. Raises ValueError unless r
-    >= 0 and u >= 0 in u_lim; the arguments are broadcast. The result is dimensionless.
+    >= 0 and u >= 0 in u_lim. The arguments are broadcast. The result is dimensionless.
     """
     r, u = np.broadcast_arrays(checked("r", r), np.minimum(checked("u", u), 1.0))
     gap = 1 - u - r * r
@@ -225,7 +225,7 @@ def lubkin_share(r: Numbers, stick_radius: Numbers) -> Numbers:
     """Return the ratio tau/g of traction to friction bound at the radius r in pure torsion from
     rest.
 
-    Raises ValueError unless r >= 0 and 0 <= stick_radius <= 1; the arguments are broadcast. The
+    Raises ValueError unless r >= 0 and 0 <= stick_radius <= 1. The arguments are broadcast. The
     stick radius is 0 if all points slip. The ratio is between 0 and 1, equals 1 outside the stick
     radius, and is independent of Poisson's ratio. The formula is the closed form of a superposition
     of rotating punches (Lubkin 1951). The radii s of the punches range from c to 1, and a punch of
@@ -249,7 +249,7 @@ def lubkin_share(r: Numbers, stick_radius: Numbers) -> Numbers:
 def lubkin_traction(r: Numbers, stick_radius: Numbers) -> Numbers:
     """Return the circumferential traction at the radius r in pure torsion from rest.
 
-    Raises ValueError unless r >= 0 and 0 <= stick_radius <= 1; the arguments are broadcast. The
+    Raises ValueError unless r >= 0 and 0 <= stick_radius <= 1. The arguments are broadcast. The
     result is dimensionless and equals the friction bound in the slip annulus. See lubkin_share.
     """
     return lubkin_share(r, stick_radius) * friction_bound(r)
@@ -258,7 +258,7 @@ def lubkin_traction(r: Numbers, stick_radius: Numbers) -> Numbers:
 def lubkin_torque(stick_radius: Numbers) -> Numbers:
     """Return the torque of pure torsion from rest as a function of the stick radius.
 
-    Raises ValueError unless 0 <= stick_radius <= 1; the argument can have any shape. The torque is
+    Raises ValueError unless 0 <= stick_radius <= 1. The argument can have any shape. The torque is
     in mu*F_z*a. For every Poisson's ratio, the torque is 0 at the stick radius 1 and
     TORQUE_FULL_SLIP at the stick radius 0. The torque is the integral of lubkin_traction. The
     torque also equals the sum of the torques of rotating punches whose radii s range from c to 1

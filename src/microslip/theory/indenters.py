@@ -252,7 +252,9 @@ def static_stick_zone_of(pressure: Callable[[float], float], stick_radius: Numbe
 
 
 def bore_of(pressure: Callable[[float], float], velocity: Numbers) -> tuple[Numbers, Numbers]:
-    """Compute the force and the torque of the steady continuous bore (Eqs 17 and 18).
+    """Compute the force and the torque for sliding with a steady rotation (Eqs 17 and 18).
+
+    The rotation is about the contact normal.
 
     Parameters
     ----------

@@ -1,11 +1,11 @@
 """Masing's rules: closed-form friction under longitudinal oscillation, and the Iwan model.
 
 If the sphere moves along a line, the tangential force depends only on the history of its
-displacement. During the first loading, the force is F(d), with d in u_lim and F in mu F_z. For a
-sphere, the force is 1 - (1 - d)^(3/2) (Cattaneo and Mindlin). After each turning point, the force
-follows the same curve at twice the scale until the previous turning point is reached. From the
-previous turning point on, the force follows the older branch. These rules are exact for Poisson's
-ratio 0. Quantities are dimensionless as in `paper`.
+displacement. During the first loading, the force is F(d), where d is in units of u_lim and F is in
+units of mu F_z. For a sphere, the force is 1 - (1 - d)^(3/2) (Cattaneo and Mindlin). After each
+turning point, the force follows the same curve at twice the scale until the previous turning point
+is reached. From the previous turning point on, the force follows the older branch. These rules are
+exact for Poisson's ratio 0. Quantities are dimensionless as in `paper`.
 
 An Iwan model consists of parallel Jenkins elements, each of which is a spring in series with a
 slider. Let F(u) be the force of the first loading along one line at nu = 0. Let P(d) be the load at

@@ -30,7 +30,7 @@ def large_amplitude_transverse(velocity: Numbers, amplitude: Numbers) -> Numbers
     The rigid slider is the large-amplitude limit of the contact. The friction is (2/pi) K(m), where
     K is the complete elliptic integral of the first kind. The parameter is m =
     -(amplitude/velocity)^2. The friction is 1 at amplitude 0, and 0 at velocity 0 for every
-    amplitude above 0. Raises ValueError unless velocity >= 0 and amplitude >= 0; the arguments are
+    amplitude above 0. Raises ValueError unless velocity >= 0 and amplitude >= 0. The arguments are
     broadcast.
     """
     velocity, amplitude = checked("velocity", velocity), checked("amplitude", amplitude)
@@ -47,7 +47,7 @@ def large_amplitude_transverse(velocity: Numbers, amplitude: Numbers) -> Numbers
 def static_slider(amplitude: Numbers) -> Numbers:
     """Return the static friction of a slider on a spring, which is sqrt(1 - amplitude^2) (Eq 7).
 
-    Raises ValueError unless amplitude >= 0; the argument can have any shape. The friction is 0 for
+    Raises ValueError unless amplitude >= 0. The argument can have any shape. The friction is 0 for
     amplitude >= 1.
     """
     amplitude = np.minimum(checked("amplitude", amplitude), 1.0)
@@ -57,7 +57,7 @@ def static_slider(amplitude: Numbers) -> Numbers:
 def stick_radius_transverse(amplitude: Numbers) -> Numbers:
     """Return the stick radius under transverse oscillation alone (Eq 8).
 
-    The radius is sqrt(1 - amplitude). Raises ValueError unless amplitude >= 0; the argument can
+    The radius is sqrt(1 - amplitude). Raises ValueError unless amplitude >= 0. The argument can
     have any shape. The radius is 0 for amplitude >= 1.
     """
     return hertz.mindlin_stick_radius(checked("amplitude", amplitude))
@@ -67,7 +67,7 @@ def static_stick_zone(stick_radius: Numbers) -> Numbers:
     """Return the fraction of the Hertz load inside the stick radius, which is 1 - (1 - c^2)^(3/2)
     (Eq 10).
 
-    Raises ValueError unless 0 <= stick_radius <= 1; the argument can have any shape.
+    Raises ValueError unless 0 <= stick_radius <= 1. The argument can have any shape.
     """
     return hertz.load_inside(checked("stick_radius", stick_radius, high=1.0))
 
@@ -75,7 +75,7 @@ def static_stick_zone(stick_radius: Numbers) -> Numbers:
 def static_transverse(amplitude: Numbers) -> Numbers:
     """Return the paper's static friction under transverse oscillation.
 
-    The friction is 1 - amplitude^(3/2) (Eq 11). Raises ValueError unless amplitude >= 0; the
+    The friction is 1 - amplitude^(3/2) (Eq 11). Raises ValueError unless amplitude >= 0. The
     argument can have any shape. The friction is 0 for amplitude >= 1. For the exact limit, see
     static_limit_transverse.
     """
@@ -86,9 +86,9 @@ def static_transverse(amplitude: Numbers) -> Numbers:
 def rotation_centre(velocity: Numbers, time: Numbers = 0.0) -> tuple:
     """Return the instantaneous centre of rotation (lateral, forward) in the frame at rest (Eq 14).
 
-    Raises ValueError unless velocity >= 0 and time t~ = t v0/a >= 0; the arguments are broadcast.
-    Returns the pair of arrays (-velocity, time). In Eq 13, the paper writes t/(v0 a). This
-    expression is not dimensionless.
+    The time is dimensionless: t~ = t v0/a. Raises ValueError unless velocity >= 0 and time >= 0.
+    The arguments are broadcast. Returns the pair of arrays (-velocity, time). In Eq 13, the paper
+    writes t/(v0 a). This expression is not dimensionless.
     """
     velocity, time = checked("velocity", velocity), checked("time", time)
     return 0 * time - velocity, time + 0 * velocity
@@ -101,7 +101,7 @@ def steady_bore_traction(lateral: Numbers, forward: Numbers, velocity: Numbers) 
     (-forward, velocity + lateral). At the centre of rotation, the traction is 0. The sign that is
     wrong in Eq 15 of the paper is corrected here. The mean lateral force is 0 (Eq 16). The
     arguments `lateral` and `forward` are the position relative to the contact centre. Raises
-    ValueError unless velocity >= 0; the arguments are broadcast.
+    ValueError unless velocity >= 0. The arguments are broadcast.
     """
     lateral = checked("lateral", lateral, low=-np.inf)
     forward = checked("forward", forward, low=-np.inf)
@@ -117,7 +117,7 @@ def forward_kernel(ratio: Numbers) -> Numbers:
     The kernel is the forward friction of a ring, divided by the friction bound. The radius of the
     ring is ratio*velocity.
 
-    Raises ValueError unless ratio >= 0; the argument can have any shape. For ratio <= 1, the kernel
+    Raises ValueError unless ratio >= 0. The argument can have any shape. For ratio <= 1, the kernel
     is 4 E(k) at the modulus k = ratio. For ratio > 1, the kernel is Q_M(1/ratio). The kernel
     decreases from 2 pi at ratio 0 to 4 at ratio 1, and approaches pi/ratio at large ratios.
     """
@@ -131,7 +131,7 @@ def torque_kernel(ratio: Numbers) -> Numbers:
     The kernel is the torque of a ring, divided by the product of the friction bound and the radius.
     The radius of the ring is ratio*velocity.
 
-    Raises ValueError unless ratio >= 0; the argument can have any shape. For ratio <= 1, the kernel
+    Raises ValueError unless ratio >= 0. The argument can have any shape. For ratio <= 1, the kernel
     is 4 (E - (1 - k^2) K)/k at the modulus k = ratio. For ratio > 1, the kernel is Q_Y(1/ratio).
     At small ratios, the kernel is about pi times the ratio. The kernel is 4 at ratio 1, and
     approaches 2 pi at large ratios.
@@ -153,11 +153,12 @@ def _ring_integrals(ratio: Numbers) -> tuple[np.ndarray, np.ndarray, np.ndarray]
 
 
 def bore_forward(velocity: Numbers) -> Numbers:
-    """Return the forward friction of the steady continuous bore under Hertz pressure (Eq 21).
+    """Return the forward friction for sliding with a steady rotation (Eq 21).
 
+    The rotation is about the contact normal, and the pressure is that of Hertz.
     The friction is (3 pi/8)(v - v^3/4) for v <= 1. For v > 1, the friction is 2F1(-1/2, 1/2; 5/2;
     1/v^2), where 2F1 is the hypergeometric function. The friction tends to 1 at large velocities.
-    Raises ValueError unless velocity >= 0; the argument can have any shape.
+    Raises ValueError unless velocity >= 0. The argument can have any shape.
     """
     velocity = checked("velocity", velocity)
     slow = np.minimum(velocity, 1.0)
@@ -175,7 +176,7 @@ def bore_torque(velocity: Numbers) -> Numbers:
 
     The torque is divided by its value at velocity 0. For v <= 1, the result is 1 - v^2 + (3/8) v^4.
     For v > 1, the result is 16/(15 pi v) 2F1(1/2, 1/2; 7/2; 1/v^2). Raises ValueError unless
-    velocity >= 0; the argument can have any shape.
+    velocity >= 0. The argument can have any shape.
     """
     velocity = checked("velocity", velocity)
     slow, inverse = np.minimum(velocity, 1.0) ** 2, 1 / np.maximum(velocity, 1.0)
@@ -189,7 +190,7 @@ def large_amplitude_bore(velocity: Numbers) -> Numbers:
     """Return the quasi-steady forward friction under oscillating bore of large amplitude (Eq 29).
 
     The friction is the mean of bore_forward(velocity/cos(tau)) over tau. Raises ValueError unless
-    velocity >= 0; the argument can have any shape.
+    velocity >= 0. The argument can have any shape.
     """
     velocity = checked("velocity", velocity)
     fast, slow = np.maximum(velocity, 1.0), np.clip(velocity, np.finfo(float).tiny, 1 - 1e-16)
@@ -225,7 +226,7 @@ def _slow_mean(velocity: np.ndarray) -> np.ndarray:
 def bore_amplitude_at(stick_radius: Numbers) -> Numbers:
     """Return the bore amplitude at which the stick radius is c.
 
-    The amplitude is D(c)/D(1/2) (Eqs 30, 31). Raises ValueError unless 0 < stick_radius <= 1; the
+    The amplitude is D(c)/D(1/2) (Eqs 30, 31). Raises ValueError unless 0 < stick_radius <= 1. The
     argument can have any shape.
     """
     stick_radius = checked("stick_radius", stick_radius, high=1.0, low_open=True)
@@ -235,7 +236,7 @@ def bore_amplitude_at(stick_radius: Numbers) -> Numbers:
 def bore_stick_radius(amplitude: Numbers) -> Numbers:
     """Return the stick radius under oscillating bore alone (Eq 32, inverse of bore_amplitude_at).
 
-    Raises ValueError unless amplitude >= 0; the argument can have any shape. The radius is above 0
+    Raises ValueError unless amplitude >= 0. The argument can have any shape. The radius is above 0
     and at most 1.
     """
     return hertz.lubkin_stick_radius(hertz.bore_angle(amplitude))
@@ -245,7 +246,7 @@ def static_bore(amplitude: Numbers) -> Numbers:
     """Return the paper's static friction under oscillating bore (Eq 33, corrected).
 
     The friction is 1 - (1 - c^2)^(3/2). This expression is Eq 10. The stick radius c is given by Eq
-    32. For the exact limit, see static_limit_bore. Raises ValueError unless amplitude >= 0; the
+    32. For the exact limit, see static_limit_bore. Raises ValueError unless amplitude >= 0. The
     argument can have any shape.
     """
     return static_stick_zone(bore_stick_radius(amplitude))
@@ -255,7 +256,7 @@ def static_bore_printed(amplitude: Numbers) -> Numbers:
     """Return the static friction by Eq 33 as printed, which is 1 - (1 - c)^(3/2).
 
     The printed equation contains c in place of the c^2 of Eq 10. This function is for comparison
-    only. Raises ValueError unless amplitude >= 0; the argument can have any shape.
+    only. Raises ValueError unless amplitude >= 0. The argument can have any shape.
     """
     return static_stick_zone(np.sqrt(bore_stick_radius(amplitude)))
 
@@ -266,10 +267,11 @@ def static_bore_printed(amplitude: Numbers) -> Numbers:
 def static_limit_transverse(amplitude: Numbers) -> Numbers:
     """Return the exact static friction under transverse oscillation for Poisson's ratio 0.
 
-    The static friction is the limit v -> 0. Let g_c be the inner bound of mindlin_traction. The
-    friction is the integral of sqrt(g^2 - (g - g_c)^2) over the stick zone. The friction is 0 for
-    amplitude >= 1. For other Poisson's ratios, Mindlin's traction and this limit are
-    approximations. Raises ValueError unless amplitude >= 0; the argument can have any shape.
+    The static friction is the limit v -> 0. Let g_c be the inner bound that the function
+    mindlin_traction uses. The friction is the integral of sqrt(g^2 - (g - g_c)^2) over the stick
+    zone. The friction is 0 for amplitude >= 1. For other Poisson's ratios, Mindlin's traction and
+    this limit are approximations. Raises ValueError unless amplitude >= 0. The argument can have
+    any shape.
     """
     amplitude = np.minimum(checked("amplitude", amplitude), 1.0)
     step, bound, inner = _stick_zone_rule(np.sqrt(1 - amplitude), np.sqrt(amplitude))
@@ -280,9 +282,9 @@ def static_limit_transverse(amplitude: Numbers) -> Numbers:
 def static_limit_longitudinal(amplitude: Numbers) -> Numbers:
     """Return the static friction under longitudinal oscillation, which is (1 - amplitude)^(3/2).
 
-    The friction is the integral of g_c, the inner bound of mindlin_traction. For amplitude >= 1,
-    the friction is 0. The limit is exact for Poisson's ratio 0. Raises ValueError unless amplitude
-    >= 0 in u_lim; the argument can have any shape.
+    The friction is the integral of g_c, the inner bound that the function mindlin_traction uses.
+    For amplitude >= 1, the friction is 0. The limit is exact for Poisson's ratio 0. Raises
+    ValueError unless amplitude >= 0 in u_lim. The argument can have any shape.
     """
     return (1 - np.minimum(checked("amplitude", amplitude), 1.0)) ** 1.5
 
@@ -293,7 +295,7 @@ def static_limit_bore(amplitude: Numbers) -> Numbers:
     The friction is the integral of (2/pi) g arccos(tau/g) over the stick zone. The integrand is the
     average over the angle of the largest forward traction. The limit is exact for every Poisson's
     ratio. The reason is that, for a given phi~, neither the stick radius nor the torsional traction
-    tau depends on Poisson's ratio. Raises ValueError unless amplitude >= 0; the argument can have
+    tau depends on Poisson's ratio. Raises ValueError unless amplitude >= 0. The argument can have
     any shape.
     """
     c = np.asarray(bore_stick_radius(amplitude))

@@ -102,5 +102,8 @@ class DenseContact:
 
 
 def dense(solve: Solve, prepare: Callable | None = None) -> Callable:
-    """Return a function for Method.dress: `dress(contact, **parameters)` returns a DenseContact."""
+    """Return a function that can be used as Method.dress.
+
+    The function takes `(contact, **parameters)` and returns a DenseContact.
+    """
     return lambda contact, **parameters: DenseContact(contact, solve, prepare, **parameters)

@@ -205,13 +205,13 @@ def literal(text: object) -> str:
 
 
 def width(text: str, size: float) -> float:
-    """Return the width in inches of a text at a font size in points. The text can contain
+    """Return the width in inches of a string at a font size in points. The string can contain
     mathtext."""
     return TextPath((0, 0), text, size=size).get_extents().width / 72.0
 
 
 def wrapped(text: str, room: float, size: float) -> str:
-    """Break a text into lines that are at most `room` inches wide, at a font size in points.
+    """Break a string into lines that are at most `room` inches wide, at a font size in points.
 
     Lines are broken at spaces outside mathtext, and inside words that are wider than a line.
     """
