@@ -106,7 +106,10 @@ def open_map(
 
 
 def _opened(path: Path, **how: Any) -> xr.Dataset:
-    dataset = xr.open_dataset(path, engine="netcdf4", **how)
+    try:
+        dataset = xr.open_dataset(path, engine="netcdf4", **how)
+    except (AttributeError, RuntimeError) as error:  # from netCDF4, if attributes are damaged
+        raise OSError(str(error)) from None
     for variable in dataset.variables.values():
         variable.encoding.pop("original_shape", None)  # avoids a warning when a selection is saved
     return dataset

@@ -64,6 +64,10 @@ def columns_of(table: Table, is_record: bool = False) -> dict[str, np.ndarray]:
         raise ValueError(f"no displacement and no load; allowed: some of {', '.join(COLUMNS)}")
     if not table.lines:
         raise ValueError("no line follows the heading; allowed: one for each sample")
+    gaps = np.flatnonzero(np.diff(table.lines) > 1)
+    if len(table.cells) == 1 and gaps.size:  # an empty line may be an empty cell
+        where = table.lines[gaps[0]] + 1
+        raise ValueError(f"line {where}: no number; allowed: a number in each line of one column")
     for name in columns.keys() - {"time"}:
         for row in unusual_rows(columns[name], is_record)[:1]:
             value = columns[name][row]

@@ -239,9 +239,12 @@ def numbers(name: str, values: Any) -> np.ndarray:
     """Convert an argument to an array of floats.  Raise an InputError that names the argument if
     the conversion is impossible."""
     try:
-        return np.array(values, float, order="C")
+        array = np.asanyarray(values)
+        if array.dtype.kind in "iufO" and not np.ma.is_masked(array):  # object: such as Decimal
+            return np.array(values, float, order="C")
     except (TypeError, ValueError):
-        raise InputError(name, values, "allowed is an array of numbers") from None
+        pass
+    raise InputError(name, values, "allowed is an array of numbers, none of them masked")
 
 
 @dataclass(frozen=True, eq=False)
