@@ -18,7 +18,7 @@ from microslip.foundation.files import content_of
 T = TypeVar("T")
 
 MOST_BYTES = 1_000_000
-"""Largest size of a configuration in bytes.  PyYAML reads about 100 kB per second."""
+"""Largest size of a configuration file, in bytes.  PyYAML reads about 100 kB per second."""
 MOST_VALUES = 100_000
 """Largest number of keys and values in a file, counted after expansion of aliases."""
 ROLES = ("motion", "pressure")
@@ -138,8 +138,8 @@ def _yaml_problem(error: Any, text: str) -> str:
 
 
 def reread(config: dict, paths: Iterable[str | os.PathLike]) -> dict:
-    """Return a copy of a configuration in which the values from files are replaced by those that
-    `read_yaml` reads.
+    """Return a copy of a configuration, in which the values from files have been read again with
+    `read_yaml`.
 
     Snakemake reads files as YAML 1.1, in which 1e-3 is a string and 010 is 8.
 
@@ -262,7 +262,7 @@ def _refuse_corners(sweep: Sweep) -> None:
 
 
 def _file_in(name: Any, role: str, folders: Iterable) -> named_files.NamedFile | None:
-    """Return the file that the name of a motion or pressure refers to, with its path and digest.
+    """Return the path and the digest of the file to which the name of a motion or pressure refers.
     Return None if the name does not refer to a file.
 
     Raises InputError if the file is missing.

@@ -75,7 +75,7 @@ def refuse_unknown(name: Any, names: Collection[str], problem: str, key: str = "
 
 
 def problem_of(value: Any) -> str:
-    """Return the problem of a value that is not allowed: it is missing, empty or wrong."""
+    """Return a text that states whether a refused value is missing, empty or wrong."""
     wrong = "is empty" if value in ("", [], {}) else f"{shown(value)} is not allowed"
     return "has no value" if value is None else wrong
 
@@ -304,11 +304,11 @@ class Sweep(Settings):
     """
 
     motion: Text
-    """Name of a motion, optionally with parameters as in "elliptic:forward=0.5,phase=30"; or
-    file:FILE for a data file; or the path of a Python file."""
+    """Name of a motion, optionally with parameters as in "elliptic:forward=0.5,phase=30". To use a
+    file, write file:FILE for a data file, or the path of a Python file."""
     pressure: Text = "hertz"
-    """Name of a normal pressure, optionally with parameters as in "power:exponent=1"; or file:FILE
-    for a data file; or the path of a Python file."""
+    """Name of a normal pressure, optionally with parameters as in "power:exponent=1". To use a
+    file, write file:FILE for a data file, or the path of a Python file."""
     title: Title = None
     """Title of the dataset, also used in figures. The title is plain text: $ and \\ have no special
     meaning."""
@@ -338,13 +338,13 @@ class Sweep(Settings):
         default_factory=_tolerance
     )
     """Largest accepted absolute error of mu_macro. If the tolerance is null, cells and steps must
-    be prescribed, and a point counts as converged if its runs reach the periodic state. The default
-    for a certified map is three tenths of `error`, at most 0.01."""
+    be prescribed. A point then counts as converged if its runs reach the periodic state. For a
+    certified map, the default is three tenths of `error`, but at most 0.01."""
     cells: Cells = None
-    """Number of rings, or of squares across the contact. By default, it follows from the
+    """Number of rings, or of squares across the contact. By default, this number follows from the
     tolerance."""
     steps: Steps = None
-    """Number of time steps in a period. By default, it follows from the tolerance."""
+    """Number of time steps in a period. By default, this number follows from the tolerance."""
 
     @property
     def axes(self) -> dict[str, tuple[float, ...]]:
@@ -417,11 +417,11 @@ class Figure(Settings):
     velocity: Annotated[float | None, _POSITIVE] = None
     """Velocity of the single run."""
     amplitude: Annotated[float | None, _number(0, LARGEST["amplitude"])] = None
-    """Amplitude of the single run (history)."""
+    """For histories: amplitude of the single run."""
     periods: Annotated[int | None, _number(1, 1000, 1)] = None
-    """Number of periods, starting without tractions (history)."""
+    """For histories: number of periods in the run, which starts without tractions."""
     travel: Annotated[float | None, _POSITIVE] = None
-    """Forward displacement of each run, in units of u_lim (transients)."""
+    """For transients: forward displacement of each run, in units of u_lim."""
     cells: Cells = None
     """Number of rings of the single run."""
     steps: Steps = None
@@ -429,7 +429,7 @@ class Figure(Settings):
 
     @property
     def run(self) -> dict[str, Any]:
-        """Settings of the single run; empty if the figure shows no single run."""
+        """Settings of the single run. The dict is empty if the figure shows no single run."""
         defaults = KINDS[self.kind].run
         return defaults | self.model_dump(include={*defaults}, exclude_none=True)
 
@@ -516,9 +516,9 @@ class Accuracy(Settings):
     """Study of the cost of accuracy. Its dataset is accuracy.nc."""
 
     methods: Methods = method_names()
-    """Methods to compare, with parameters as in "projected-gradient:step=0.5". A method is named
-    like its file in src/microslip/periodic/methods, but with hyphens; "shipped" is the method of
-    microslip.solve. The default is all methods."""
+    """Methods to compare, with parameters as in "projected-gradient:step=0.5". The name of a method
+    is the name of its file in src/microslip/periodic/methods, with hyphens. The name "shipped"
+    stands for the method of microslip.solve. The default is all methods."""
     points: dict[Text, StudyPoint]
     """Points at which all methods and models are run, keyed by name. Each point has a panel."""
     levels: Annotated[int, _number(1, 6, 1)] = 6
@@ -594,8 +594,8 @@ class Claims(_Grid):
     tolerance: Tolerance = 5e-4
     """Largest accepted absolute error of mu_macro."""
     cells: Annotated[int, _number(8, 64, 2)] = 32
-    """Number of rings in the runs whose tractions are evaluated. The number of angular points on
-    half the disc is the same. The error estimate comes from a run with half this number."""
+    """Number of rings in the runs whose tractions are evaluated. This is also the number of angular
+    points on half the disc. The error estimate comes from a run with half this number."""
 
     def model_post_init(self, context: Any, /) -> None:
         """Raise Refusal if settings contradict each other."""
@@ -608,7 +608,8 @@ class Claims(_Grid):
 
 
 def _required(kind: str, sweep: Sweep) -> str:
-    """Return what a kind of figure requires of a sweep, or "" if the sweep can be drawn."""
+    """Return the requirement of a kind of figure that a sweep does not meet, or "" if the sweep can
+    be drawn."""
     several, line = sweep.several, "two velocities above 0, or two values of another axis"
     is_map = sweep.spans_a_map or {"amplitude", "force"} <= several
     is_map = is_map and several <= {"amplitude", "velocity", "force", "poisson"}

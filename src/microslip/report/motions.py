@@ -21,5 +21,5 @@ MOTIONS = {
     ),
     "bore": Motion("oscillating bore", "torque", TORQUE),
 }
-"""Motions that have stored periods and a form for real contacts in the explorer. These motions also
-have panels in the figures of the study `claims`."""
+"""Motions for which the explorer has stored periods and a form for real contacts. These motions
+also have panels in the figures of the study `claims`."""

@@ -98,8 +98,8 @@ def claims_page(dataset: xr.Dataset, lines: list[str]) -> str:
 
 
 def _records(dataset: xr.Dataset, dim: str, prefix: str = "") -> list[SimpleNamespace]:
-    """Return the entries along a dimension. The attribute `name` of an entry is its coordinate in
-    this dimension.
+    """Return the entries along a dimension. Each entry has the attribute `name`, which contains the
+    coordinate along this dimension.
 
     prefix: prefix to remove from the names of variables. The default is the name of the dimension.
     """

@@ -14,9 +14,10 @@ from microslip.datasets.catalogue import FORMS, ClosedForm
 
 PLANE = "velocity", "amplitude"
 RANKS = {"velocity": -2, "amplitude": -1, "poisson": 1}
-"""Ranks of axes as the abscissa, if they are equally long. The rank of any other axis is 0."""
+"""Ranks of axes. Among equally long axes, the axis with the lowest rank is the abscissa. The rank
+of any other axis is 0."""
 WIDE = 10.0
-"""Ratio of the largest to the smallest value above which an axis is logarithmic."""
+"""An axis is logarithmic if the ratio of the largest to the smallest value is above this number."""
 
 
 def columns(dataset: xr.Dataset, *names: str) -> tuple[np.ndarray, ...]:
@@ -57,9 +58,9 @@ def lines(
     variable : str
         Variable of the ordinate.
     along : str
-        Axis along the lines. The default is the force if it is an axis, or else the axis with the
-        most values, without the velocity 0. Among axes of equal length, the velocity comes first,
-        then the amplitude, and Poisson's ratio last.
+        Axis along the lines. The default is the force if it is an axis. Otherwise, the default is
+        the axis with the most values, without the velocity 0. Among axes of equal length, the
+        velocity comes first, then the amplitude, and Poisson's ratio last.
 
     Returns
     -------
@@ -79,8 +80,10 @@ def lines(
 def resampled(dataset: xr.Dataset, fine: int, coarse: int = 0, **others: Any) -> xr.Dataset:
     """Return a certified map on a grid with `fine` velocities and `coarse` amplitudes.
 
-    The default is `fine` amplitudes, also for static friction, which has no axis of velocities.
-    Values outside unsolved cells count as converged. others: further coordinates.
+    There are `fine` amplitudes if `coarse` is 0, or if the map contains static friction only.
+    Values outside unsolved cells count as converged.
+
+    others: further coordinates.
     """
     ends = [(float(dataset[dim].min()), float(dataset[dim].max())) for dim in PLANE]
     still = ends[0][1] == 0.0

@@ -2,13 +2,13 @@
 
 At each point, every model is run with the shipped method at all levels of its ladder.  Every other
 method is run at the levels of the model that `model="auto"` selects.  For each point, the study
-also computes a reference, and solves at several tolerances.  For two motions, it computes maps,
-with trials of all models on a grid of points.
+also computes a reference, and solves at several tolerances.  For two motions, the study computes
+maps, with trials of all models on a grid of points.
 
-The dataset contains performance profiles: E. D. Dolan and J. J. More, Math. Program. 91 (2002)
-201-213, doi:10.1007/s101070100263.  A case is a point and a tolerance.  The cost of a competitor is
-the CPU time of its cheapest run within the tolerance.  The ratio of a competitor is this cost
-divided by the smallest cost in the contest.
+The dataset contains performance profiles (Dolan and More, Math. Program. 91 (2002) 201-213,
+doi:10.1007/s101070100263).  A case is a point and a tolerance.  The cost of a competitor is the CPU
+time of its cheapest run within the tolerance.  The cost ratio of a competitor is this cost divided
+by the smallest cost in the contest.
 """
 
 from __future__ import annotations
@@ -42,7 +42,7 @@ although rings are far more accurate."""
 TRUTH_SHARE = 0.1
 """Tolerance of the references of a map, divided by the tightest tolerance of the map."""
 LARGE = 64
-"""Smallest number of squares along a side at which a run takes as long as all coarser runs
+"""A run with at least this number of squares along a side takes as long as all coarser runs
 together."""
 AS_CHEAP = 1.5
 """Two measured times count as equal if their ratio is below this value."""
@@ -200,7 +200,7 @@ def on_front(cost: ArrayLike, error: ArrayLike) -> np.ndarray:
 
     A trial is on the front if every other trial is more expensive, less accurate, or equal in both.
 
-    cost, error: arrays of shape (n,).  Trials with values that are not finite are not on the front.
+    cost, error: arrays of shape (n,).  Trials with infinite or NaN values are not on the front.
     """
     both = np.stack([np.asarray(cost, float), np.asarray(error, float)])
     finite = np.isfinite(both).all(axis=0)
@@ -223,12 +223,13 @@ def largest_from(runs: pd.DataFrame, *series: str) -> pd.Series:
 
 
 def cheapest(runs: pd.DataFrame, exact: str, tolerance: float) -> pd.DataFrame:
-    """For each place, return the cheapest run within the tolerance.
+    """Return the cheapest run within the tolerance at each place.
 
     All finer runs of the same model must also be within the tolerance.  The finest run of a model
     cannot be confirmed in this way, so it does not count.  The model `exact` is an exception,
     because it converges to the reference.  Times are uncertain, so a cost counts as equal to the
-    lowest cost if their ratio is at most AS_CHEAP.  The first run with such a cost is returned.
+    lowest cost if their ratio is at most AS_CHEAP.  If several runs have such a cost, the first one
+    is returned.
 
     runs: table with the columns place, model, cells, seconds and error, from coarse to fine.
     """
@@ -243,8 +244,8 @@ def contest_of(method: str) -> str:
     """Return the name of the contest in which a method takes part.  The contest depends on the part
     of a run that the method replaces.
 
-    The result is "models" for the shipped method and for methods that replace the whole run, else
-    "integrators", "solvers of a step" or "searches".
+    The result is "models" for the shipped method and for methods that replace the whole run.  For
+    other methods, the result is "integrators", "solvers of a step" or "searches".
     """
     parts, shipped = method_named(method), method_named(SHIPPED)
     if method == SHIPPED or parts.run is not None:
@@ -258,8 +259,8 @@ def profiles(runs: pd.DataFrame, points: list[str], tolerances: Sequence[float])
     """Return the competitors of all contests, and the cost ratios of the competitors.
 
     A run counts only if all finer runs of the same competitor and model are also within the
-    tolerance. In each contest, only those runs of the shipped method count that have the points and
-    models of its competitors.
+    tolerance. A run of the shipped method counts in a contest only if a competitor has a run at the
+    same point with the same model.
 
     runs: table of trials.  points: names of all points.
     """

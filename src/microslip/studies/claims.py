@@ -107,8 +107,8 @@ SINGLE_RUNS = {
     "patches": ("tractions over a period", "['least_stick']"),
     "run": ("single run, method {method}", "['mu_macro']"),
 }
-"""For each kind of single run: a short description, and the part of the result that is printed by
-the command that repeats the run."""
+"""For each kind of single run: a short description, and the part of the result that is printed when
+a command repeats the run."""
 
 
 def _description(request: dict) -> str:

@@ -60,7 +60,7 @@ STIFF_EXPONENTS = (100, 50, 25)
 STIFF_AMPLITUDES, STIFF_RATIOS = (0.4, 0.8), (0.02, 0.1, 0.2, 0.35, 0.5, 0.7, 0.9)
 """Amplitudes of the indentation depth, and ratios of the velocity to the amplitude."""
 COLUMNS = ("amplitude", "velocity", "run", "other_run", "other", "value", "error")
-"""Columns of a table of evidence that has no lines."""
+"""Columns of an empty table of evidence."""
 
 
 # Requests
@@ -101,7 +101,7 @@ def periods(study: Claims) -> list[list[dict]]:
 
 
 def sources(study: Claims) -> Iterator[tuple[str, Callable[..., dict], list[list[dict]]]]:
-    """For each table that is read from runs, yield the name, the function and the requests.
+    """Yield the name, the function and the requests of each table that is read from runs.
 
     The requests are a list of rows.  The function reads a line of evidence from the results of a
     row.
@@ -267,8 +267,8 @@ def flat_end_of(*rows: Row) -> dict:
 def both_of(read: Callable[[Row], tuple[float, float]], fine: Row, coarse: Row) -> dict:
     """Return a value of the fine run, the reference for this value, and an error estimate.
 
-    The error estimate compares two runs: it is the change of the difference between value and
-    reference if the number of rings is halved.
+    The error estimate is the change in the difference between value and reference when the number
+    of rings is halved.
 
     read: function that reads the value and the reference from a run.
     """
@@ -308,10 +308,12 @@ def least_stick(row: Row) -> tuple[float, float]:
 
 
 def lead(row: Row) -> tuple[float, float]:
-    """Return the difference between the stick areas of the two sides, and the reference 0.  The
-    difference is computed when the total stick area is smallest, and is divided by this total.
-    Each side must be larger in one half of the period; the smaller of the two differences is
-    returned.
+    """Return the difference between the stick areas of the two sides, and the reference 0.
+
+    The difference, divided by the total stick area, is computed twice: when the total in the first
+    half of the period is smallest, and half a period later.  The smaller absolute value is
+    returned.  The result is positive if each side is larger at one of the two moments, and negative
+    otherwise.
     """
     right, left = (np.asarray(row[f"stick_{side}"][1:], float) for side in ("right", "left"))
     half = right.size // 2

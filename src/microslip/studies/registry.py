@@ -3,14 +3,14 @@
 A study is a module with three functions and two strings:
 
 - requests(settings): yields pairs of a job and a request.  A job is a tuple.  Jobs with a smaller
-  first number start earlier;
-- values(settings, answers): returns the values of the dataset's variables, computed from answers;
-- report(dataset): yields lines of text that summarise the dataset;
+  first number start earlier.
+- values(settings, answers): returns the values of the dataset's variables, computed from answers.
+- report(dataset): yields lines of text that summarise the dataset.
 - TITLE and COMMENT: attributes of the dataset.
 
 The variables of all datasets are listed in variables.csv, and the groups in groups.csv.  The column
-`source` names the entry of a row from which the values are taken (see answers.columns).  If
-`source` is empty, the entry has the name of the variable.
+`source` names an entry of a row.  The values of the variable are taken from this entry (see
+answers.columns).  If `source` is empty, the entry has the name of the variable.
 
 The workflow imports these modules at every start, so they do not import the solver or xarray at
 module level.

@@ -86,7 +86,7 @@ or use dense matrices."""
 COARSEST_TOLERANCE, TOLERANCE_POWER = 3e-5, 1.5
 """Tolerance of the periodic state at the first level, as a force divided by mu F_z.  At other
 levels, the tolerance is proportional to 1 / steps^TOLERANCE_POWER.  At every level, the tolerance
-is below the discretisation error (1e-4 to 1e-6 for rings at nu = 0)."""
+is below the discretisation error.  For rings at nu = 0, this error is 1e-4 to 1e-6."""
 
 
 # Models and resolutions
@@ -100,7 +100,8 @@ def models_of(motion: str, poisson: float) -> list[str]:
 
 
 def exact_model(motion: str, poisson: float) -> str:
-    """Return the model that `model="auto"` selects: rings if they apply, else angular points."""
+    """Return the model that `model="auto"` selects: rings if they apply, and angular points
+    otherwise."""
     return "radial" if "radial" in models_of(motion, poisson) else "polar"
 
 
@@ -108,8 +109,9 @@ def models_for(method: str, motion: str, poisson: float) -> list[str]:
     """Return the names of the models with which a method is run.
 
     The shipped method is run with all models.  Any other method is run with the model named in its
-    file, or else with the model that `model="auto"` selects.  The list is empty if the method does
-    not support the motion, or if a package that the method requires is not installed.
+    file.  If the file names no model, the method is run with the model that `model="auto"` selects.
+    The list is empty if the method does not support the motion, or if a package that the method
+    requires is not installed.
     """
     name, _ = split(method)
     if name == SHIPPED:
@@ -121,7 +123,7 @@ def models_for(method: str, motion: str, poisson: float) -> list[str]:
 
 def ladder(model: str, method: str, count: int) -> list[tuple[int, Level, float]]:
     """Return a list of tuples (level number, Level, tolerance) for a method.  `count` is the
-    largest length of the list."""
+    largest allowed length of the list."""
     name, _ = split(method)
     if (own := declared(name, "resolution")) is not None:
         return [(0, Level(*own), COARSEST_TOLERANCE)]

@@ -1,8 +1,8 @@
 """Study of the failures of methods, in which all methods are tested in the same cases.
 
-A block of the configuration varies one quantity of a base point into a range where methods fail.
-This quantity can belong to the point, the resolution or a method.  Each value of the quantity is a
-case.  All probes have the same tolerance.
+Each block of the configuration starts at a base point and varies one quantity, up to values at
+which methods fail.  This quantity can belong to the point, the resolution or a method.  Each value
+of the quantity is a case.  All probes have the same tolerance.
 """
 
 from __future__ import annotations

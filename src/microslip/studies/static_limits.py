@@ -1,7 +1,7 @@
 """Compare the static limit of the two oscillating motions with the paper's formulas for this limit.
 
-Inside the stick zone, the paper's formulas let the whole friction bound resist the forward motion,
-although the oscillation uses a part of this bound (see microslip.periodic.static_limit).  The
+In the paper's formulas, the whole friction bound inside the stick zone resists the forward motion.
+In fact, the oscillation uses a part of this bound (see microslip.periodic.static_limit).  The
 paper's own runs do not show the resulting difference, because their velocity is too large and their
 resolution is too coarse.
 """
@@ -46,8 +46,9 @@ def asymptote(amplitude: ArrayLike) -> np.ndarray:
     """Return the static limit of the oscillating bore for large amplitudes (small stick zones).
 
     The radius of the stick zone is c = (4/e) exp(-D(1/2) amplitude).  At the radius r, the rotation
-    uses the fraction (2/pi) arcsin(r/c) of the friction bound.  For comparison, Eq 33 tends to 3/2
-    c^2.  The result is dimensionless and positive.  The amplitude can be an array of any shape.
+    uses the fraction (2/pi) arcsin(r/c) of the friction bound.  For comparison, Eq 33 tends to
+    (3/2) c^2.  The result is dimensionless and positive.  The amplitude can be an array of any
+    shape.
     """
     radius = 4.0 / np.e * np.exp(-hertz.D_half() * np.asarray(amplitude, float))
     return remainder() * radius**2

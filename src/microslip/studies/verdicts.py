@@ -60,7 +60,7 @@ def _verdict(holds: bool, fails: bool) -> int:
 
 
 def of_checks(checks: pd.DataFrame) -> dict[str, Any]:
-    """Return the variables of a part that are computed from its checks.
+    """Return those variables of a part which are computed from the checks of the part.
 
     checks: table with the columns outcome, margin, run, amplitude and velocity.
     """

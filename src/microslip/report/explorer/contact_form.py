@@ -2,7 +2,7 @@
 tables.
 
 The rules and the texts of their warnings come from si.warnings. A table contains friction on a
-regular grid, interpolated from a certified map, so that the page only needs linear interpolation.
+regular grid, interpolated from a certified map. The page therefore needs only linear interpolation.
 """
 
 from __future__ import annotations
@@ -80,11 +80,11 @@ def table(dataset: xr.Dataset) -> dict:
     """Pack the friction and the error bound of a certified map on a regular grid.
 
     The page interpolates linearly in the logarithm of the velocity, in the amplitude and in
-    Poisson's ratio. The error bound of a cell is a sum of two terms: the largest error bound of the
-    map in the cell, and twice the largest difference between this interpolation and the map. The
-    differences are computed at the centre of the cell and at the midpoints of its edges and faces.
-    If the function is a parabola or has a kink, the interpolation error is at most twice the
-    difference at a midpoint.
+    Poisson's ratio. The error bound of a cell is a sum of two terms. The first is the largest error
+    bound of the map in the cell. The second is twice the largest difference between the linear
+    interpolation and the map. The differences are computed at the centre of the cell and at the
+    midpoints of its edges and faces. If the function is a parabola or has a kink, the interpolation
+    error is at most twice the difference between the function and the interpolation at a midpoint.
     """
     ends = {name: (float(dataset[name].min()), float(dataset[name].max())) for name in COUNTS}
     axes = {

@@ -1,10 +1,10 @@
 """Write the page as one file: markup, style, plotly.js, scripts, and all data as one JSON value.
 
 A sweep over velocities and amplitudes is shown as one map for each Poisson's ratio. Other sweeps,
-and sweeps with a drive, are shown as lines: the abscissa is the longest axis, and there is one line
-for each combination of values along the other axes.
+and sweeps with a drive, are shown as lines. The abscissa is the longest axis. There is one line for
+each combination of values along the other axes.
 
-Numbers from datasets are stored exactly. The forces, phases, radii and bounds of periods are
+Numbers from datasets are stored exactly. The forces, phases, radii and bounds in stored periods are
 rounded. Tractions, slip flags and densities are strings encoded by sweeps.period_codec; the page
 decodes them.
 """
@@ -43,7 +43,7 @@ ERRORS = {
 }
 """The parts of a point's error, each with its source."""
 DECIMALS = 5
-"""Number of decimals of the forces, phases, radii and bounds of periods."""
+"""Number of decimals of the forces, phases, radii and bounds in stored periods."""
 PERIOD = ["phase", "radius", "bound", "tractions", "slips", "densities", "angles", "turned"]
 PERIOD += ["mu_macro", "converged", "reason"]
 """Entries of a stored period, besides the forces. If no period was found, only the last two entries

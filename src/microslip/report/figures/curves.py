@@ -2,8 +2,9 @@
 
 The figure has a panel for each abscissa, and a line for each combination of values along the other
 axes of a sweep. In a sweep over forces, the abscissa is the mean velocity that each force causes.
-A certified map is drawn over the velocity at some amplitudes, or over the amplitude if it contains
-static friction. Figures of maps contain similar panels for the edges of a map.
+A certified map of static friction is drawn over the amplitude. Any other certified map is drawn
+over the velocity, at several amplitudes. Figures of maps contain similar panels for the edges of a
+map.
 """
 
 from __future__ import annotations
@@ -25,16 +26,18 @@ FORCE_AND_TORQUE = f"force  {FORCE_FORWARD.math}\ntorque  {TORQUE.math}"
 JOINING = 0.7
 """Width of the lines that join markers, in points."""
 MARGIN = 1.3
-"""Ratio of the ends of an axis of velocities caused by forces to the ends of the points. The error
-bars of slow velocities can reach 0."""
+"""If the abscissa is the velocity that a force causes, the axis extends beyond the points by this
+factor, because the error bars of slow velocities can reach 0."""
 MOST_ABOVE = 4
-"""Largest number of lines from one dataset for which the legend is above a narrow panel."""
+"""A figure with at most this number of lines, all from one dataset, has a narrow panel with the
+legend above the panel."""
 MANY = 12
-"""Largest number of lines for which the legend is narrow."""
+"""A legend with at most this number of lines is narrow."""
 ABOVE = 2.0
 """Smallest height of a narrow panel with its labels below the legend, in inches."""
 FINE, COARSE = 201, 5
-"""Numbers of points along a line of a certified map, and of amplitudes at which it is drawn."""
+"""Number of points on each line of a certified map, and number of amplitudes, each drawn as a
+line."""
 
 
 class Line(NamedTuple):
@@ -125,7 +128,8 @@ def _lines(dataset: xr.Dataset, titled: bool) -> Iterator[Line]:
 def _limit(
     points: xr.Dataset, still: xr.Dataset | None, dim: str, variable: str
 ) -> tuple[np.ndarray, np.ndarray, str] | None:
-    """Return a closed form that is exact for these points, or else the computed static limit."""
+    """Return a closed form that is exact for these points. If there is none, return the computed
+    static limit."""
     for form in closed_forms(points):
         own = ("torque" in form.name) == ("torque" in variable)
         line = limit(points, form.name)

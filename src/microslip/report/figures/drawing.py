@@ -87,8 +87,8 @@ def draw(kind: str, datasets: Mapping[str, xr.Dataset]) -> Figure:
 def import_matplotlib() -> None:
     """Import matplotlib, even if the environment variable MPLBACKEND has an unknown value.
 
-    If the variable has such a value, an ordinary import would fail. Figures of this package need no
-    backend. Other figures in the process use the backend of the variable if matplotlib knows this
+    With such a value, an ordinary import would fail. Figures of this package need no backend. If
+    matplotlib knows the backend that the variable names, other figures in the process use this
     backend.
     """
     if "matplotlib" in sys.modules:

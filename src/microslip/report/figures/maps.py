@@ -170,8 +170,8 @@ def _fill(page: Any, drawn: list[Panel], across: int) -> None:
 
 
 def _label(axes: list[Axes], drawn: list[Panel], across: int, room: float) -> None:
-    """Label the axes. If all panels have the same label and range, write the label once for each
-    column or row, otherwise on each panel."""
+    """Label the axes. If all panels have the same label and range, the label is written once for
+    each column or row. Otherwise, each panel has a label."""
     for name, dims in (("x", [p.across for p in drawn]), ("y", len(drawn) * ["amplitude"])):
         places = [panel.dataset[dim] for panel, dim in zip(drawn, dims, strict=True)]
         ranges = {(float(place.min()), float(place.max())) for place in places}
@@ -190,8 +190,8 @@ def fill(axes: Axes, panel: Panel, scale: Scale) -> ContourSet:
 
     Contours end where the interpolation is too uncertain (see `Surface.supported`). If a contour
     ends in this way, or if the map is coarse, the computed points are drawn as well. Points beside
-    a cell without a colour are always drawn; the colour of such a point shows its value. Returns
-    the bands for the colour bar.
+    a cell without a colour are always drawn. The colour of such a point shows the value at the
+    point. Returns the bands for the colour bar.
     """
     shown = panel.dataset.transpose("amplitude", panel.across, ...)
     x, amplitude, values = columns(shown, panel.across, "amplitude", panel.variable)
@@ -295,8 +295,7 @@ DARK = 0.5
 """Lines are white on a band whose luminance is below this value. On lighter bands, lines are
 black."""
 BEYOND = 0.01
-"""Because of the errors of the points, friction may leave the range from 0 to 1 by at most this
-distance."""
+"""The points have errors, so friction may leave the range from 0 to 1 by at most this distance."""
 DIVERGING = "PuOr"
 """Colour map for differences. This map is pale in the middle."""
 MOST_BANDS = 12

@@ -26,8 +26,8 @@ QUANTITIES = (
     ("force", "Eq 21", "transient_force_forward", look.BLUE, look.SOLID),
     ("torque", "Eq 22", "transient_torque", look.VERMILLION, look.DASHDOT),
 )
-"""For each quantity of a transient: name, equation of the steady value, variable, colour and line
-style."""
+"""For each quantity of a transient: name of the quantity, equation for the steady value, name of
+the variable, colour and line style."""
 SPACING = 0.14
 """Distance between the arrows, in contact radii."""
 SHADES = LinearSegmentedColormap.from_list("bound", ["#FFFFFF", "#8CC8EE"])

@@ -46,8 +46,8 @@ of a legend line, all in inches."""
 MOST = 1e6
 """Largest ratio of the upper to the lower end of the axis of errors."""
 EDGE = 0.06
-"""Distance from the range at which a value outside the range is drawn, as a fraction of the
-range."""
+"""A value outside the range is drawn at this distance from the range. The distance is given as a
+fraction of the range."""
 FRONT: look.Ink = {"color": "#EBD9A0", "lw": 5.0, "solid_capstyle": "round", "zorder": 1}
 AUTO: look.Ink = {"color": look.BLACK, "marker": "D", "lw": 0.8, "ms": 4.2, "zorder": 7}
 PAPER: look.Ink = {"color": look.BLACK, "marker": "*", "ls": "none", "ms": 9.0, "zorder": 8}
@@ -104,11 +104,12 @@ def profile(dataset: xr.Dataset) -> Figure:
 
 
 def _versus(dataset: xr.Dataset, cost: str) -> Figure:
-    """Draw the errors of all trials against a cost, with a panel for each point.
+    """Draw the errors of all trials against the cost, with a panel for each point.
 
     Each model with the default method has its own colour and marker; runs of other methods are
     grey. Trials outside the axes are drawn at the edge, each with a circle around its marker.
-    Such a trial has an error far below the error of the reference, or lacks a result or a cost.
+    A trial is outside the axes if its error is far below the error of the reference, or if its
+    result or its cost is missing.
     """
     names = {f"trial_{name}": name for name in ("point", "model", "method", "level")}
     names |= {cost: "cost", f"front_{cost}": "front"}
@@ -155,8 +156,8 @@ versus_work = partial(_versus, cost="effort")
 
 
 def _beyond(low: float, high: float, share: float) -> tuple[float, float]:
-    """Return a value below and a value above a logarithmic range. The distance of both values from
-    the range is a fraction of the range, `share`."""
+    """Return a value below and a value above a logarithmic range. The distance from each value to
+    the range is `share` times the length of the range."""
     factor = (high / low) ** share
     return low / factor, high * factor
 
@@ -357,8 +358,8 @@ def _friction(axes: Axes, dataset: xr.Dataset, motion: str) -> None:
 
 
 def _shares(axes: Axes, dataset: xr.Dataset, motion: str) -> None:
-    """Draw the fractions of the friction bound used by the oscillation (solid) and left for forward
-    friction (dashed)."""
+    """Draw two fractions of the friction bound: the fraction that the oscillation uses (solid), and
+    the fraction that is left for forward friction (dashed)."""
     dim = f"{motion}_share_amplitude"
     radius, amplitudes = columns(dataset, "share_radius", dim)
     shades = matplotlib.colormaps[look.COLOURMAP](np.linspace(0.0, LIGHTEST, amplitudes.size))

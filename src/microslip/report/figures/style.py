@@ -135,7 +135,8 @@ def quantity(dataset: xr.Dataset, dim: str) -> Quantity:
 
 
 def symbol(motion: str, dim: str) -> str:
-    """Return the LaTeX symbol of an axis for a motion, or else the name of the axis."""
+    """Return the LaTeX symbol of an axis for a motion, or the name of the axis if there is no
+    symbol."""
     return quantity(xr.Dataset(attrs={"motion": motion}), dim).latex or rf"\mathrm{{{dim}}}"
 
 
@@ -380,7 +381,7 @@ def edges(points: np.ndarray, logarithmic: bool) -> np.ndarray:
 
     The edges are half-way between neighbouring points. The first and the last point are in the
     middle of their cells. The coordinates `points` must be in ascending order. If `logarithmic` is
-    True, geometric means are used, else arithmetic means.
+    True, geometric means are used; otherwise, arithmetic means are used.
     """
     if logarithmic:
         return np.exp(edges(np.log(points), False))
