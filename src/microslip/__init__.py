@@ -1,8 +1,8 @@
 """Friction of vibrated contacts, computed by a boundary element method.
 
 ``solve`` computes the friction for one velocity and amplitude.  ``history`` computes the forces at
-every time step, and ``traction_field`` the tractions in a steady motion.  Importing the package is
-fast, because each module is loaded only when one of its names is first used.
+every time step.  ``traction_field`` computes the tractions in a steady motion.  Importing the
+package is fast, because each module is loaded only when one of its names is first used.
 """
 
 from importlib import import_module as _import_module

@@ -2,11 +2,11 @@
 
 On a regular grid, values are interpolated along each axis by the cubic through the four nearest
 nodes.  To estimate the error, the value at each node is also predicted from the neighbouring nodes,
-by a cubic with twice the spacing.  The error bound of a cell is the largest difference between
-prediction and value at the nodes of the cubic in this cell.  For a smooth function, the true error
-is a sixteenth of this bound.  At a kink, the true error and the bound are about equal.  Near an
-unknown value, the interpolation is linear, and the difference between the two nodes serves as the
-error.
+by a cubic with twice the spacing.  The error bound of a cell is the largest difference between the
+predicted and the actual value at the nodes of the cell's cubic.  For a smooth function, the true
+error is a sixteenth of this bound.  At a kink, the true error and the bound are about equal.  Near
+an unknown value, the interpolation is linear.  The difference between the values at the two nodes
+then serves as the error.
 
 In a certified map, each cell has its own polynomial and its own error bound.
 """
@@ -27,9 +27,9 @@ from microslip.sweeps.map_coordinates import MapCoordinates
 NODES = 4
 """Number of nodes of a local cubic."""
 COORDINATES = "map_coordinates"
-"""Name of the attribute of a certified map that contains the scaled coordinates as JSON."""
+"""Name of the attribute that contains the scaled coordinates of a certified map as JSON."""
 CHECKSUMS = "checksums"
-"""Name of the attribute of a certified map that contains the checksums of its parts."""
+"""Name of the attribute that contains the checksums of the parts of a certified map."""
 BORDERS = {
     "velocity": ("cell_left", "cell_right"),
     "amplitude": ("cell_low", "cell_high"),
@@ -40,7 +40,7 @@ direction."""
 AXES = ("mass", "damping", "stiffness", "poisson", "amplitude", "velocity", "force")
 """Coordinates of maps, in the order of the dimensions of a result."""
 NUMBERS = ("cell", "node", "point")
-"""Dimensions of a certified map.  The coordinates along these dimensions are the numbers of the
+"""Dimensions of a certified map.  The coordinates along these dimensions are the indices of the
 cells, nodes and points."""
 PARTS = (*NUMBERS, "mu_macro", "cell_error", "cell_node", *sum(BORDERS.values(), ()), *AXES)
 """Variables of a certified map that have a checksum."""
@@ -218,11 +218,11 @@ class Grid:
     def at(self, points: Points) -> tuple[np.ndarray, np.ndarray]:
         """Return values and error bounds at n points inside the grid, as two arrays of shape (n,).
 
-        Along an axis, the interpolation error is assumed proportional to the product of the
+        Along an axis, the interpolation error is assumed to be proportional to the product of the
         distances to the two neighbouring nodes.  The bound is the sum of these errors over all
-        axes, plus the largest error of the nodes.  If a value at one of the nodes is unknown, the
-        interpolation between the neighbouring nodes is linear, with a larger bound.  If one of them
-        is unknown as well, the result is NaN and the bound is infinite.
+        axes, plus the largest error at the nodes.  If a value at one of the nodes is unknown, the
+        interpolation between the neighbouring nodes is linear, with a larger bound.  If the value
+        at a neighbouring node is unknown, the result is NaN and the bound is infinite.
 
         Raises InputError for a velocity between the static limit and the smallest velocity.
         """
@@ -242,7 +242,7 @@ class Grid:
         the result is NaN.
 
         For linear interpolation, the error halfway between two nodes is at most the difference
-        between their values, unless an extremum lies between them.
+        between the values at the nodes, unless the function has an extremum between the nodes.
         """
         stencils = [axis.cubics(points[name], width) for name, axis in self.axes.items()]
         around = tuple(range(len(stencils)))

@@ -29,7 +29,7 @@ from microslip.foundation.files import writing_beside
 def divide(
     dataset: xr.Dataset, groups: Iterable[Mapping[str, str]]
 ) -> tuple[xr.Dataset, dict[str, xr.Dataset]]:
-    """Divide a dataset into a dataset for the root of a file and a dataset for each group.
+    """Divide a dataset into several: one for the root of a file, and one for each group.
 
     Parameters
     ----------
@@ -58,9 +58,9 @@ def divide(
 
 
 TEXTS = "flag_texts"
-"""Name of the attribute that lists the strings behind the codes of a variable, one on each line, in
-the order of `flag_values`.  The attribute `flag_meanings` lists them as single words, as CF
-requires."""
+"""Name of the attribute that lists the strings behind the codes of a variable.  Each line contains
+one string, in the order of `flag_values`.  The attribute `flag_meanings` lists the strings as
+single words, as CF requires."""
 
 
 def coded(variable: xr.Variable) -> xr.Variable:

@@ -18,7 +18,7 @@ from microslip.si.response import RealResponse
 RECORDS = (Result, Prediction, History, Period, Response, RealResponse)
 """Classes of results that can be converted."""
 OF_POINTS = ("forward_position", "lateral_position", "area", "bound", "dissipated_energy_density")
-"""Arrays of a Period whose only axis is `point`."""
+"""Arrays of a Period that have the single axis `point`."""
 
 ROW_ERRORS = {
     "force_forward": "force_error",
@@ -27,8 +27,8 @@ ROW_ERRORS = {
 }
 """Name of the column with the error estimate, for each force and for the torque of a response."""
 ROUNDING = 1e-9
-"""Largest ratio of a force's absolute value to its error estimate at which the force is printed as
-0."""
+"""A force is printed as 0 if the ratio of its absolute value to its error estimate is at most this
+number."""
 
 
 def to_xarray(record: Any) -> xr.Dataset:

@@ -20,7 +20,7 @@ class Surface:
 
     The values equal those of `dataset.microslip.at` with two exceptions.  On coarse maps, a value
     can be outside the range of the two neighbouring points.  Such a value is clipped to this range,
-    so that figures show only computed extrema.  If the value at a point of a cubic is unknown, the
+    so that figures show only computed extrema.  If a cubic would need an unknown value, the
     interpolation is linear.
 
     Parameters

@@ -59,8 +59,9 @@ def variables(sweep: Sweep) -> dict:
 def curves(sweep: Sweep) -> dict:
     """Evaluate the closed forms on fine axes, for the groups velocity_curves and amplitude_curves.
 
-    Each closed form gives a variable `<name>_curve` over `velocity_curve` or `amplitude_curve`. A
-    closed form that depends on velocity and amplitude is evaluated at the largest amplitude.
+    For each closed form, there is a variable `<name>_curve`, which depends on `velocity_curve` or
+    `amplitude_curve`. A closed form that depends on velocity and amplitude is evaluated at the
+    largest amplitude.
     """
     groups: dict[str, dict] = {}
     for name, form in _forms(sweep).items():

@@ -3,11 +3,13 @@
 The table variables.csv describes every variable of a sweep's dataset, except the closed forms,
 which are described in catalogue.csv.  The columns of variables.csv are:
 
-- group: part of the dataset, or kind of sweep, that has the variable,
-- name, dims, kind, units: name, dimensions (of variables outside the map), type and unit,
-- source: entry of a result from which the values are taken; if it is empty, the entry has the name
-  of the variable.  For a variable that contains a change: the variable whose change is computed,
-- long_name: text that is short enough for the axis of a plot; description: longer text,
+- group: part of the dataset, or kind of sweep, that has the variable.
+- name, dims, kind, units: name, dimensions (of variables outside the map), type and unit.
+- source: entry of a result that contains the values.  If the column is empty, the entry has the
+  name of the variable.  For a variable that contains a change: the variable whose change is
+  computed.
+- long_name: text that is short enough for the axis of a plot.
+- description: longer text.
 - flag_meanings: meanings of 0 and 1, if these are not "no" and "yes".
 """
 

@@ -38,7 +38,7 @@ NOT_FINAL = b" not final\n"
 """End of the checksum line if the solver failed at a point or reached its time limit there.  The
 next run computes such a point again."""
 BETWEEN_FLUSHES = 1.0
-"""Seconds between two flushes of a journal to disk, which limit the loss if the computer
+"""Seconds between two flushes of a journal to disk.  Flushes limit the loss if the computer
 crashes."""
 
 
@@ -47,8 +47,8 @@ Compute = Callable[[Sequence[dict]], Iterable[tuple[dict, float]]]
 
 
 class SourcesEdited(CacheError):
-    """Error raised if the code on disk differs from the running code.  A result could then come
-    from either of the two."""
+    """Error raised if the code on disk differs from the running code.  It would be unclear which of
+    the two had computed a result."""
 
     def __init__(self, file: str):
         problem = f"{file} was edited while its code was running, and its result is not stored"
@@ -239,8 +239,8 @@ def computed(request: dict) -> tuple[dict, float]:
     """Compute a request.  Returns the record of the request and the CPU time of the solver in
     seconds.
 
-    Raises SourcesEdited if code that was imported during the computation differs from the code
-    whose digest is in the name of the result.
+    The name of the result contains a digest of the code.  Raises SourcesEdited if code that was
+    imported during the computation has another digest.
     """
     loaded = len(sys.modules)
     from microslip.sweeps import evaluate  # late, since it imports the solver

@@ -39,9 +39,9 @@ def computed(request: dict) -> dict:
     """Compute the result of a request as a dict of values that JSON can represent.
 
     If no periodic state is found, `converged` is False, and `reason` is the cause.  If the solver
-    raises another SolverError or an InputError, `crashed` is also True, `reason` is the error
-    message in one line, and the point is a gap in the dataset.  Any other exception indicates an
-    error of the code or of the machine, and is not caught.
+    raises another SolverError or an InputError, the point is a gap in the dataset.  In this case,
+    `crashed` is also True, and `reason` is the error message in one line.  Any other exception
+    indicates an error of the code or of the machine, and is not caught.
     """
     arguments = {
         name: float(value) if name in REALS and value is not None else value
@@ -62,8 +62,8 @@ def timed(run: Callable[[], Answer], repeats: int) -> tuple[Answer, float]:
     """Call a function repeatedly, and return its result and the CPU time of one call in seconds.
 
     The first call is not timed, because it may compile code.  The time is the median of several
-    readings.  The number of readings is `repeats`, or less if they take longer than LONG_ENOUGH.
-    CPU time excludes other processes.
+    readings.  There are `repeats` readings, or fewer if the readings take longer than LONG_ENOUGH
+    in total.  CPU time excludes other processes.
     """
     result, timer, calls = run(), Timer(run, timer=time.process_time), 1
     while (took := timer.timeit(calls)) < SHORTEST:

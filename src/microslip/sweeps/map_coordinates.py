@@ -3,11 +3,11 @@
 The axes of a map are velocity, amplitude and, optionally, Poisson's ratio.  A map of the static
 limit has no velocity axis.  A map is divided into patches at the known kinks of the motion
 (theory.exact).  Each patch is a box in scaled coordinates.  Below the velocity of the kink, the
-scaled velocity is proportional to velocity^(1/3).  The difference between friction and its static
-limit is proportional to velocity^(2/3), the square of this coordinate.  At these velocities, the
-amplitude axis is divided where friction has a kink, and nodes are clustered at the kinks.  Above
-the velocity of the kink, the scaled velocity is logarithmic.  Where there are no kinks, the scaled
-amplitude is log(1 + 2 A), where A is the amplitude.
+scaled velocity is proportional to velocity^(1/3).  The square of this coordinate is proportional to
+the difference between friction and the static limit.  At these velocities, the amplitude axis is
+divided where friction has a kink, and nodes are clustered at the kinks.  Above the velocity of the
+kink, the scaled velocity is logarithmic.  Where there are no kinks, the scaled amplitude is
+log(1 + 2 A), where A is the amplitude.
 """
 
 from __future__ import annotations
@@ -25,8 +25,8 @@ from microslip.theory.exact import Kinks, kink_velocity
 DIGITS = 9
 """Number of significant digits in the coordinates of a node."""
 CLEAR = 2.0
-"""Smallest ratio between the velocity of a kink and either end of the velocity range.  A kink that
-is closer to an end does not divide the map."""
+"""Smallest allowed ratio between the velocity of a kink and an end of the velocity range.  A kink
+that is closer to an end does not divide the map."""
 SLOW_POWER = 1.0 / 3.0
 """Exponent of the velocity in the scaled coordinate below the kink."""
 FAST = 2.0
@@ -53,7 +53,7 @@ class Scale(NamedTuple):
     back: Callable
 
     def between(self, ends: Sequence) -> Scale:
-        """Return a linearly mapped copy of this scale.  The function of the copy is 0 at the first
+        """Return a copy of this scale, mapped linearly so that the scaled value is 0 at the first
         end and 1 at the second end."""
         low, high = map(self.forward, ends)
         return Scale(
@@ -104,7 +104,7 @@ class MapCoordinates(NamedTuple):
 
     @property
     def degrees(self) -> tuple[int, ...]:
-        """Degree of the polynomials in a cell along each direction."""
+        """Degree, along each direction, of the polynomials in cells."""
         return tuple(DEGREES[name] for name in self.directions)
 
     @property
@@ -177,8 +177,8 @@ class MapCoordinates(NamedTuple):
 
     @property
     def _cut(self) -> Callable | None:
-        """Function that returns the velocity of the kink at an amplitude.  This velocity is at
-        least CLEAR times the lower end of the velocity range, and at most the upper end divided by
+        """Function that returns the velocity of the kink at an amplitude.  The velocity is clipped
+        to the range from the smallest velocity times CLEAR to the largest velocity divided by
         CLEAR.  The value is None if no kink divides the map."""
         if not (self.velocity and self.kinks.velocity):
             return None
@@ -189,8 +189,8 @@ class MapCoordinates(NamedTuple):
         return lambda amplitude: np.clip(kink_velocity(self.kinks, amplitude), low, high)
 
     def _speeds(self, fast: bool, amplitude: Any) -> Scale:
-        """Return the scale of the velocity at an amplitude.  The scale applies above the velocity
-        of the kink if `fast` is true, otherwise below it."""
+        """Return the scale of the velocity at an amplitude.  If `fast` is True, the scale applies
+        above the velocity of the kink; otherwise, the scale applies below this velocity."""
         if not (cut := self._cut):
             return LOG.between(self.velocity)
         slowest, fastest = self.velocity

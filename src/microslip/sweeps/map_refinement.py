@@ -3,11 +3,11 @@
 A cell is a box in scaled coordinates (map_coordinates) with equally spaced nodes: 5 along the
 velocity, 5 along the amplitude and 3 along Poisson's ratio.  Friction in a cell is interpolated by
 the polynomial through the nodes of the cell.  The surplus along a direction is computed from the
-largest finite differences of the highest order in this direction.  This surplus equals the error of
-a polynomial whose degree is lower by one.  The error of the cell's own polynomial is estimated as a
-fraction of the surplus.  The fraction was calibrated on points that are not nodes.  A cell whose
-error is too large is halved along the direction with the largest surplus.  Both halves reuse the
-nodes of the cell.
+finite differences of the highest order along this direction.  Only the largest of these differences
+counts.  The surplus equals the error of a polynomial whose degree is one lower than the degree of
+the cell's polynomial.  The error of the cell's own polynomial is estimated as a fraction of the
+surplus.  The fraction was calibrated on points that are not nodes.  A cell whose error is too large
+is halved along the direction with the largest surplus.  Both halves reuse the nodes of the cell.
 
 The cells depend only on the results at the nodes, not on the order of the requests.
 """

@@ -114,8 +114,8 @@ def settings_of(sweep: Sweep) -> dict:
 def points_of(sweep: Sweep) -> Batch:
     """Return the requests for all points of a sweep.
 
-    The order of the requests is that of the dataset's dimensions.  The last dimension, which is
-    velocity or force, changes fastest and is the axis of the batch.
+    The order of the requests is the order of the dataset's dimensions.  The last dimension, which
+    is velocity or force, changes fastest and is the axis of the batch.
     """
     axes = {name: [*map(number, values)] for name, values in sweep.axes.items()}
     last, along = axes.popitem()
@@ -158,9 +158,9 @@ def divide(points: Batch, size: int) -> list[Batch]:
 def cut(items: Sequence, mean: int) -> list[list]:
     """Divide items into lists of consecutive items, with about `mean` items each.
 
-    The lengths of the lists differ by at most an eighth, or by one item.  Within this margin, the
-    hashes of the items decide where a list ends.  If the lists are long, an additional item
-    therefore changes only a few of them.
+    The lengths of short lists differ by at most one item.  The length of a long list can differ
+    from the average length by up to an eighth.  Within this margin, the hashes of the items decide
+    where a list ends.  An additional item therefore changes only a few long lists.
     """
     count = max(round(len(items) / max(mean, 1)), 1)
     margin = len(items) // (16 * count)
