@@ -542,9 +542,10 @@ class Block(Settings):
     poisson: Annotated[tuple[float, ...], _axis(0, 0.5)] = (0.0,)
     """Poisson's ratio of the half-space."""
     cells: Annotated[tuple[int, ...], _axis(4, LARGEST["cells"], step=2)] = ()
-    """Imposed number of rings. By default, it follows from the tolerance."""
+    """Imposed number of rings. By default, this number follows from the tolerance."""
     steps: Annotated[tuple[int, ...], _axis(8, LARGEST["steps"], step=2)] = ()
-    """Imposed number of time steps in a period. By default, it follows from the tolerance."""
+    """Imposed number of time steps in a period. By default, this number follows from the
+    tolerance."""
     step: PositiveAxis = ()
     """Parameter `step` of the methods. A method that lacks this parameter is omitted from the
     block."""

@@ -18,7 +18,7 @@ from microslip.foundation.errors import InputError
 ALLOWED = "allowed is a finite number, or several"
 UNKNOWN = "NaN beside points without a value; reason of the map, or the log of its job, says why"
 BLOCK = 2**14
-"""Number of points that are interpolated at once, which limits the memory use."""
+"""Number of points that are interpolated at once.  This number limits the memory use."""
 
 
 class Map:

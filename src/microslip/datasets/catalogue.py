@@ -1,8 +1,8 @@
 """Catalogue of the closed forms for each motion, with limits, ranges of validity and names.
 
-Datasets, figures and the study of the paper's statements use this catalogue.  The forms apply to
-Hertz pressure; for other pressures, see datasets.pressure_limits.  The solver uses exact.py
-instead, so editing a name here does not change stored results.
+This catalogue is used by datasets, by figures, and by the study of the paper's statements.  The
+forms apply to Hertz pressure.  For other pressures, see datasets.pressure_limits.  The solver uses
+exact.py, not this catalogue, so editing a name here does not change stored results.
 
 The table catalogue.csv has a row for each form, in the order in which datasets list them.  The
 column `function` names a function in microslip.theory, and `properties` lists the properties that

@@ -31,7 +31,8 @@ from microslip.sweeps.request import solver_names
 def build(
     configuration: Configuration, name: str, records: Iterable[dict]
 ) -> tuple[xr.Dataset, dict[str, xr.Dataset]]:
-    """Build the dataset of a certified map.  The second result, the dict of groups, is empty.
+    """Build the dataset of a certified map.  The second result is the dict of groups, which is
+    empty.
 
     Parameters
     ----------

@@ -312,7 +312,7 @@ def of_map(dataset: xr.Dataset, name: str) -> Grid | Cells:
 
 def parts_of(dataset: xr.Dataset) -> tuple[dict[str, np.ndarray], dict[str, str]]:
     """Return the parts of a certified map, and the checksums of the parts and of the scaled
-    coordinates.  The parts are flat arrays, ordered by the numbers of cells, nodes and points.
+    coordinates.  The parts are flat arrays, ordered by the indices of cells, nodes and points.
 
     A checksum is computed from the values in single precision, so the type of the numbers has no
     effect.

@@ -68,7 +68,7 @@ def coded(variable: xr.Variable) -> xr.Variable:
 
     Integers are supported by all operations of xarray, also on disk and in dask chunks.  The code
     of a string is its CRC-32 in 31 bits, and 0 for an empty string.  A string therefore has the
-    same code in all files, so that files can be joined.
+    same code in all files, and files can be joined.
     """
     codes: dict[int, str] = {}
     code_of = {}

@@ -24,7 +24,8 @@ from microslip.sweeps.content import is_whole
 PAPER = ("transverse", "bore", "continuous_bore")
 """Names of the sweeps of the paper."""
 SOLVED = {"mu_macro", "velocity_error"}
-"""Variables that identify the dataset of a sweep: such a dataset contains at least one of them."""
+"""Variables that identify the dataset of a sweep.  Such a dataset contains at least one of these
+variables."""
 
 
 def open_map(

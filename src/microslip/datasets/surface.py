@@ -18,9 +18,9 @@ FINE = 200
 class Surface:
     """Values of a map on a fine grid that contains all computed points.
 
-    The values equal those of `dataset.microslip.at` with two exceptions.  On coarse maps, a value
-    can be outside the range of the two neighbouring points.  Such a value is clipped to this range,
-    so that figures show only computed extrema.  If a cubic would need an unknown value, the
+    The values equal the values from `dataset.microslip.at`, with two exceptions.  On coarse maps, a
+    value can be outside the range of the two neighbouring points.  Such a value is clipped to this
+    range, so that figures show only computed extrema.  If a cubic would need an unknown value, the
     interpolation is linear.
 
     Parameters

@@ -3,14 +3,15 @@
 The table variables.csv describes every variable of a sweep's dataset, except the closed forms,
 which are described in catalogue.csv.  The columns of variables.csv are:
 
-- group: part of the dataset, or kind of sweep, that has the variable.
-- name, dims, kind, units: name, dimensions (of variables outside the map), type and unit.
-- source: entry of a result that contains the values.  If the column is empty, the entry has the
-  name of the variable.  For a variable that contains a change: the variable whose change is
-  computed.
-- long_name: text that is short enough for the axis of a plot.
-- description: longer text.
+- group: part of the dataset, or kind of sweep, that has the variable,
+- name, dims, kind, units: name, dimensions (of variables outside the map), type and unit,
+- source: entry of a result that contains the values; if the column is empty, the entry has the name
+  of the variable,
+- long_name: text that is short enough for the axis of a plot,
+- description: longer text,
 - flag_meanings: meanings of 0 and 1, if these are not "no" and "yes".
+
+If a variable contains a change, the column `source` names the variable whose change is computed.
 """
 
 from __future__ import annotations

@@ -103,7 +103,7 @@ def periods(study: Claims) -> list[list[dict]]:
 def sources(study: Claims) -> Iterator[tuple[str, Callable[..., dict], list[list[dict]]]]:
     """Yield the name, the function and the requests of each table that is read from runs.
 
-    The requests are a list of rows.  The function reads a line of evidence from the results of a
+    The requests are a list of rows.  The function computes a line of evidence from the results of a
     row.
     """
 
@@ -218,8 +218,9 @@ def limit_of(closed: Row, rings: Row, squares: Row, own: Row) -> dict:
     """Return four values for the static limit: from the closed form, from rings, from squares, and
     from the paper's own run.
 
-    The error of the closed form is estimated independently: it is the difference from the limit on
-    rings, plus the error estimate of this limit, plus the rounding error of the closed form.
+    The error of the closed form is estimated with the help of rings.  The estimate is the sum of
+    three terms: the difference from the limit on rings, the error estimate of this limit, and the
+    rounding error of the closed form.
     """
     (value, rounding), (resolved, error) = friction(closed), friction(rings)
     return {

@@ -2,11 +2,12 @@
 
 A study is a module with three functions and two strings:
 
-- requests(settings): yields pairs of a job and a request.  A job is a tuple.  Jobs with a smaller
-  first number start earlier.
-- values(settings, answers): returns the values of the dataset's variables, computed from answers.
-- report(dataset): yields lines of text that summarise the dataset.
+- requests(settings): yields pairs of a job and a request;
+- values(settings, answers): returns the values of the dataset's variables, computed from answers;
+- report(dataset): yields lines of text that summarise the dataset;
 - TITLE and COMMENT: attributes of the dataset.
+
+A job is a tuple.  Jobs with a smaller first number start earlier.
 
 The variables of all datasets are listed in variables.csv, and the groups in groups.csv.  The column
 `source` names an entry of a row.  The values of the variable are taken from this entry (see

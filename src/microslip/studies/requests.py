@@ -31,7 +31,7 @@ RINGS_TOLERANCE, TOLERANCE = 1e-6, 3e-5
 """Tolerances of references computed with rings and with angular points.  Rings are cheap, so the
 tolerance for rings is tighter."""
 ROTATIONS = ("bore", "continuous-bore")
-"""Motions with a rotation.  Only a few models apply to them."""
+"""Motions with a rotation.  Only a few models apply to such motions."""
 OF_ROTATIONS = ("rigid", "polar", "cartesian")
 """Models that apply to rotations.  The names are copied from contact.registry, because that module
 is slow to import."""

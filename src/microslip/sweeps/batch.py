@@ -47,8 +47,8 @@ Compute = Callable[[Sequence[dict]], Iterable[tuple[dict, float]]]
 
 
 class SourcesEdited(CacheError):
-    """Error raised if the code on disk differs from the running code.  It would be unclear which of
-    the two had computed a result."""
+    """Error raised if the code on disk differs from the running code.  It would be unclear which
+    code computed a result."""
 
     def __init__(self, file: str):
         problem = f"{file} was edited while its code was running, and its result is not stored"
@@ -157,7 +157,7 @@ class Job(ExitStack):
         return [self.records[key_of(request)] for request in requests]
 
     def missing(self, requests: Sequence[dict]) -> list[dict]:
-        """Return the requests without a record in the folder.  Each request is listed once."""
+        """Return the requests that have no record in the folder.  Each request is listed once."""
         self._find(requests)
         by_key = {key_of(request): request for request in requests}
         return [request for key, request in by_key.items() if key not in self.records]

@@ -109,7 +109,7 @@ class MapCoordinates(NamedTuple):
 
     @property
     def patches(self) -> list[Box]:
-        """Boxes in scaled coordinates that cover the map, ordered from low to high velocity."""
+        """Boxes that cover the map in scaled coordinates, ordered from low to high velocity."""
         boxes = [((0.0, float(y)), (1.0, y + 1.0)) for y in range(len(self._rows))]
         if self._cut:
             ends = np.linspace(FAST, FAST + 1.0, FAST_PATCHES + 1).tolist()

@@ -5,8 +5,8 @@ and sweeps with a drive, are shown as lines. The abscissa is the longest axis. T
 each combination of values along the other axes.
 
 Numbers from datasets are stored exactly. The forces, phases, radii and bounds in stored periods are
-rounded. Tractions, slip flags and densities are strings encoded by sweeps.period_codec; the page
-decodes them.
+rounded. Tractions, slip flags and densities are strings encoded by sweeps.period_codec. The page
+decodes these strings.
 """
 
 from __future__ import annotations

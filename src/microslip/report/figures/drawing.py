@@ -103,7 +103,7 @@ def import_matplotlib() -> None:
 
 
 def save(figure: Figure, path: str | os.PathLike[str]) -> Path:
-    """Write a figure atomically as `.png` (300 dpi) or `.pdf` and return its path.
+    """Write a figure atomically as `.png` (300 dpi) or `.pdf`, and return the path of the file.
 
     The metadata contain the provenance of the datasets as a JSON list, but no date, so that
     identical figures give byte-identical files. A missing folder is created. Raises CacheError if

@@ -1,10 +1,9 @@
 """Draw maps over two axes: friction, its change with Poisson's ratio, error estimates, drift
 velocity.
 
-`fill` draws each panel: bands, contours where they are certain, the computed points if there are
-few, and hatched cells where there is no result.  Every finite value of a dataset is visible as a
-colour or a marker.  Information that is omitted from a panel is given outside the panels, in the
-legend or in a heading.
+`fill` draws each panel: bands, reliable contours, the computed points if there are few, and hatched
+cells where there is no result.  Every finite value of a dataset is visible as a colour or a marker.
+Information that is omitted from a panel is given outside the panels, in the legend or in a heading.
 """
 
 from __future__ import annotations

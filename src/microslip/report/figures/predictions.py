@@ -131,7 +131,8 @@ def fit(dataset: xr.Dataset) -> Figure:
 
 
 def _parameters(dataset: xr.Dataset) -> str:
-    """Format the fitted parameters, each with the larger half-width of its confidence interval."""
+    """Format the fitted parameters, each with an uncertainty. The uncertainty is the larger of the
+    two half-widths of the confidence interval."""
     parts = []
     for symbol, name, unit in PARAMETERS:
         names = [name.format(part) for part in ("", "_low", "_high")]

@@ -106,10 +106,10 @@ def profile(dataset: xr.Dataset) -> Figure:
 def _versus(dataset: xr.Dataset, cost: str) -> Figure:
     """Draw the errors of all trials against the cost, with a panel for each point.
 
-    Each model with the default method has its own colour and marker; runs of other methods are
-    grey. Trials outside the axes are drawn at the edge, each with a circle around its marker.
-    A trial is outside the axes if its error is far below the error of the reference, or if its
-    result or its cost is missing.
+    Each model with the default method has its own colour and marker. Runs of other methods are
+    grey. Trials outside the axes are drawn at the edge, each with a circle around its marker. A
+    trial is outside the axes if its error is far below the error of the reference, or if its result
+    or its cost is missing.
     """
     names = {f"trial_{name}": name for name in ("point", "model", "method", "level")}
     names |= {cost: "cost", f"front_{cost}": "front"}

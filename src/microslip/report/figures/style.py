@@ -153,7 +153,8 @@ def axis(one: Quantity, short: bool = False) -> str:
 
 
 def number(value: float) -> str:
-    """Format a number as mathtext with three digits, and a power of ten if it is large or small."""
+    """Format a number as mathtext with three digits, and with a power of ten if the number is large
+    or small."""
     mantissa, _, exponent = f"{value:.3g}".partition("e")
     if not exponent:
         return mantissa
@@ -363,8 +364,8 @@ def logarithmic(axes: Axes, limits: Sequence[float] | np.ndarray | None = None) 
 
 
 def logarithmic_ticks(axis: Axis) -> None:
-    """Label an axis at powers of ten, or at round numbers if the axis contains fewer than two of
-    them."""
+    """Label an axis at powers of ten, or at round numbers if the axis contains fewer than two
+    powers of ten."""
     low, high = np.sort(axis.get_view_interval())
     powers = np.floor(np.log10(high) + 1e-9) - np.ceil(np.log10(low) - 1e-9) + 1
     axis.set_minor_formatter(ticker.NullFormatter())
