@@ -53,7 +53,7 @@ def point(motion: str, **arguments: Any) -> Answer:
 
 
 def point_motions() -> dict[str, str]:
-    """Return the description of each motion of `point`, with the units of velocity and
+    """Return the description of each motion that `point` accepts, with the units of velocity and
     amplitude."""
     from dataclasses import fields
 
@@ -78,11 +78,12 @@ def predict(motion: str, table: str | None = None, **arguments: Any) -> Answer:
     unit.  mu_macro is the friction with vibration divided by the friction without vibration.
     mu_apparent is the coefficient of friction with vibration.  If a quantity has a standard
     uncertainty, such as '0.15 +- 0.05' or '10 N +- 5 %', the result contains intervals and, under a
-    force, the probability of each outcome. A quantity can be a range: '0..2 um' gives 11 equally
+    force, the probability of each outcome.  A quantity can be a range: '0..2 um' gives 11 equally
     spaced values, '0..2 um, 21' gives 21, and '0.1..10 mm/s, 21, log' gives 21 logarithmically
     spaced values.  The result for a range is a table.  If the normal load oscillates, there are two
-    reference loads.  The dimensionless stiffness, mass and damping refer to mu times the load
-    without oscillation.  The dimensionless force and mu_macro refer to mu times the mean load.
+    reference loads.  The reference load of the dimensionless stiffness, mass and damping is the
+    load without oscillation.  The reference load of the dimensionless force and of mu_macro is the
+    mean load.
     """
     from microslip.si.inputs import is_range, read_inputs
 
@@ -123,7 +124,7 @@ def predict(motion: str, table: str | None = None, **arguments: Any) -> Answer:
 
 
 def real_motions() -> dict[str, str]:
-    """Return the description of each motion of `predict`."""
+    """Return the description of each motion that `predict` accepts."""
     from microslip.si.inputs import MOTIONS
 
     texts = {name: f"it {kind.description}" for name, kind in MOTIONS.items()}
@@ -211,12 +212,12 @@ def fit(
     The result contains the coefficient of friction without vibration, and either the displacement
     u_lim at which the whole contact slides or the shear modulus.  Each row of the CSV file is a
     measurement of friction under vibration.  The heading names the columns and their units.  One
-    column contains the measured values.  The heading of this column is friction [N] or mu.  The
-    other columns are speed [mm/s], amplitude [um], frequency [kHz] and load [N].  If one of these
-    four columns is missing, an option can give its value for all rows.  A column of standard
-    errors, friction_error [N] or mu_error, is optional.  Exit codes: 0 if both parameters are
-    determined; 1 if only mu is determined, or if unreadable lines are left out; 2 for bad input, or
-    if neither parameter is determined.
+    column contains the measured values.  The heading of this column is `friction [N]` or `mu`.  The
+    other columns are `speed [mm/s]`, `amplitude [um]`, `frequency [kHz]` and `load [N]`.  If one of
+    these four columns is missing, an option can give its value for all rows.  A column with
+    standard errors is optional.  Its heading is `friction_error [N]` or `mu_error`.  Exit codes: 0
+    if both parameters are determined; 1 if only mu is determined, or if unreadable lines are left
+    out; 2 for bad input, or if neither parameter is determined.
     """
     import microslip
 

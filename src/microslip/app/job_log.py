@@ -18,7 +18,7 @@ from microslip.foundation.named_files import problem_in_code
 def job_log(path: str | Path, shown: int = logging.WARNING) -> Iterator[logging.Logger]:
     """Context manager that yields a logger for a job.  The logger writes to the file `path`.
 
-    Messages of at least the level `shown` are also printed on standard error.  An error ends the
+    Messages at or above the level `shown` are also printed on standard error.  An error ends the
     process with exit code 1.  The log then contains the traceback.  For a CacheError, a
     SolverError, an error in a user's Python file or a full disk, the log contains only one line.
     """
@@ -62,8 +62,8 @@ def job_log(path: str | Path, shown: int = logging.WARNING) -> Iterator[logging.
 def end_job(number: int, frame: object) -> NoReturn:
     """Signal handler that removes partial files and ends this process without a message.
 
-    Without this handler, a KeyboardInterrupt would print a long traceback, and a pool of processes
-    would first finish its points.
+    Without this handler, a KeyboardInterrupt would print a long traceback.  Moreover, a pool of
+    processes would end only after its points are finished.
     """
     remove_partial()
     os._exit(128 + number)

@@ -41,8 +41,8 @@ MAP_CODE = ("sweeps/map_refinement.py", "sweeps/map_coordinates.py")
 """Modules that choose the points of a certified map."""
 
 MOST_COUNTED = 50_000
-"""Largest number of points that are looked up in stored results to count the new ones.  The records
-of more points would fill the memory."""
+"""Largest number of points for which stored results are searched in order to count the new points.
+The records of more points would fill the memory."""
 
 
 class Product(NamedTuple):
@@ -211,8 +211,8 @@ class Results:
 
     @cached_property
     def _needed(self) -> dict[Path, Batch | None]:
-        """Return the batches that are needed for missing products and have no file, keyed by the
-        path of the file."""
+        """Return the missing batches that missing products need.  Each key is the path of a batch
+        file."""
         needed: dict[Path, Batch | None] = {}
         for name in self.missing:
             paths = (self.folder / path for path in self.batch_files(name))

@@ -22,8 +22,8 @@ CLOSED_PIPE = 141
 same code."""
 STOPPED_BY = {"SIGINT": "interrupted", "SIGTERM": "terminated", "SIGHUP": "terminal closed"}
 STACK = 2**24
-"""Size of a thread's stack in bytes, 16 MB.  Some systems give a thread less than the compiler of
-the kernels needs."""
+"""Size of a thread's stack in bytes, 16 MB.  On some systems, the default stack is too small for
+the compiler of the kernels."""
 WAIT = 0.1
 """Longest wait in seconds before pending signals are handled.  Windows handles no signals during a
 wait."""

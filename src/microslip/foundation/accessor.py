@@ -14,7 +14,8 @@ from typing import Any
 
 
 def register() -> None:
-    """Register the accessor now, or when xarray is imported."""
+    """Register the accessor now if xarray is already imported.  Otherwise, register the accessor on
+    the import of xarray."""
     if "xarray" in sys.modules:
         _register(sys.modules["xarray"])
     else:

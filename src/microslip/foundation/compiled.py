@@ -58,8 +58,9 @@ OPTIONS = {"nogil": True, "error_model": "numpy"}
 ROOM = 16_000_000
 """Number of bytes that must be free on the disk of a folder.  The compiled code takes 5 MB."""
 SPELL = 1.0
-"""A compilation is announced again after this number of seconds without compilation.  In one
-solution, each compilation begins milliseconds after the end of the previous one."""
+"""A new message about a compilation is printed only if the last compilation ended more than this
+number of seconds ago.  In one solution, each compilation begins milliseconds after the end of the
+previous one."""
 PAUSE = 0.05
 """Seconds between two attempts to lock the folder."""
 ATTEMPTS = iter(range(2400))
@@ -110,13 +111,13 @@ class Locator(getattr(caching, "UserProvidedCacheLocator", object)):  # type: ig
 
     @classmethod
     def get_suitable_cache_subpath(cls, py_file: str) -> str:
-        """Return the name of the folder for a file with kernels."""
+        """Return the name of the folder in which the compiled code of a file is stored."""
         return Path(py_file).parent.name
 
 
 class _Listener(event.Listener):
-    """Listener for two kinds of Numba's events: those of the compiler lock, and compilations.
-    Numba holds the lock while it loads, compiles and stores code."""
+    """Listener for two kinds of Numba events: events of the compiler lock and compilations.  Numba
+    holds the lock while it loads, compiles and stores code."""
 
     depth, is_compiling, ended, seconds, started = 0, False, -SPELL, 0.0, 0.0
     lock: IO | None = None

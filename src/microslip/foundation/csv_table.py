@@ -32,7 +32,7 @@ SEPARATORS = {",": "comma", ";": "semicolon", "\t": "tab"}
 LABELS = ("label", "name", "id", "sample", "comment")
 """Columns of text that are copied to the output."""
 PURE = ("", "1", "-")
-"""Strings that replace the unit in the heading of a pure number."""
+"""Accepted units in the heading of a column of pure numbers."""
 HEADING = re.compile(r"(\w+)\s*(?:\[([^\]]*)\]|\(([^()]*)\))?")
 NUMBER = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?|[+-]?(nan|inf|infinity)", re.I | re.A)
 NO_ROW = re.compile(r"[\s,;\"]*|\s*#(?!(N/A|NV|[A-Z/0]+[!?])).*")
@@ -40,7 +40,7 @@ NO_ROW = re.compile(r"[\s,;\"]*|\s*#(?!(N/A|NV|[A-Z/0]+[!?])).*")
 not comments."""
 SEPARATOR_LINE = re.compile(r"\s*\"?sep=.\"?\s*", re.I)
 EXAMPLES = ("speed [mm/s]", "forward [um]")
-"""Headings that messages show as an example."""
+"""Headings that messages show as examples."""
 UNIT = re.compile(r"[\[(]?[^\W\d_][^\s,;]*[\])]?")
 """Pattern of a cell that may be a unit."""
 DECIMAL_COMMA = re.compile(r"(?<=[0-9]),(?=[0-9])|^([+-]?),(?=[0-9])")
@@ -274,8 +274,8 @@ def lines_of(content: bytes, encoding: str) -> list[str]:
 
 
 def _heading(lines: list[str], index: int, decimal: str) -> tuple[str, Heads, Rows]:
-    """Return the separator, the heading that begins in a line, and the rows below the heading.  The
-    returned heading is empty if the line is not a heading."""
+    """Read the heading that begins on a given line.  Returns the separator, the heading, and the
+    rows below the heading.  The returned heading is empty if no heading begins on this line."""
     for separator in sorted(SEPARATORS, key=decimal.__eq__):  # the comma last if it is decimal
         rows = _rows(lines, index, separator)
         titles = next(rows, (0, []))[1]

@@ -14,14 +14,14 @@ MOST_BYTES = 100_000_000
 LEAST_ROOM = 65536
 """Free disk space in bytes that a calculation needs to start."""
 ABANDONED = 3600.0
-"""Age in seconds above which a partial file is considered abandoned by a killed process."""
+"""Age, in seconds, above which a partial file is assumed to be left over from a killed process."""
 _PARTIAL: set[Path] = set()
 """Temporary files that this process is writing."""
 
 
 def content_of(path: str | os.PathLike, most: int = MOST_BYTES) -> bytes:
-    """Read the content of a file.  Raises OSError if the file cannot be read, and ValueError if it
-    has more than `most` bytes or is a device that never ends."""
+    """Read the content of a file.  Raises OSError if the file cannot be read.  Raises ValueError if
+    the content has more than `most` bytes, as an endless device has."""
     with open(path, "rb") as file:
         content = file.read(most + 1)
     if len(content) > most:

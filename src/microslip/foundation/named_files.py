@@ -1,11 +1,11 @@
-"""Names of motions and pressures, and of files with data or classes.
+"""Names of motions and pressures: classes of the package, Python files and data files.
 
     bore, elliptic:phase=90          a class of the package, with the numbers of its fields
     mine/soft_square.py:share=0.5    the class in a Python file
     file:pad.csv,grid=samples        a data file, with options
 
-A result depends on the content of a file, but not on the folder of the file.  Therefore, the name
-of a motion or a pressure from a file contains a digest:
+A result depends on the content of a file, but not on the folder of the file.  Therefore, if a file
+defines a motion or a pressure, the name of this motion or pressure contains a digest:
 "soft_square.py:sha256=0123456789abcdef,share=0.5" or "file:sha256=0123456789abcdef,grid=samples".
 The digest of a Python file covers the files that it imports from its folder.  Each process has a
 table of paths, keyed by digest.  If a process receives paths from another process, `remember` adds
@@ -196,7 +196,7 @@ def read(
 
 
 def remember(names: Iterable[str]) -> None:
-    """Store the file path of each name that contains a path and a digest.  Other names are
+    """If a name contains a path and a digest, store the path under the digest.  Other names are
     ignored."""
     for file in filter(None, map(parse, names)):
         if file.digest and os.path.isabs(file.path):

@@ -13,8 +13,8 @@ EXACT = 1e-9
 """Relative error below which a number is printed without its error, because all printed digits are
 correct."""
 ROUNDING = 1e-12
-"""Largest error of a zero that is printed without its error.  This value is the rounding error of
-numbers near 1."""
+"""If a value is 0 and its error is at most this number, the error is not printed.  Results near 1
+have rounding errors of this size."""
 SIZES = -4, 7
 """Range of decimal exponents in which numbers are printed without an exponent."""
 WIDE = Context(prec=800)
@@ -128,8 +128,9 @@ def interval_text(low: float, high: float, unit: str = "", *, error: float = 0.0
 
 
 def prefixed(value: float, unit: str) -> tuple[str, float]:
-    """Return the unit with a metric prefix, and the factor of this prefix.  The prefix is the
-    largest one with which the value is at least 1.  If the value is 0, the unit has no prefix."""
+    """Return the unit with a metric prefix, and the factor of this prefix.  The function chooses
+    the largest prefix for which the scaled value is at least 1.  If the value is 0, the unit has no
+    prefix."""
     size = abs(value) or 1.0
     prefix, factor = next((one for one in PREFIXES.items() if size >= one[1]), ("p", 1e-12))
     return f"{prefix}{unit}", factor

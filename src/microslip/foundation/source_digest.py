@@ -4,10 +4,10 @@ The name of a result contains the digest of the solver.  This digest covers the 
 subpackages that compute results, and the file of a comparison method.  The name of a dataset, page
 or figure contains the digest of its builder.  The builder of a product consists of the modules that
 make the product.  The builder also contains the modules that these modules import from the
-subpackages in `OUTER`, except from foundation.  The name of a motion or a pressure in a user's file
-also contains a digest.  This digest covers the user's file, and the files that it imports from its
-folder.  Comments, docstrings and layout do not change a digest.  If the text of a message changes,
-only the digests of builders change.
+subpackages in `OUTER`.  An exception is the subpackage foundation, whose modules are not included.
+The name of a motion or a pressure in a user's file also contains a digest.  This digest covers the
+user's file, and the files that it imports from its folder.  Comments, docstrings and layout do not
+change a digest.  If the text of a message changes, only the digests of builders change.
 
 Files are read when a digest is first needed.
 """
@@ -28,13 +28,13 @@ from microslip.foundation.files import write_atomically
 
 PACKAGE = Path(__file__).parents[1]
 OUTER = {"app", "bundle", "config", "datasets", "foundation", "report", "si", "studies", "sweeps"}
-"""Subpackages that do not compute results.  The files in NUMBERS are exceptions."""
+"""Subpackages that do not compute results.  The files listed in NUMBERS are exceptions."""
 NUMBERS = {"foundation/compiled.py", "sweeps/evaluate.py", "sweeps/period_codec.py"}
-"""Files that influence results, although they are in the subpackages of `OUTER`.  They compile
-functions, and convert the output of the solver."""
+"""Files that influence results, although they are in the subpackages of `OUTER`.  These files
+compile functions, or convert the output of the solver."""
 METHODS = "periodic/methods/"
-"""Folder of comparison methods.  A file in this folder influences only the results of requests that
-use its method."""
+"""Folder of comparison methods.  The code of a method influences only the results that were
+requested with this method."""
 ENDINGS = {".py", ".csv", ".html", ".css", ".js"}
 """File name extensions of modules, of their tables, and of parts of pages."""
 
@@ -91,7 +91,7 @@ class Sources:
 
     @property
     def solver(self) -> set[str]:
-        """Paths of the files of all subpackages that compute results."""
+        """Paths of the files that influence results, except comparison methods."""
         return {n for n in self.names if is_physics(n) and not n.startswith(METHODS)}
 
     @property

@@ -19,8 +19,8 @@ NUMBER = re.compile(
 WHOLE = re.compile(r"[+-]?[0-9]{1,18}", re.ASCII)
 MINUS = "\N{MINUS SIGN}"
 HALVES = {"diameter": "radius", "stroke": "amplitude", "peak_to_peak": "amplitude"}
-"""Name of half of a quantity, keyed by the name of the quantity.  For example, half of a diameter
-is a radius."""
+"""For each quantity that is twice an argument, the name of this argument.  For example, a diameter
+is twice a radius."""
 
 
 def read(argument: str, text: str, whole: bool = False) -> float | int:
@@ -96,8 +96,8 @@ def numbers_in(
     "forward=0.5,phase=90".  Returns the numbers, keyed by name, or an empty dict if the part is
     None.
 
-    Raises InputError about the argument `what` if the part cannot be read, or if `parameters` does
-    not contain the name of a number.  The message contains the whole string, and an example that
+    Raises InputError about the argument `what` if the part cannot be read, or if the part contains
+    a name that is not in `parameters`.  The message contains the whole string, and an example that
     begins with the name.
     """
     numbers: dict[str, float] = {}
@@ -137,7 +137,7 @@ def refuse_strange(record: Any, what: str) -> None:
 def refuse_outside(
     text: str, what: str, key: str, number: float, limits: tuple, *, kind: str = "a number"
 ) -> None:
-    """Raise InputError about the argument `what` if a number is outside its limits.
+    """Raise InputError about the argument `what` if a number is outside the given limits.
 
     kind: description of the number in the message.
     """

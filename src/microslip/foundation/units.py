@@ -40,7 +40,8 @@ DEFINITIONS = {
 """Allowed prefixes, keyed by definitions of units.  A definition is a number times known units.
 One hertz is one turn per second, which is 2 pi times 1 rad/s."""
 CYCLIC = re.compile(r"\w{0,2}(Hz|cps)")
-"""Names of cyclic frequencies, which are accepted alone but not in products."""
+"""Pattern of a unit of cyclic frequency, such as Hz.  Such a unit is accepted alone, but not in a
+product of units."""
 ANGULAR = re.compile(r"\w?rad(/s|\s*s\^?-1|·?s⁻¹)?")
 """Units of the same kind as rad or rad/s."""
 NUMBER = re.compile(r"[+-]?(?:(\d+)\.?(\d*)|\.(\d+))(?:[eE]([+-]?\d+))?", re.A)
@@ -56,7 +57,7 @@ EXAMPLES = {
     **{"rad": "0.5 deg", "rad/s": "60 rpm", "kg/m^3": "7850 kg/m^3", "N/m": "10 N/um", "": "0.3"},
     **{"kg": "20 g", "N*s/m": "5 N*s/m", "m^2/N": "1e-5 mm^3/N/m"},
 }
-"""Example of a quantity, keyed by SI unit."""
+"""For each SI unit, an example of a quantity."""
 RATE = ", which may mean Hz or rad/s; they differ by 2 pi, so write one of them"
 HINTS = {
     "Hz": {"s^-1": RATE},
@@ -216,8 +217,8 @@ def _from_text(text: str, si: str, units: bool = False) -> Quantity:
 
 
 def _number(text: str, si: str, units: bool) -> tuple[float, bool]:
-    """Return the SI value of a number with a unit, and whether the unit is of the same kind as the
-    SI unit."""
+    """Return two values: a number in SI units, and a boolean.  The boolean is False if an angle or
+    a frequency has a unit of another kind, such as deg instead of rad."""
     text = text.replace("−", "-").strip()
     match = NUMBER.match(text)
     if not text or re.match(r"[+-]?(inf|nan)", text, re.I):

@@ -136,8 +136,9 @@ class Contact:
     def mismatch(self) -> Any:
         """Dundurs' dimensionless constant beta, which is 0 for equal bodies.
 
-        With p = (1 - 2 nu)/G and q = (1 - nu)/G for each body, beta is (p1 - p2) / (2 (q1 + q2)).
-        Beta is a measure of the tangential displacement caused by pressure.
+        For each body, let p = (1 - 2 nu) / G and q = (1 - nu) / G.
+        Then beta is (p1 - p2) / (2 (q1 + q2)).  Beta is a measure of the tangential displacement
+        caused by pressure.
         """
         first, second = ((1.0 - 2.0 * one.poisson) / one.shear_modulus for one in self.bodies)
         both = sum((1.0 - one.poisson) / one.shear_modulus for one in self.bodies)

@@ -92,7 +92,7 @@ COARSE = {"poisson": 0.0, "tolerance": 5e-3}
 """Settings of the coarse map.  Poisson's ratio is set to 0, because Poisson's ratio hardly changes
 the slopes of the map."""
 NODES = 161
-"""Number of values of ln u_lim at which the friction of the rows is tabulated."""
+"""Number of values of ln u_lim for which the friction of each row is tabulated."""
 MOST_PASSES, SETTLED = 6, 5e-4
 """MOST_PASSES: largest number of corrections of the coarse map.  SETTLED: no further correction is
 made if the relative change of both unknowns is below this value."""
@@ -382,8 +382,8 @@ def _read_rows(source: Any, shared: dict[str, Any], **form: str) -> dict[str, An
 
 
 def _read_bodies(nu: Any, radius: Any, counterbody: Any) -> tuple[dict[str, Any], dict[str, str]]:
-    """Read the inputs nu, radius and counterbody.  Returns two dicts, keyed by input: the values of
-    the inputs, and their descriptions.  Raises InputError."""
+    """Read the inputs nu, radius and counterbody.  Returns two dicts, keyed by input.  One contains
+    the values of the inputs, and the other contains their descriptions.  Raises InputError."""
     if radius is None and counterbody is not None:
         raise InputError("counterbody", counterbody, "allowed with a radius")
     if radius is not None and nu is None:
@@ -659,8 +659,8 @@ def _warnings(motion: str, rows: Rows, bodies: dict[str, Any], mu: float, size: 
 
 
 def _curve(rows: Rows, profile: Profile, friction: Friction, mu: float) -> Rows:
-    """Compute the model's friction on curves.  Each curve connects rows that differ in one
-    condition only.  The returned arrays contain these curves one after another.
+    """Compute curves of friction from the fitted model.  Each curve connects rows that differ in
+    one condition only.  The returned arrays contain these curves one after another.
 
     This condition is the one that has the most distinct values in the table.  The corrections of
     the coarse map at the rows are interpolated between the rows.

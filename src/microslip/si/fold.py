@@ -1,9 +1,9 @@
 """Average a long record of a motion, such as one measured by a laser vibrometer, to one period.
 
 A record contains many periods, noise, and a slow drift.  The drift is the moving mean over one
-period, which is constant for a periodic motion.  The difference between the record and the drift is
-averaged over all whole periods.  The scatter between the periods gives the standard error of the
-average.
+period.  For a periodic motion, this mean is constant.  The difference between the record and the
+drift is averaged over all whole periods.  The scatter between the periods gives the standard error
+of the average.
 
 If the frequency drifts, the periods are averaged out of phase, and the average is too small.  The
 noise of neighbouring periods is uncorrelated.  Therefore, the variance of this slow phase drift
@@ -30,8 +30,8 @@ FEWEST_PERIODS, FEWEST_PER_PERIOD = 4, 4
 """Smallest number of periods in a record, and smallest number of samples in a period.  At each end
 of the record, half a period is lost."""
 ROWS, MOST_ROWS = 32, 10_000
-"""Default and largest number of samples in the period.  With more samples, the period contains more
-harmonics, but also more noise."""
+"""Default number of samples in the period, and largest allowed number.  With more samples, the
+period contains more harmonics, but also more noise."""
 REFINEMENTS = 3
 """Number of corrections of the frequency.  After a correction, the remaining error of the frequency
 is due to the errors of the phases."""
@@ -40,8 +40,8 @@ PARTS, MOST_PARTS, PERIODS_OF_PART = FEWEST_PERIODS, 20, 10
 The median amplitude of 10 noisy periods is rarely below one half of the mean."""
 STEADY = 0.5
 """Smallest allowed ratio of the amplitude of a part to the mean amplitude.  If the ratio is below
-one half, the amplitude of the part is nearer to 0 than to the mean.  Such a part is nearer to a
-state of rest than to the mean period."""
+one half, the amplitude of the part is nearer to 0 than to the mean.  In such a part, the motion is
+considered to be interrupted."""
 LARGEST_CHANGE = 0.1
 """Largest accepted difference between the amplitudes of two quarters of a record, divided by the
 mean amplitude."""
@@ -52,12 +52,12 @@ LARGEST_LOSS = 0.01
 """Largest accepted relative loss of the strongest harmonic due to a drift of the frequency.  The
 estimate of the loss is of first order, so it is correct for small losses only."""
 SIGNIFICANT = 5.0
-"""Smallest accepted ratio of the peak-to-peak value to its standard error.  White noise has a ratio
-of about 3 at the frequency of its strongest component."""
+"""Smallest accepted ratio of the peak-to-peak value to the standard error of this value.  For white
+noise, this ratio is about 3 at the frequency of the strongest component."""
 PHASE_OF_A_DRIFT = 0.5 * math.sqrt(1.0 / 80.0 - 1.0 / 144.0)
 """Standard deviation of the phase, in periods, for a frequency that changes linearly over the
-record.  The whole change of the frequency is 1 divided by the duration of the record.  The value is
-the standard deviation of u**2 / 2, where u is uniformly distributed from -1/2 to 1/2."""
+record.  During the record, the frequency changes by 1 divided by the duration of the record.  The
+value is the standard deviation of u**2 / 2, where u is uniformly distributed from -1/2 to 1/2."""
 FINER = 32
 """Number of interpolated points per sample for the peak-to-peak value.  With 32 samples, the peak
 of a sine is too small by at most 5e-6 of its amplitude."""
@@ -154,7 +154,7 @@ def fold(
     integral = spline.antiderivative()
 
     def drift(time: Any) -> np.ndarray:
-        """Return the mean over one period that is centred at a given time."""
+        """Return the mean over one period.  The given time is the centre of this period."""
         return (integral(time + 0.5 / hz) - integral(time - 0.5 / hz)) * hz
 
     for refinement in range(REFINEMENTS + 1):
@@ -264,9 +264,10 @@ def _change(sizes: np.ndarray) -> float:
 
 
 def _phases(parts: np.ndarray) -> tuple[float, float, float, int, int]:
-    """Compute five values: the relative correction of the frequency and its standard error, the
-    variance of the slow phase drift (in periods squared), and the order and the column of the
-    strongest harmonic.  The first three values are computed from the phases of this harmonic."""
+    """Find the strongest harmonic, and compute three values from the phases of this harmonic.
+    These values are the relative correction of the frequency, the standard error of this
+    correction, and the variance of the slow phase drift (in periods squared).  The function returns
+    the three values, the order of the harmonic, and the column of the harmonic."""
     power = np.mean(np.abs(parts) ** 2, axis=0)
     share = power / np.maximum(power.sum(axis=0), 1e-300)
     column = int(np.argmax(share[1:].max(axis=0)))

@@ -1,6 +1,6 @@
-"""The inputs of a prediction.  One table defines every input.  An input is a Python argument, a
-command-line option and a column of CSV files.  The table also defines the checks, the help text and
-the line on the reference page."""
+"""The inputs of a prediction.  One table defines every input.  Each input can be given as a Python
+argument, as a command-line option, or as a column of a CSV file.  The table also defines the
+checks, the help text and the line on the reference page."""
 
 from __future__ import annotations
 
@@ -108,17 +108,18 @@ OF_BODIES = (
 """Inputs that are not printed on a separate line.  The properties of a body are printed on the line
 of the body."""
 SEARCHED = "amplitude", "speed", "load"
-"""Inputs that a reduction can replace."""
+"""Inputs that a search for a requested reduction of friction can determine."""
 OSCILLATIONS = {
     "amplitude": "lateral",
     "forward_amplitude": "forward",
     "rotation_amplitude": "angle",
     "load_amplitude": "load",
 }
-"""Direction of each oscillation in the solver's motions, keyed by the input for its amplitude."""
+"""For each input that is the amplitude of an oscillation, the direction of this oscillation in the
+motions of the solver."""
 SAME_ANGLE = 1e-3
 """Largest relative difference between two angles that count as equal.  One of these angles is the
-largest of 721 samples."""
+largest of 721 samples of the motion."""
 
 
 @dataclass(frozen=True)
@@ -402,7 +403,7 @@ def read_quantity(name: str, value: Any, one: Input) -> Quantity:
 def _check(motion: Any, kind: Kind, given: Mapping[str, Any]) -> str | None:
     """Check that the inputs are complete and do not contradict each other.  Raises InputError.
 
-    Returns the name of the input that a reduction replaces, or None if no reduction is requested.
+    Returns the name of the input that a search determines, or None if no reduction is requested.
     """
 
     def refuse(arguments: str, is_wrong: object, allowed: str) -> None:

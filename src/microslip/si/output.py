@@ -312,7 +312,7 @@ def _names() -> set[str]:
 
 
 def line(title: str, text: str) -> str:
-    """Format a printed line that begins with a title."""
+    """Return a line of text that begins with a title."""
     return f"{title:<{WIDTH - 1}} {text}"
 
 

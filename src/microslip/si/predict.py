@@ -155,9 +155,9 @@ def outputs(contact: Contact, answer: Prediction) -> dict[str, Value]:
 
 
 def factors_of(contact: Contact, answer: Prediction) -> dict[str, Any]:
-    """Return the factors of the outputs in SI units, keyed by name.  Each output is a product of
-    factors.  Attributes of the contact can also be factors, but are not in the returned dict.  All
-    formulas accept arrays."""
+    """Return the factors from which the outputs in SI units are computed, keyed by name.  Each
+    output is a product of factors.  Attributes of the contact can also be factors, but are not in
+    the returned dict.  All formulas accept arrays."""
     inputs, known, mean_load = contact.inputs, answer.values, answer.values["mean_load"].value
     friction, velocity, unit = known["friction"], known["velocity"], contact.speed_unit
     still, period = contact.mu * contact.load * mean_load, 2.0 * math.pi / contact.omega

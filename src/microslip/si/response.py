@@ -75,7 +75,8 @@ def predict_response(
     progress: Callable[[int, int], None] | None = None,
     **contact: object,
 ) -> RealResponse:
-    """Compute the forces, in SI units, in a contact of two bodies that follows a measured path.
+    """Compute the forces in a contact of two bodies along a measured path.  The forces are in SI
+    units.
 
     Parameters
     ----------

@@ -36,8 +36,9 @@ To reach a smaller tolerance, the solver would need more than a minute."""
 SLOWEST = 1e-3
 """Dimensionless velocity below which the accepted error is absolute instead of relative."""
 MARGIN = 0.8
-"""Safety factor on the accepted error of a second run.  The factor is below 1 because the velocity
-of the second run can be smaller than the velocity of the first run."""
+"""The accepted error is multiplied by this safety factor to obtain the tolerance of a second run.
+The factor is below 1 because the velocity of the second run can be smaller than the velocity of the
+first run."""
 RUNS_AWAY = "runs away"
 """If the contact accelerates without limit, the solver returns a reason that begins with these
 words."""
@@ -52,8 +53,8 @@ LOAD = 1e-12
 """Load, in N, at which the dimensionless groups are computed in a search for the load.  This load
 is so small that Hertz's theory applies to all bodies."""
 STEP = 0.05
-"""Step of the finite difference that gives the slope of friction.  The step is a change of the
-logarithm of the unknown."""
+"""Step with which the slope of friction is computed by finite differences.  The step is a change of
+the logarithm of the unknown."""
 
 
 class NoSolutionError(InputError):
@@ -109,8 +110,8 @@ def answer_of(contact: Contact) -> Prediction:
 def solve_at(contact: Contact, velocity: float | None, tolerance: float, **drive: float) -> Result:
     """Return the `Result` for a contact, computed by microslip.solve or interpolated in a map.
 
-    The arguments `velocity` and `drive` have the same meaning as for `problem_of`.  A raised
-    InputError is about the corresponding input of `predict`.
+    The arguments `velocity` and `drive` have the same meaning as for `problem_of`.  If an
+    InputError is raised, it names the corresponding input of `predict`.
     """
     inputs = contact.inputs
     try:
@@ -153,11 +154,11 @@ def static_limit(contact: Contact) -> Result:
 
 
 def largest_force(contact: Contact) -> float:
-    """Return the smallest constant force at which the contact runs away, divided by mu times the
-    mean load.
+    """Return the smallest constant force at which the contact slides away without limit.  The force
+    is divided by mu times the mean load.
 
-    This force is 1 for a body with a mass.  Otherwise, the force is the ratio of the smallest
-    normal load in a period to the mean load.
+    For a body with a mass, the result is 1.  Otherwise, the result is the smallest normal load in a
+    period, divided by the mean load.
     """
     return 1.0 if contact.inputs.mass else min(1.0, limits.least_load(problem_of(contact)))
 
@@ -227,9 +228,9 @@ def _friction(
 def within_range(drive: dict[str, float]) -> dict[str, float]:
     """Return the dimensionless drive, limited to the range of the solver.
 
-    If the force exceeds the range of the solver, the contact runs away.  A body that is too heavy
-    or too stiff hardly moves.  The mass, stiffness and damping of such a body are divided by a
-    common factor.  This preserves the natural frequency.
+    If the force exceeds the range of the solver, the contact slides away without limit.  A body
+    that is too heavy or too stiff hardly moves.  The mass, stiffness and damping of such a body are
+    divided by a common factor.  This preserves the natural frequency.
     """
     body = {name: value for name, value in drive.items() if name != "force"}
     scale = max(1.0, max(body.values(), default=0.0) / arguments.LARGEST_BODY)
@@ -279,8 +280,8 @@ def _rest(contact: Contact) -> tuple[dict[str, Value], str]:
 def with_mean_load(problem: Problem) -> Problem:
     """Return the problem without the oscillation of its normal load.
 
-    If the contact separates, the problem is returned unchanged.  The units of such a problem do not
-    refer to the mean load.  If nothing else oscillates, the amplitude of the result is 0.
+    If the contact separates, the problem is returned unchanged.  In such a problem, the mean load
+    differs from the reference load.  If nothing else oscillates, the amplitude of the result is 0.
     """
     motion = problem.motion
     if not motion.loads or abs(problem.mean_load - 1.0) > ROUNDING:
@@ -303,18 +304,18 @@ SIMPLER: dict[str, Callable[[Problem], Problem]] = {
     ),
     "a constant load suffices: with the mean load": with_mean_load,
 }
-"""Functions that simplify a Problem, keyed by the beginning of a sentence.  The sentence is printed
-if the simpler Problem has the same mu_macro within the error."""
+"""Functions that simplify a Problem.  Each key is the beginning of a sentence about the simpler
+problem.  The sentence is printed if both problems have the same mu_macro, within the error."""
 
 
 def simplifications(contact: Contact, answer: Prediction) -> list[str]:
-    """Return the sentences of `SIMPLER` that apply to a contact.  A sentence applies if the contact
-    and the simpler contact have the same friction at the same speed.  The allowed difference is the
-    error of `answer`.
+    """Return the sentences of `SIMPLER` that apply to a contact.  Each sentence is about a simpler
+    contact.  The sentence applies if both contacts have the same friction at the same speed.  The
+    allowed difference is the error of `answer`.
 
-    A contact counts as simpler only if the solver chooses a cheaper model for it, or if its load
-    becomes constant.  The list is empty for a contact under a prescribed force.  The list is also
-    empty for a result from a closed form or a map, and for a result that is not converged.
+    A contact counts as simpler only if the solver can use a cheaper model, or if the load becomes
+    constant.  The list is empty for a contact under a prescribed force.  The list is also empty for
+    a result from a closed form or a map, and for a result that is not converged.
     """
     friction, tolerance = answer.values["friction"], contact.inputs.tolerance or TOLERANCE
     if contact.inputs.force is not None or not answer.converged or answer.model not in MODELS:
@@ -397,11 +398,12 @@ class FrictionMap:
 
 def find_reduction(inputs: Inputs) -> tuple[Contact, Value]:
     """Find the smallest amplitude, the largest speed or the largest load that gives the requested
-    reduction.  Returns the contact, and the value of this quantity in its SI unit.
+    reduction.  Returns the contact, and the value of the quantity that was searched for, in SI
+    units.
 
-    If the solver fails for a contact of the search, this contact is returned, with NaN as the error
-    of the quantity.  Raises NoSolutionError if the reduction is outside the range of the search,
-    and InputError if an input is invalid.
+    If the solver fails for a contact during the search, this contact is returned, and the error of
+    the quantity is NaN.  Raises NoSolutionError if the reduction is outside the range of the
+    search, and InputError if an input is invalid.
     """
     from scipy.optimize import brentq
 
@@ -461,7 +463,7 @@ def find_reduction(inputs: Inputs) -> tuple[Contact, Value]:
 
 
 def _check_share(inputs: Inputs, share: float, tolerance: float) -> None:
-    """Raise InputError for a reduction that no search can determine."""
+    """Raise InputError if no search can find a contact with the requested reduction of friction."""
     most = f"{100.0 * (1.0 - tolerance):g} %, 100 % minus the tolerance: at a speed some friction"
     spins, moves = inputs.kind.unit == "rad", inputs.search != "speed" and inputs.speed
     for name, is_refused, allowed in (
@@ -475,8 +477,8 @@ def _check_share(inputs: Inputs, share: float, tolerance: float) -> None:
 
 
 def _line(inputs: Inputs, name: str, share: float) -> tuple[float, float, float, float, float]:
-    """Return the parameters of the search, in which the unknown is scale * exp(power * place).
-    Friction decreases as `place` increases.
+    """Return the parameters of the search.  The unknown is scale * exp(power * place).  Friction
+    decreases as `place` increases.
 
     Returns
     -------

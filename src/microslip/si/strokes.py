@@ -68,13 +68,13 @@ class Stroke:
 
     def sampled(self, contact: Any, size: float) -> Sampled:
         """Return the motion for microslip.solve.  In this motion, the displacements are divided by
-        `size`, and so are the deviations of the load or the indentation from 1."""
+        `size`.  The deviations of the load or the indentation from 1 are also divided by `size`."""
         deviations = self.deviations(contact).items()
         return Sampled.of_columns({n: one / size + (n in NORMAL) for n, one in deviations})
 
 
 def scales(contact: Any, columns: dict[str, np.ndarray]) -> dict[str, float]:
-    """Return the unit of each column, converted to SI.  The units are those of `microslip.response`
+    """Return the SI value of the unit of each column.  The units are those of `microslip.response`
     and `microslip.Sampled`."""
     if "indentation" in columns and not math.isfinite(contact.indentation):
         allowed = "allowed is a load: the indentation under this pressure is not known"

@@ -368,12 +368,12 @@ def _digits(one: Value | None) -> tuple[str, str, str]:
 
 
 def interpolation_errors(values: xr.DataArray) -> dict[str, float | None]:
-    """For each axis, return the largest difference between a value and the linear interpolation of
-    its two neighbours.
+    """Return the largest deviation from linear interpolation along each axis.  The deviation is the
+    difference between a value and the linear interpolation between the two neighbouring values.
 
-    The difference is None for an axis with fewer than three values.  If the values are smooth,
-    linear interpolation between them has an error of one quarter of the sum of these differences
-    over all axes.
+    The deviation is None for an axis with fewer than three values.  If the values are smooth,
+    linear interpolation between neighbouring values has an error of one quarter of the sum of the
+    deviations over all axes.
     """
     errors: dict[str, float | None] = {}
     for name in map(str, values.dims):

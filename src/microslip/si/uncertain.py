@@ -35,11 +35,11 @@ DRAWS = 2**15
 LEVELS = (-3.0, -1.5, 1.5, 3.0)
 """Positions of points along a line, in standard deviations.  The solver computes the result at
 these points.  Draws beyond the outermost points are replaced by these points.  This replacement
-reduces a standard deviation by 0.25 %.  If the outermost points were at 2.5 standard deviations,
-the reduction would be 1.1 %."""
+makes a standard uncertainty 0.25 % too small.  If the outermost points were at 2.5 standard
+deviations, the standard uncertainty would be 1.1 % too small."""
 STATIC_LEVELS = (-3.0, -1.96, -1.3, -0.65, 0.65, 1.3, 1.96, 3.0)
-"""Points along a line at which the static limit is computed.  The bounds of a 95 % interval are at
--1.96 and 1.96."""
+"""Positions of points along a line, in standard deviations.  The solver computes the static limit
+at these points.  The bounds of a 95 % interval are at -1.96 and 1.96."""
 NEARER = (1.0, 0.75, 0.5, 0.25)
 """Factors of a level.  The level is multiplied by each factor in turn, until the inputs are within
 the range of the theory."""
@@ -49,12 +49,12 @@ number of points is added where the static limit is close to the force."""
 VANISHING = 1e-3
 """Largest static limit that counts as 0 in the bisection."""
 CLOSEST = 64
-"""The fraction of draws that count as close to the force is 1 divided by this value.  These draws
-have the smallest differences between static limit and force."""
+"""The fraction of draws that count as close to the force is 1 divided by this value.  For these
+draws, the static limit is closest to the force."""
 NEGLIGIBLE = 1e-3
-"""An axis is ignored if the groups hardly vary along the axis: their standard deviation is at most
-this fraction of the standard deviation along the first axis.  A standard uncertainty is infinite if
-more than this fraction of the draws has no finite value."""
+"""Along each axis, the groups have a standard deviation.  An axis is ignored if its standard
+deviation, divided by that of the first axis, is at most this value.  A standard uncertainty is
+infinite if the fraction of draws without a finite value is above this value."""
 SMALLEST = 5e-324
 """Smallest positive number.  If an input must be above 0, this number replaces 0."""
 DRIVEN = ("velocity", "force", "stiffness", "mass", "damping")
@@ -93,8 +93,9 @@ class _Line(NamedTuple):
                     continue
 
     def values(self, name: str) -> np.ndarray:
-        """Return the values of all draws.  The values are interpolated between the nodes, constant
-        beyond the outermost nodes, and NaN where the nearest node has no value."""
+        """Return the values of all draws.  Between the nodes, the values are interpolated.  Beyond
+        the outermost nodes, the values are constant.  If the nearest node of a draw has no value,
+        the value of the draw is NaN."""
         from scipy.interpolate import PchipInterpolator
 
         pairs = {place: values.get(name, math.nan) for _, place, values in self.nodes}
@@ -206,10 +207,11 @@ class Draws:
         return np.nan_to_num(np.stack(np.broadcast_arrays(*columns), axis=-1))
 
     def _lines(self, central: dict[str, float], static: bool = False) -> list[_Line]:
-        """Return the lines along which the result varies.  If `static` is true, these are the lines
-        along which the static limit varies.  The lines are the principal axes of the groups.  If
-        the number of inputs does not exceed the number of principal axes, the lines are drawn along
-        the axes of the inputs.  The first node of each line is at the centre."""
+        """Return the lines, in the space of the inputs, along which the result varies.  If `static`
+        is true, these are the lines along which the static limit varies.  The lines follow the
+        principal axes of the groups.  If the number of inputs does not exceed the number of
+        principal axes, the lines are drawn along the axes of the inputs.  The first node of each
+        line is at the centre."""
         normal, count = self._normal, len(self._inputs.uncertain)
         groups = self._groups(self.contact, static)
         if len(groups) == 1:
@@ -303,8 +305,8 @@ def probabilities(contact: Contact, answer: Prediction) -> dict[str, Value]:
     If no force is prescribed, the result is empty.
 
     The error estimate is the largest of three values.  The first value is the change of the
-    probability due to the error of the threshold.  The second value is the difference between the
-    probability computed from the even draws and the probability computed from the odd draws.  The
+    probability due to the error of the threshold.  The second value is the difference between two
+    probabilities.  One is computed from the even draws, and the other from the odd draws.  The
     third value, log(DRAWS) / DRAWS, is the order of the discrepancy of the sequence.
 
     contact, answer: the attributes of Draws.

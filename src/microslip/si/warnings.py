@@ -42,10 +42,10 @@ LARGE_MU = 1.0
 SMALL = 0.1
 """Ratios up to this value are negligible in the theory."""
 STEEP = 0.2
-"""Half-spaces are a poor approximation if one of two ratios is above this value.  The ratios are
-the contact radius a divided by the radius of the smaller body, and a divided by the radius R of
-relative curvature.  Hertz's theory assumes a << R1, R2 and a << R (K. L. Johnson, Contact
-Mechanics, 4.2)."""
+"""Half-spaces are a poor approximation if one of two ratios is above this value.  The first ratio
+is the contact radius a divided by the radius of the smaller body.  The second ratio is a divided by
+the radius R of relative curvature.  Hertz's theory assumes a << R1, R2 and a << R (K. L. Johnson,
+Contact Mechanics, 4.2)."""
 AGREES = 0.01
 """Largest relative difference between two sizes or loads that count as equal.  This value allows
 for rounding to two or three digits."""
@@ -202,7 +202,7 @@ def measures(contact: Contact, speed: float) -> dict[str, float | None]:
     """Compute the measures of a contact, keyed by name.  A measure that is unknown or does not
     apply is None.
 
-    Pressures and the contact radius are those at the largest load in a period.
+    Pressures and the contact radius are computed at the largest load in a period.
     """
     inputs, kind, most, factor = contact.inputs, contact.kind, contact, 1.0
     if inputs.load_amplitude:
@@ -253,13 +253,14 @@ def _pull_off(contact: Contact) -> tuple[float | None, float | None]:
     """Return Tabor's number of a paraboloid, and the pull-off force in N.  Unknown values are None.
 
     The pull-off force of a paraboloid is computed for an equivalent sphere.  The radius of this
-    sphere is the geometric mean of the paraboloid's two radii of relative curvature.  The force of
-    this sphere is exact in the DMT theory (B. V. Derjaguin, Kolloid-Z. 69, 1934).  In the JKR
-    theory, the force of the equivalent sphere is an upper bound, which slender ellipses do not
-    reach (K. L. Johnson and J. A. Greenwood, J. Phys. D 38, 2005).  Let F(c) be the load without
-    adhesion at the contact radius c.  The pull-off force of another axisymmetric indenter is the
-    largest value of sqrt(8 pi E* w c^3) - F(c) for all c (D. Maugis, Contact, Adhesion and Rupture
-    of Elastic Solids, 4.2).  For a flat punch, this is Kendall's force (J. Phys. D 4, 1971).
+    sphere is the geometric mean of the paraboloid's two radii of relative curvature.  In the DMT
+    theory, the pull-off force of this sphere is exact (B. V. Derjaguin, Kolloid-Z. 69, 1934).  In
+    the JKR theory, the force of the equivalent sphere is an upper bound, which slender ellipses do
+    not reach (K. L. Johnson and J. A. Greenwood, J. Phys. D 38, 2005).  Let F(c) be the load
+    without adhesion at the contact radius c.  For any other axisymmetric indenter, the pull-off
+    force is the maximum over c of sqrt(8 pi E* w c^3) - F(c) (D. Maugis, Contact, Adhesion and
+    Rupture of Elastic Solids, 4.2).  For a flat punch, this is Kendall's force (J. Phys. D 4,
+    1971).
     """
     shape, crack = contact.shape, 8.0 * math.pi * contact.E_star * ADHESION
     if shape.hertzian:
