@@ -177,7 +177,7 @@ def _predictions(cases: Cases, table: str | None = None) -> Answer:
 
 
 def _solved(cases: Cases, **options: Any) -> list[Any]:
-    """Return the Prediction of each contact, or the reason why there is no prediction."""
+    """Return the Prediction for each contact, or the reason why there is no prediction."""
     from microslip.si.table import predictions
 
     answers = []
@@ -234,9 +234,9 @@ def response(path: str, output: str | None = None, **arguments: Any) -> Answer:
     """Compute the forces of a contact that follows a path from a file.
 
     The result contains forces, torque, dissipated energy and stick fraction, with error estimates.
-    The file can have the columns forward, lateral and angle.  The file can also have one of the
-    columns load and indentation.  Each heading contains the unit, for example `forward [um]`.
-    `load` is the load of the reference state.
+    The file can have the columns `forward`, `lateral` and `angle`.  The file can also have one of
+    the columns `load` and `indentation`.  Each heading contains the unit, for example `forward
+    [um]`.  `load` is the load of the reference state.
     """
     import microslip
 
@@ -257,8 +257,9 @@ def fold(record: str, output: str = "", rows: int = 32, **arguments: str) -> Ans
 
     The slow drift is removed, and the periods are averaged.  The standard error accounts for the
     scatter between the periods and for a slow drift of the frequency.  The record must have the
-    column time.  The record can have the columns forward, lateral and angle, and one of the columns
-    load and indentation.  Each heading contains the unit, for example `time [s],lateral [um]`.
+    column `time`.  The record can have the columns `forward`, `lateral` and `angle`, and one of the
+    columns `load` and `indentation`.  Each heading contains the unit, for example `time [s],lateral
+    [um]`.
     """
     from microslip.foundation.number_text import number_text
     from microslip.si.fold import fold as fold_record
@@ -303,8 +304,8 @@ def fold(record: str, output: str = "", rows: int = 32, **arguments: str) -> Ans
 def iwan(output: str | None = None, **arguments: Any) -> Answer:
     """Export an Iwan model of a contact: parallel springs with sliders.
 
-    The model describes a contact that moves along a line.  It consists of parallel Jenkins
-    elements, each of which is a spring in series with a slider.  The table contains the stiffness
+    The model describes a contact that moves along a line.  The model consists of parallel Jenkins
+    elements.  Each element is a spring in series with a slider.  The table contains the stiffness
     and the limit force of each element.  If nu = 0, the model with many elements is exact for every
     load path.  If nu > 0, the model is compared with the full contact, and the difference is part
     of the error.

@@ -1,4 +1,4 @@
-"""Progress of a calculation on a terminal."""
+"""Display of the progress of a calculation on a terminal."""
 
 from __future__ import annotations
 
@@ -8,8 +8,8 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 
 FIRST, BETWEEN = 2.0, 1.0
-"""Seconds until the progress is first shown, and between updates.  Most calculations end
-earlier."""
+"""Time, in seconds, until the progress is first shown, and time between two updates.  Most
+calculations end earlier."""
 
 
 @contextmanager

@@ -50,8 +50,8 @@ def is_real(value: object) -> TypeGuard[float]:
 
 
 def real(name: str, value: object, low: float, high: float = math.inf) -> float:
-    """Convert a finite number between `low` and `high` to a float.  Raises InputError for anything
-    else."""
+    """Return the value as a float if it is a finite number between `low` and `high`.  Otherwise,
+    raise InputError."""
     value = without_array(value)
     if not is_real(value):
         raise InputError(name, value, "allowed is a number")
@@ -66,8 +66,8 @@ def real(name: str, value: object, low: float, high: float = math.inf) -> float:
 
 
 def count(name: str, value: object, low: int, *, most: float, even: bool = False) -> int:
-    """Convert an integer between `low` and `most` to an int.  Raises InputError for anything
-    else."""
+    """Return the value as an int if it is an integer between `low` and `most`.  Otherwise, raise
+    InputError."""
     value = without_array(value)
     if not (is_real(value) and isinstance(value, Integral) and low <= value <= most):
         kind = "an even whole number" if even else "a whole number"

@@ -56,7 +56,7 @@ instructions.  With this option, matrix products take half the time."""
 OPTIONS = {"nogil": True, "error_model": "numpy"}
 """Numba options.  Sums are not reordered, and division by zero works as in NumPy."""
 ROOM = 16_000_000
-"""Number of bytes that must be free on the disk of a folder.  The compiled code takes 5 MB."""
+"""Free disk space, in bytes, that a folder needs.  The compiled code takes 5 MB."""
 SPELL = 1.0
 """A new message about a compilation is printed only if the last compilation ended more than this
 number of seconds ago.  In one solution, each compilation begins milliseconds after the end of the

@@ -40,7 +40,7 @@ class InputError(ValueError):
         return " ".join(f"{self.argument} = {shown(self.value)}: {self.allowed}".split())
 
     def renamed(self, argument: str, value: object = None) -> InputError:
-        """Return a copy of the error with another argument name.  If `value` is not None, it
+        """Return a copy of the error that refers to another argument.  If `value` is not None, it
         replaces the value of the error in the copy."""
         return InputError(argument, self.value if value is None else value, self.allowed)
 

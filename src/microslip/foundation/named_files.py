@@ -7,9 +7,9 @@
 A result depends on the content of a file, but not on the folder of the file.  Therefore, if a file
 defines a motion or a pressure, the name of this motion or pressure contains a digest:
 "soft_square.py:sha256=0123456789abcdef,share=0.5" or "file:sha256=0123456789abcdef,grid=samples".
-The digest of a Python file covers the files that it imports from its folder.  Each process has a
-table of paths, keyed by digest.  If a process receives paths from another process, `remember` adds
-these paths to the table.
+The digest of a Python file also covers the files that this file imports from its folder.  Each
+process has a table of paths, keyed by digest.  If a process receives paths from another process,
+`remember` adds these paths to the table.
 
 This module imports only fast modules, because each start of the workflow imports this module.
 """

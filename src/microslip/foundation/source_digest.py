@@ -6,8 +6,8 @@ or figure contains the digest of its builder.  The builder of a product consists
 make the product.  The builder also contains the modules that these modules import from the
 subpackages in `OUTER`.  An exception is the subpackage foundation, whose modules are not included.
 The name of a motion or a pressure in a user's file also contains a digest.  This digest covers the
-user's file, and the files that it imports from its folder.  Comments, docstrings and layout do not
-change a digest.  If the text of a message changes, only the digests of builders change.
+user's file, and the files that this file imports from its folder.  Comments, docstrings and layout
+do not change a digest.  If the text of a message changes, only the digests of builders change.
 
 Files are read when a digest is first needed.
 """
@@ -36,7 +36,7 @@ METHODS = "periodic/methods/"
 """Folder of comparison methods.  The code of a method influences only the results that were
 requested with this method."""
 ENDINGS = {".py", ".csv", ".html", ".css", ".js"}
-"""File name extensions of modules, of their tables, and of parts of pages."""
+"""Extensions of the files that are read: modules, tables of modules, and parts of web pages."""
 
 
 class Sources:
@@ -74,8 +74,8 @@ class Sources:
         return _sha256(json.dumps(code).encode())
 
     def closure(self, names: Iterable[str], inside: Callable[[str], bool] = bool) -> set[str]:
-        """Return the paths of the given files and of all modules that they import directly or
-        indirectly.
+        """Return the paths of the given files, and of all modules that these files import directly
+        or indirectly.
 
         A table such as variables.csv belongs to the module variables.py.
 
@@ -96,7 +96,8 @@ class Sources:
 
     @property
     def kernels(self) -> set[str]:
-        """Paths of the files with compiled functions and of all modules that they import."""
+        """Paths of the files that contain compiled functions, and of all modules that these files
+        import."""
         physics = filter(is_physics, self.names)
         kernels = (name for name in physics if b"compiled import kernel" in self.content(name))
         return self.closure(kernels, is_physics)
@@ -124,7 +125,8 @@ class Sources:
     # Parsing takes a second for the package, so the results are stored in __pycache__.
 
     def _read_parsed(self, name: str) -> tuple[str, list[str]]:
-        """Return the digest of the code of a file, and the names of the modules that it imports."""
+        """Return the digest of the code of a file, and the names of the modules that this file
+        imports."""
         if not name.endswith(".py"):
             return _sha256(self.content(name)), []
         messages = bool(self.prefix) and not is_physics(name)
@@ -157,7 +159,8 @@ def _sha256(content: bytes) -> str:
 
 
 def parse(content: bytes, messages: bool) -> tuple[str, list[str]]:
-    """Return the digest of the code of a module, and the names of all modules that it imports.
+    """Return the digest of the code of a module, and the names of all modules that this module
+    imports.
 
     messages: if True, messages change the digest; see `_text`.
     """

@@ -171,7 +171,7 @@ class Named:
 
 
 class NamedByText(Named):
-    """Base class of objects with arrays.  Objects with equal names are equal.
+    """Base class of objects that contain arrays.  Objects with equal names are equal.
 
     Attributes
     ----------

@@ -400,8 +400,8 @@ def _read_bodies(nu: Any, radius: Any, counterbody: Any) -> tuple[dict[str, Any]
 def _contact(
     bodies: dict[str, Any], mu: float, modulus: float, motion: str | None = None, **moving: float
 ) -> Contact:
-    """Return the contact of two bodies with a given shear modulus (in Pa).  If `motion` is None,
-    the contact is at rest."""
+    """Return the contact of a body, whose shear modulus (in Pa) is given, with a counterbody.  If
+    `motion` is None, the contact is at rest."""
     young = 2.0 * modulus * (1.0 + bodies["nu"])
     other = (young, bodies["nu"]) if bodies["counterbody"] == "same" else None
     own = bodies | {"young": young, "counterbody": other}

@@ -325,7 +325,7 @@ def _scaled(size: float, unit: str) -> tuple[str, float]:
 
 
 def _lines(title: str, one: Value, sentence: str) -> list[str]:
-    """Format a `Value` as a line with its error.  If the inputs are uncertain, a second line
+    """Format a `Value` and its error as a line of text.  If the inputs are uncertain, a second line
     contains the uncertainty of the value."""
     value, error = one.value, one.error
     size = max(abs(value), error if abs(value) <= error < math.inf else 0.0)

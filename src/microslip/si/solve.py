@@ -31,8 +31,8 @@ TOLERANCE, TOLERANCE_OF_SPEED = 1e-3, 1e-2
 STATIC_TOLERANCE = 1e-3
 """Largest accepted error of the static limit under a force, dimensionless."""
 TOLERANCE_OF_SEVERAL = 1e-2
-"""Smallest tolerance of the static limit of a motion with several oscillations, dimensionless.
-To reach a smaller tolerance, the solver would need more than a minute."""
+"""Smallest dimensionless tolerance of the static limit, for a motion with several oscillations.  To
+reach a smaller tolerance, the solver would need more than a minute."""
 SLOWEST = 1e-3
 """Dimensionless velocity below which the accepted error is absolute instead of relative."""
 MARGIN = 0.8
@@ -309,9 +309,9 @@ problem.  The sentence is printed if both problems have the same mu_macro, withi
 
 
 def simplifications(contact: Contact, answer: Prediction) -> list[str]:
-    """Return the sentences of `SIMPLER` that apply to a contact.  Each sentence is about a simpler
-    contact.  The sentence applies if both contacts have the same friction at the same speed.  The
-    allowed difference is the error of `answer`.
+    """Return the sentences of `SIMPLER` that apply to a contact.  The sentence about a simpler
+    contact applies if both contacts have the same friction at the same speed.  The two friction
+    values may differ by at most the error of `answer`.
 
     A contact counts as simpler only if the solver can use a cheaper model, or if the load becomes
     constant.  The list is empty for a contact under a prescribed force.  The list is also empty for
@@ -338,7 +338,7 @@ def simplifications(contact: Contact, answer: Prediction) -> list[str]:
 
 
 class FrictionMap:
-    """Interpolator of friction in the dataset of a sweep; see datasets.accessor.
+    """Interpolator for the friction in the dataset of a sweep; see datasets.accessor.
 
     Parameters
     ----------

@@ -245,7 +245,7 @@ def _short(text: Any) -> str:
 
 
 def predictions(cases: Cases, *, need_all: bool = False) -> Iterator[Prediction | InputError | str]:
-    """Yield the prediction of each contact in turn, or the reason why there is no prediction.
+    """Yield the prediction for each contact in turn, or the reason why there is no prediction.
 
     All contacts are checked before the first one is solved.  A search without a solution gives a
     Prediction that is not converged.

@@ -49,8 +49,8 @@ number of points is added where the static limit is close to the force."""
 VANISHING = 1e-3
 """Largest static limit that counts as 0 in the bisection."""
 CLOSEST = 64
-"""The fraction of draws that count as close to the force is 1 divided by this value.  For these
-draws, the static limit is closest to the force."""
+"""The number of draws that count as close to the force is the number of all draws divided by this
+value.  For these draws, the static limit is closest to the force."""
 NEGLIGIBLE = 1e-3
 """Along each axis, the groups have a standard deviation.  An axis is ignored if its standard
 deviation, divided by that of the first axis, is at most this value.  A standard uncertainty is

@@ -40,7 +40,7 @@ Johnson and J. A. Greenwood, J. Colloid Interface Sci. 192, 1997)."""
 LARGE_MU = 1.0
 """Coefficient of friction above which Coulomb's law is doubtful."""
 SMALL = 0.1
-"""Ratios up to this value are negligible in the theory."""
+"""Largest ratio that counts as negligible in the theory."""
 STEEP = 0.2
 """Half-spaces are a poor approximation if one of two ratios is above this value.  The first ratio
 is the contact radius a divided by the radius of the smaller body.  The second ratio is a divided by
@@ -275,8 +275,8 @@ def _pull_off(contact: Contact) -> tuple[float | None, float | None]:
 
 
 def _contradictions(contact: Contact) -> list[str]:
-    """Return a message for each size or load that disagrees with a pressure file.  Only files with
-    units contain such values.
+    """Return a message for each size or load that disagrees with the value in a pressure file.
+    Only files with units contain such values.
 
     A pressure file can be read in several ways.  The readings give a range of values.  A value is
     accepted if it lies within this range, widened by the relative difference `AGREES`.
