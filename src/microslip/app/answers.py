@@ -209,8 +209,8 @@ def fit(
 ) -> Answer:
     """Fit the coefficient of friction and u_lim to measured friction.
 
-    The result contains the coefficient of friction without vibration, and either the displacement
-    u_lim at which the whole contact slides or the shear modulus.  Each row of the CSV file is a
+    The result contains the coefficient of friction without vibration, and either the shear modulus
+    or the displacement u_lim at which the whole contact slides.  Each row of the CSV file is a
     measurement of friction under vibration.  The heading names the columns and their units.  One
     column contains the measured values.  The heading of this column is `friction [N]` or `mu`.  The
     other columns are `speed [mm/s]`, `amplitude [um]`, `frequency [kHz]` and `load [N]`.  If one of
@@ -235,8 +235,8 @@ def response(path: str, output: str | None = None, **arguments: Any) -> Answer:
 
     The result contains forces, torque, dissipated energy and stick fraction, with error estimates.
     The file can have the columns `forward`, `lateral` and `angle`.  The file can also have one of
-    the columns `load` and `indentation`.  Each heading contains the unit, for example `forward
-    [um]`.  `load` is the load of the reference state.
+    the columns `load` and `indentation`.  Each heading contains the unit, as in `forward [um]`.
+    `load` is the load of the reference state.
     """
     import microslip
 
@@ -258,8 +258,8 @@ def fold(record: str, output: str = "", rows: int = 32, **arguments: str) -> Ans
     The slow drift is removed, and the periods are averaged.  The standard error accounts for the
     scatter between the periods and for a slow drift of the frequency.  The record must have the
     column `time`.  The record can have the columns `forward`, `lateral` and `angle`, and one of the
-    columns `load` and `indentation`.  Each heading contains the unit, for example `time [s],lateral
-    [um]`.
+    columns `load` and `indentation`.  Each heading contains the unit, as in
+    `time [s],lateral [um]`.
     """
     from microslip.foundation.number_text import number_text
     from microslip.si.fold import fold as fold_record

@@ -63,7 +63,7 @@ def end_job(number: int, frame: object) -> NoReturn:
     """Signal handler that removes partial files and ends this process without a message.
 
     Without this handler, a KeyboardInterrupt would print a long traceback.  Moreover, a pool of
-    processes would end only after its points are finished.
+    processes would end only after all its points are computed.
     """
     remove_partial()
     os._exit(128 + number)

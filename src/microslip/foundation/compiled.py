@@ -4,8 +4,8 @@
 by Numba's settings and by a listener to Numba's events:
 
 - Numba notices an edit of the file of a function, but not an edit of another file that the function
-  uses.  Therefore, the name of the folder of compiled code contains a digest of all kernels and of
-  all files that they import.
+  uses.  Therefore, the name of the folder of compiled code contains a digest of all files with
+  kernels, and of all files that these files import.
 
 - Numba raises an error for a folder that is read-only or full.  Therefore, the folder is checked
   once.  If this folder is not usable, another folder is used, or compiled code is not stored.  If

@@ -21,7 +21,7 @@ _PARTIAL: set[Path] = set()
 
 def content_of(path: str | os.PathLike, most: int = MOST_BYTES) -> bytes:
     """Read the content of a file.  Raises OSError if the file cannot be read.  Raises ValueError if
-    the content has more than `most` bytes, as an endless device has."""
+    the file has more than `most` bytes, or if the file is an endless device."""
     with open(path, "rb") as file:
         content = file.read(most + 1)
     if len(content) > most:

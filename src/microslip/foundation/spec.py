@@ -154,7 +154,7 @@ def name_of(cls: type) -> str:
 
 
 class Named:
-    """Base class of dataclasses whose fields are numbers, such as motions and pressures."""
+    """Base class of motions, pressures and other dataclasses whose fields are numbers."""
 
     @cached_property
     def name(self) -> str:

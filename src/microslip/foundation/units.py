@@ -37,8 +37,9 @@ DEFINITIONS = {
     "kn,kt,knot=1852*m/h mph=mi/h kph=1e3*m/h mps=m/s fps=ft/s": {"": 0},
     "meter,metre=m second=s gram=g radian=rad newton=N pascal=Pa degree=deg": SPELLED_PREFIXES,
 }
-"""Allowed prefixes, keyed by definitions of units.  A definition is a number times known units.
-One hertz is one turn per second, which is 2 pi times 1 rad/s."""
+"""Each key contains definitions of units.  Each value contains the prefixes that are allowed for
+these units.  A definition is a number times known units.  One hertz is one turn per second, which
+is 2 pi times 1 rad/s."""
 CYCLIC = re.compile(r"\w{0,2}(Hz|cps)")
 """Pattern of a unit of cyclic frequency, such as Hz.  Such a unit is accepted alone, but not in a
 product of units."""

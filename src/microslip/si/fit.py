@@ -382,8 +382,9 @@ def _read_rows(source: Any, shared: dict[str, Any], **form: str) -> dict[str, An
 
 
 def _read_bodies(nu: Any, radius: Any, counterbody: Any) -> tuple[dict[str, Any], dict[str, str]]:
-    """Read the inputs nu, radius and counterbody.  Returns two dicts, keyed by input.  One contains
-    the values of the inputs, and the other contains their descriptions.  Raises InputError."""
+    """Read the inputs nu, radius and counterbody.  Returns two dicts, keyed by input.  One dict
+    contains the values of the inputs, and the other dict contains their descriptions.  Raises
+    InputError."""
     if radius is None and counterbody is not None:
         raise InputError("counterbody", counterbody, "allowed with a radius")
     if radius is not None and nu is None:
@@ -486,8 +487,8 @@ def _lengths(rows: Rows, load: float | None = None) -> np.ndarray:
 
 
 def _curves(friction: Friction, lengths: np.ndarray, x: Any) -> np.ndarray:
-    """Return rough values of mu_macro in all rows, for each value of ln u_lim in the array `x`.
-    This array has the shape (..., 1)."""
+    """Return rough values of mu_macro for all rows, and for each value of ln u_lim in the array
+    `x`.  This array has the shape (..., 1)."""
     still = lengths[1] == 0.0
     velocity, amplitude = np.where(still, 1.0, lengths)
     rough = friction(velocity / np.exp(x), amplitude / np.exp(x), rough=True)[0]
@@ -550,9 +551,9 @@ class Profile:
         return self.mu(x)[1]
 
     def ends(self, allowed: float) -> tuple[float, float]:
-        """Return the bounds of the interval around the best x in which the sum of squares is at
-        most `allowed`.  A bound is infinite if the interval extends to the end of the tabulated
-        range of x."""
+        """Return the bounds of an interval around the best x.  In this interval, the sum of squares
+        is at most `allowed`.  A bound is infinite if the interval extends to the end of the
+        tabulated range of x."""
         near = self.best + (self.x[-1] - self.x[0]) * np.linspace(-1.0, 1.0, NODES) ** 7
         grid = np.unique(np.clip([self.x, near], self.x[0], self.x[-1]))
         curve = scipy.interpolate.CubicSpline(grid, self.squares(grid) - allowed)

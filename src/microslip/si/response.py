@@ -1,4 +1,4 @@
-"""Forces of a real contact that follows a measured path.
+"""Forces in a real contact along a measured path.
 
 The path is a table of columns with units:
 

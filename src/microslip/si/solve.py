@@ -1,5 +1,5 @@
-"""Compute dimensionless results for a contact with the solver or from a map.  The module also finds
-the amplitude, speed or load that gives a requested reduction of friction."""
+"""Compute dimensionless results for a contact, either with the solver or from a map.  The module
+also finds the amplitude, speed or load that gives a requested reduction of friction."""
 
 from __future__ import annotations
 
@@ -305,7 +305,8 @@ SIMPLER: dict[str, Callable[[Problem], Problem]] = {
     "a constant load suffices: with the mean load": with_mean_load,
 }
 """Functions that simplify a Problem.  Each key is the beginning of a sentence about the simpler
-problem.  The sentence is printed if both problems have the same mu_macro, within the error."""
+problem.  The sentence is printed if the original and the simpler problem have the same mu_macro,
+within the error."""
 
 
 def simplifications(contact: Contact, answer: Prediction) -> list[str]:

@@ -87,8 +87,8 @@ def _checks(text: str) -> tuple[tuple[Rule, ...], ...]:
     """Parse groups of rules.
 
     text: a line "condition; condition: sentence" for each rule, and an empty line between groups.
-    A condition is "left > right" or "left > k right". Here, left and right are measures or numbers.
-    The number k multiplies the right side.
+    A condition has the form "left > right" or "left > k right". Here, left and right are measures
+    or numbers.  The number k multiplies the right side.
     """
 
     def side(word: str) -> float | str:
@@ -153,7 +153,7 @@ which add to friction, are neglected
 """Groups of rules.  The warnings are in the order of the groups.  In each group, the first rule
 that applies gives the warning."""
 PROPERTIES = {"hardness": "whether the bodies stay elastic", "density": "inertia"}
-"""Checks that need an optional property of a body, keyed by the property's name."""
+"""Checks that need an optional property of a body, keyed by the name of the property."""
 MISSING = "{what} (the {name} of {whose} is missing)"
 UNKNOWN_PULL_OFF = "adhesion (the pull-off force under this pressure is not known)"
 SIDES = ("the body", "the counterbody")
