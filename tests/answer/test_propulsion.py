@@ -84,7 +84,7 @@ def test_marched_back_without_a_mirror():
         march = contact.march(path, state, 1e-8)
         state = march.state
     result = microslip.solve(problem.motion.name, velocity, 1.0)
-    mean = float(path.mean(march.forces)[FORWARD])
+    mean = float((path.weights @ march.forces)[FORWARD])
     # 1e-3: discretisation error of the march
     assert abs(result.mu_macro - mean) <= result.mu_macro_error + 1e-3
 

@@ -44,7 +44,7 @@ def balance(problem, drive, model, resolution):
     march = contact.march(path, run.state, 1e-11, body=body, start=at)
 
     def over_time(values):
-        return path.mean(values) * 2.0 * np.pi
+        return (path.weights @ values) * 2.0 * np.pi
 
     halves = 2.0 * np.pi / (path.phase[-1] - path.phase[0])
     swung = np.diff(np.transpose(problem.oscillation(path.phase)), axis=0)

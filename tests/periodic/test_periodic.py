@@ -6,7 +6,7 @@ import pytest
 from microslip.contact.contact import energy_norm, forward_slip
 from microslip.contact.path import make_path
 from microslip.periodic.discretise import Resolution, contact_of, path_of
-from microslip.periodic.search import Goal, PeriodMap, find_periodic_state
+from microslip.periodic.search import Goal, find_periodic_state
 from microslip.periodic.simulate import simulate
 from microslip.scene.named import Bore, Transverse
 from microslip.scene.problem import Force, Problem, Spring
@@ -65,7 +65,7 @@ def test_found_state_is_that_of_the_plain_march(name, velocity, amplitude):
     assert run.converged and run.distance <= TOLERANCE
     stands_still = 1e-7 if model == "cartesian" else 1e-9  # its steps are solved less accurately
     state, forces = plain_march(contact, path, 0.0 * forward_slip(contact), stands_still)
-    assert run.mu == pytest.approx(path.mean(forces[:, 0]), abs=2 * TOLERANCE)
+    assert run.mu == pytest.approx((path.weights @ forces[:, 0]), abs=2 * TOLERANCE)
     assert energy_norm(contact, run.state - state) < 30 * TOLERANCE
 
 
@@ -73,8 +73,8 @@ def test_found_state_is_that_of_the_plain_march(name, velocity, amplitude):
 def test_second_half_of_the_period_mirrors_the_first(name):
     """A march over the whole period makes no use of the symmetry."""
     problem, contact, path = case(name, *SLOW)
-    cycle = PeriodMap(contact, path)
-    result = find_periodic_state(cycle, forward_slip(contact), Goal(TOLERANCE, STEP_TOLERANCE))
+    goal = Goal(TOLERANCE, STEP_TOLERANCE)
+    result = find_periodic_state(contact, path, forward_slip(contact), goal)
     assert result.converged
     phase = np.concatenate([path.phase, path.phase[1:] + np.pi])
     whole = make_path(problem.displacement, phase)
@@ -85,18 +85,18 @@ def test_second_half_of_the_period_mirrors_the_first(name):
     turning = 2 if problem.motion.rotates else 1  # the force or torque along the oscillation
     assert second[:, turning] == pytest.approx(-first[:, turning], abs=3 * TOLERANCE)
     assert np.abs(first[:, turning]).max() > 0.1
-    mean = path.mean(result.march.forces)[0]
-    assert whole.mean(march.forces)[0] == pytest.approx(mean, abs=TOLERANCE)
+    mean = (path.weights @ result.march.forces)[0]
+    assert (whole.weights @ march.forces)[0] == pytest.approx(mean, abs=TOLERANCE)
 
 
 @pytest.mark.parametrize("name", CASES)
 def test_verdict_is_that_of_the_plain_map(name):
     _, contact, path = case(name, *SLOW)
     start = forward_slip(contact)
-    enough = find_periodic_state(PeriodMap(contact, path), start, Goal(TOLERANCE, STEP_TOLERANCE))
+    enough = find_periodic_state(contact, path, start, Goal(TOLERANCE, STEP_TOLERANCE))
     assert enough.converged and enough.residual <= enough.distance <= TOLERANCE
     fewer = Goal(TOLERANCE, STEP_TOLERANCE, enough.marches - 1)
-    few = find_periodic_state(PeriodMap(contact, path), start, fewer)
+    few = find_periodic_state(contact, path, start, fewer)
     assert not few.converged
     assert few.marches < enough.marches
     for result in (enough, few):

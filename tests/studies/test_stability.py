@@ -12,7 +12,7 @@ from microslip.contact.ring_contact import RadialContact
 from microslip.periodic.discretise import Resolution, contact_of, path_of
 from microslip.periodic.methods import method_named
 from microslip.periodic.methods.march import plain_march
-from microslip.periodic.search import Goal, PeriodMap, find_periodic_state
+from microslip.periodic.search import Goal, find_periodic_state
 from microslip.periodic.static_limit import limit_on_a_line
 from microslip.scene.named import Bore, Transverse
 from microslip.scene.problem import Problem
@@ -86,9 +86,9 @@ def periodic_force(velocity, share, search):
     path = path_of(motion, contact, 32)
     room, oscillating, *_ = limit_on_a_line(contact, motion.oscillation, 1e-12)
     goal = Goal(1e-6, 1e-9, most_marches=1000)
-    state = search(PeriodMap(contact, path), oscillating + share * room, goal)
+    state = search(contact, path, oscillating + share * room, goal)
     assert state.converged
-    return path.mean(state.march.forces)[FORWARD]
+    return (path.weights @ state.march.forces)[FORWARD]
 
 
 def test_loss_of_uniqueness_without_forward_motion():

@@ -152,10 +152,6 @@ class Path(NamedTuple):
     def steps(self) -> int:
         return len(self.phase) - 1
 
-    def mean(self, values: np.ndarray) -> np.ndarray:
-        """Return the time average of values whose first axis is the phase."""
-        return self.weights @ values
-
 
 def make_path(
     displacement: Callable,

@@ -15,29 +15,18 @@ The difference is dropped if the norm of the orthogonal part is below this fract
 norm.  The value is about the square root of the rounding error."""
 
 
-def remember(pairs: np.ndarray, count: int, image: np.ndarray, change: np.ndarray) -> int:
-    """Append an image and a change to the array `pairs`, which has the shape (2, DEPTH + 1, n).
-
-    If `pairs` is full, the oldest pair is dropped.  Returns the number of pairs.
-    """
-    if count == pairs.shape[1]:
-        pairs[:, :-1] = pairs[:, 1:]
-        count -= 1
-    pairs[0, count], pairs[1, count] = image, change
-    return count + 1
-
-
 @kernel
-def accelerated(pairs: np.ndarray, count: int, scale: np.ndarray, out: np.ndarray) -> None:
-    """Fill `out` with the combination of the stored images that has the smallest change.
+def accelerated(pairs: np.ndarray, count: int, scale: np.ndarray) -> np.ndarray:
+    """Return the combination of the stored images that has the smallest change.
 
     The least-squares problem is solved by modified Gram-Schmidt, starting with the newest
     difference.  `pairs` contains pairs of an image and a change.  The newest pair is the last one.
-    `scale` multiplies the changes in the least-squares norm.  `out` and `scale` are arrays of shape
+    `scale` multiplies the changes in the least-squares norm; its shape and that of the result are
     (n,).
     """
     images, changes = pairs[0], pairs[1]
-    last, n = count - 1, len(out)
+    last, n = count - 1, len(scale)
+    out = np.empty(n)
     basis, triangle = np.empty((count, n)), np.zeros((count, count))
     projection, source, residual = np.zeros(count), np.zeros(count, np.int64), np.empty(n)
     for i in range(n):
@@ -78,3 +67,4 @@ def accelerated(pairs: np.ndarray, count: int, scale: np.ndarray, out: np.ndarra
         j, factor = source[k], projection[k]
         for i in range(n):
             out[i] -= factor * (images[j + 1, i] - images[j, i])
+    return out

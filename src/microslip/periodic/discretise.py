@@ -25,6 +25,7 @@ from microslip.contact.path import (
 )
 from microslip.contact.registry import MODELS
 from microslip.contact.rings import Focus
+from microslip.periodic.run import AS_SHIPPED, Settings
 from microslip.scene.problem import Problem
 
 WEAKEST_FOCUS, STRONGEST_FOCUS, STATIC_FOCUS = 0.3, 1.0 - 2.0**-6, 0.9
@@ -69,12 +70,9 @@ def focus_strength(drift: float) -> float:
 
 
 def contact_of(
-    problem: Problem,
-    model: str,
-    resolution: Resolution,
-    focus: Focus | None = None,
+    problem: Problem, model: str, resolution: Resolution, settings: Settings = AS_SHIPPED
 ) -> Contact:
-    """Build the contact of a problem.
+    """Build the contact of a problem with a method's step solver.
 
     Parameters
     ----------
@@ -85,18 +83,28 @@ def contact_of(
         Name in contact.registry.MODELS.
     resolution : Resolution
         Resolution of the model.
-    focus : rings.Focus or None
-        Grading of the rings.  By default, they are graded towards the radius at which slip starts.
+    settings : run.Settings
+        Settings of the run.
+
+    Raises
+    ------
+    run.Spent
+        If one march would exceed the budget.  The contact is not built in this case.
     """
-    radius = problem.focus
-    place: Focus | float | None = radius
-    if radius is not None and problem.motion.periodic:
-        place = Focus((radius,), focus_strength(problem.drift))
-    contact = MODELS[model].build(problem, resolution.cells, resolution.angles, focus or place)
-    if problem.depth is None:
-        return contact
-    deepest = problem.motion.deepest(problem.size, problem.pressure)
-    return contact.at_indentation(deepest, float(problem.depth(np.array(problem.turns[0]))))
+    cells, angles, steps = resolution.cells, resolution.angles, resolution.steps
+    settings.budget.take(next_work=steps * cells * angles)
+    focus: Focus | float | None = settings.focus
+    if focus is None:
+        focus = radius = problem.focus
+        if radius is not None and problem.motion.periodic:
+            focus = Focus((radius,), focus_strength(problem.drift))
+    contact = MODELS[model].build(problem, cells, angles, focus)
+    if problem.depth is not None:
+        deepest = problem.motion.deepest(problem.size, problem.pressure)
+        start = float(problem.depth(np.array(problem.turns[0])))
+        contact = contact.at_indentation(deepest, start)
+    method = settings.method
+    return contact if method.dress is None else method.dress(contact, **method.parameters)
 
 
 def path_of(problem: Problem, contact: Any, steps: int, integrator: Integrator = SDIRK2) -> Path:
@@ -164,12 +172,12 @@ def mean_forces(contact: Contact, problem: Problem, path: Path, forces: np.ndarr
     `forces` are the forces at the phases of the path.
     """
     if problem.depth is None:
-        return path.mean(forces)
+        return path.weights @ forces
     # the mean force in full slip is known exactly, so the trapezoidal rule integrates only
     # the difference from it
     bounds = contact.bounds(problem.depth(path.phase))
     full = contact.angles * (bounds @ contact.weight)[:, None] * [1.0, 0.0, 0.0]
-    return [problem.mean_load, 0.0, 0.0] - path.mean(full - forces)
+    return [problem.mean_load, 0.0, 0.0] - path.weights @ (full - forces)
 
 
 def dissipated_energy(contact: Contact, path: Path, march: March) -> float:

@@ -16,9 +16,8 @@ import numpy as np
 from microslip.contact.contact import Body, March, StepFailure, forward_slip
 from microslip.contact.path import EULER, Path, make_path
 from microslip.contact.ring_contact import RingContact
-from microslip.periodic.discretise import Resolution, path_of
+from microslip.periodic.discretise import Resolution, contact_of, path_of
 from microslip.periodic.run import Budget, Effort, Run, Settings, unsolved
-from microslip.periodic.search import PeriodMap
 from microslip.scene.motion import HALF_PERIOD
 from microslip.scene.problem import Problem
 
@@ -72,18 +71,16 @@ def run_to_rest(
         the remaining displacement.  The run has not converged if the contact does not come to rest
         or a step failed.
     """
-    contact = cast(RingContact, settings.contact(problem, model, resolution))  # or with squares
+    contact = cast(RingContact, contact_of(problem, model, resolution, settings))  # or with squares
     assert problem.force is not None
     body = Body(0.0, 0.0, 0.0, problem.force * problem.mean_load)
     walk = _Walk(contact, body, STEP_SHARE * tolerance, settings.budget)
-    cycle = PeriodMap(
-        contact, path_of(problem, contact, resolution.steps), mirror=problem.half_period_mirror
-    )
-    interval = cycle.path.phase[-1] - cycle.path.phase[0]
+    cycle, mirror = path_of(problem, contact, resolution.steps), problem.half_period_mirror
+    interval = cycle.phase[-1] - cycle.phase[0]
     pushed = walk.march(_still(problem), 0.0 * forward_slip(contact))
     # march from the mean position to the start of an interval of the map; the state is mirrored
     # once for each interval by which this start is postponed
-    end, images = cycle.path.phase[0], 0
+    end, images = cycle.phase[0], 0
     while end <= 0.0:
         end, images = end + interval, images + 1
     steps = max(1, round(resolution.steps * end / (HALF_PERIOD[1] - HALF_PERIOD[0])))
@@ -92,12 +89,13 @@ def run_to_rest(
         walk.march(make_path(problem.displacement, phases, depth=problem.depth), walk.last.state)
     ]
     state = walk.last.state
-    for _ in range(images):
-        state = cycle.image(state)
+    if mirror and images % 2:
+        state = contact.mirrored(state)
     look, guess = FIRST_LOOK, None
     for count in range(1, MOST_INTERVALS + 1):
-        ways.append(walk.march(cycle.path, state, guess))
-        guess, state = walk.last, cycle.image(walk.last.state)
+        ways.append(walk.march(cycle, state, guess))
+        guess = walk.last
+        state = contact.mirrored(guess.state) if mirror else guess.state
         if count == look:
             remaining, drifts = _remaining(ways[1:], walk.residual / contact.stiffness)
             if remaining <= tolerance or drifts:
@@ -144,7 +142,7 @@ class _Walk:
         Raises StepFailure if the tractions diverge.
         """
         march = self.contact.march(path, state, self.step_tolerance, guess, body=self.body)
-        self.budget.take(Effort.of(march.solves, march.iterations, march.state.size))
+        self.budget.take(march.solves, march.iterations, march.state.size)
         if not np.isfinite(march.state).all():
             raise StepFailure("diverged: tractions are not finite")
         self.residual += march.residual

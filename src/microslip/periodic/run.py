@@ -14,24 +14,21 @@ import math
 import time
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from operator import add, sub
+from operator import add
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from microslip.contact.contact import Contact
 from microslip.foundation.errors import SolverError
-from microslip.periodic.discretise import Resolution, contact_of
 from microslip.periodic.method import OWN, Method
 from microslip.periodic.methods import SHIPPED
 
 if TYPE_CHECKING:
     from microslip.contact.rings import Focus
-    from microslip.scene.problem import Problem
 
 
 class Effort(NamedTuple):
-    """Computational effort of one or several runs. Efforts can be added and subtracted.
+    """Computational effort of one or several runs. Efforts can be added.
 
     Attributes
     ----------
@@ -60,9 +57,6 @@ class Effort(NamedTuple):
 
     def __add__(self, other: Effort) -> Effort:  # type: ignore[override]
         return Effort(*map(add, self, other))
-
-    def __sub__(self, other: Effort) -> Effort:
-        return Effort(*map(sub, self, other))
 
 
 class Spent(SolverError):
@@ -96,13 +90,16 @@ class Budget:
         self.exhausted = ""
         self.began: float | None = None
 
-    def take(self, effort: Effort, next_work: int = 0) -> None:
-        """Count the effort of marches.
+    def take(
+        self, solves: int = 0, iterations: int = 0, unknowns: int = 0, *, next_work: int = 0
+    ) -> None:
+        """Count the effort of marches.  `unknowns` is the number of unknowns in a step.
 
         Raises Spent if a limit is exceeded, or if the next march would exceed the limit on the
         work.  The next march is checked in advance because a fine mesh takes long to build.
         """
-        self.taken += effort
+        if solves:
+            self.taken += Effort.of(solves, iterations, unknowns)
         if self.taken.work + next_work > self.most_work:
             self.exhausted = "work"
             raise Spent(f"the work that the point may take, {self.most_work:.3g}, is spent")
@@ -155,15 +152,6 @@ class Settings:
     budget: Budget = field(default_factory=Budget)
     focus: Focus | None = None
     slope: float = np.inf
-
-    def contact(self, problem: Problem, model: str, resolution: Resolution) -> Contact:
-        """Build a contact with the method's step solver.
-
-        Raises Spent, before the contact is built, if one march would exceed the budget.
-        """
-        self.budget.take(Effort(), resolution.steps * resolution.cells * resolution.angles)
-        contact, method = contact_of(problem, model, resolution, self.focus), self.method
-        return contact if method.dress is None else method.dress(contact, **method.parameters)
 
 
 AS_SHIPPED = Settings()
@@ -243,9 +231,3 @@ def failed_run(reason: str) -> Run:
     """Create the `Run` of a failed march.  The values of this run are NaN, and the errors are
     infinite."""
     return Run(dict.fromkeys(NAMES, np.nan), np.inf, np.inf, reason=reason)
-
-
-def periods_of(marches: int, problem: Problem) -> float:
-    """Convert a number of marches to a number of full periods.  Each march covers a period or half
-    a period."""
-    return 0.5 * marches if problem.half_period_mirror else float(marches)

@@ -15,7 +15,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import replace
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -29,7 +29,13 @@ from microslip.contact.contact import (
     project,
 )
 from microslip.contact.path import EULER, make_path
-from microslip.periodic.discretise import Resolution, dissipated_energy, mean_forces, path_of
+from microslip.periodic.discretise import (
+    Resolution,
+    contact_of,
+    dissipated_energy,
+    mean_forces,
+    path_of,
+)
 from microslip.periodic.rest import run_to_rest
 from microslip.periodic.run import (
     AS_SHIPPED,
@@ -42,17 +48,12 @@ from microslip.periodic.run import (
     Run,
     Settings,
     failed_run,
-    periods_of,
     unsolved,
 )
 from microslip.periodic.search import (
     AT_REST,
     MOST_MARCHES,
-    NOT_SLOW,
-    DriftRate,
     Goal,
-    PeriodicState,
-    PeriodMap,
     find_periodic_state,
 )
 from microslip.periodic.static_limit import SLOW_LOOP, limit_on_a_line, limit_on_a_loop, static_run
@@ -87,9 +88,8 @@ def steady_state(
     """
     step = STEADY_TRAVEL / max(1.0, problem.velocity)
     path = make_path(problem.displacement, step * np.arange(STEADY_STRETCH + 1.0), EULER)
-    goal = Goal(tolerance, STEP_SHARE * tolerance)
-    step_map = PeriodMap(contact, path, mirror=False, budget=budget)
-    steady = find_periodic_state(step_map, forward_slip(contact), goal)
+    goal, start = Goal(tolerance, STEP_SHARE * tolerance), forward_slip(contact)
+    steady = find_periodic_state(contact, path, start, goal, mirror=False, budget=budget)
     march = steady.march
     reason = unsolved(march, goal.step_tolerance)
     return Run(
@@ -173,19 +173,19 @@ def simulate(
         if method.run is not None:
             return method.run(problem, model, resolution, tolerance * problem.mean_load)
         if not problem.motion.periodic:
-            contact = settings.contact(problem, model, resolution)
+            contact = contact_of(problem, model, resolution, settings)
             return steady_state(contact, problem, tolerance * problem.mean_load, settings.budget)
         if problem.velocity == 0.0 and drive is None:
             return static_run(problem, model, resolution, tolerance, settings)
         if problem.velocity == 0.0 and problem.force is not None:
             return run_to_rest(problem, model, resolution, tolerance, settings)
-        return _Search(problem, model, resolution, tolerance, settings).run(guess)
+        return _periodic_run(problem, model, resolution, tolerance, settings, guess=guess)
     except StepFailure as failure:
         return failed_run(str(failure))
 
 
 class Start(NamedTuple):
-    """Initial state of a search.
+    """Initial state of a search, and what is known about the periodic state.
 
     Attributes
     ----------
@@ -197,205 +197,248 @@ class Start(NamedTuple):
         Whether the tractions are interpolated from a coarser mesh.
     friction : float
         Approximate friction of a driven contact.
+    static_force, limit
+        See run.Run.
+    least : float
+        See search.Goal.
+    periods, effort
+        Number of periods and effort of the searches that prepared the state.
     """
 
     state: np.ndarray
     place: np.ndarray = AT_REST
     near: bool = False
     friction: float = np.nan
+    static_force: float = np.nan
+    limit: np.ndarray | None = None
+    least: float = np.nan
+    periods: float = 0.0
+    effort: Effort = Effort()
 
 
-class _Search:
-    """Search for the periodic state of one run, trying several initial states in turn.
+class Setup(NamedTuple):
+    """A discretised problem, and the goal of the search for its periodic state.
 
-    `unit` is the force, divided by mu F_z, that corresponds to an error of 1 in the result.  If the
-    velocity is prescribed or a spring pulls the contact, the result is a force.  For a prescribed
-    force, the result is a velocity, and `unit` is the smaller of two estimates.  The first estimate
-    is the product of two numbers: the stiffness of the contact, and the displacement of the contact
-    in an interval at velocity 1.  The second estimate is the rise of the friction force with the
-    velocity.
+    Attributes
+    ----------
+    problem, model, resolution, settings
+        See `simulate`.
+    contact : contact.Contact
+        The contact.
+    body : contact.Body or None
+        The driven body and its drive; None if the velocity is prescribed.
+    goal : search.Goal
+        Goal of the search.
+    relative : float
+        Tolerance in the unit of the result.
     """
 
-    def __init__(
-        self,
-        problem: Problem,
-        model: str,
-        resolution: Resolution,
-        relative: float,
-        settings: Settings,
-    ):
-        self.problem, self.model, self.resolution = problem, model, resolution
-        self.settings, self.relative, drive = settings, relative, problem.drive
-        self.contact = settings.contact(problem, model, resolution)
-        self.path = path_of(problem, self.contact, resolution.steps, settings.method.integrator)
-        self.interval = float(self.path.phase[-1] - self.path.phase[0])
-        rate = self.contact.stiffness * problem.drift
-        self.gain = rate * self.interval
-        # the accuracy of a static limit is chosen according to the rise of friction above it
-        self.rise = problem.drift ** (2.0 / 3.0)
-        self.unit, self.most_marches = problem.mean_load, MOST_MARCHES
-        self.force, self.body = problem.force, None
-        if self.force is not None:
-            self.force *= problem.mean_load
-        if drive is not None:
-            self.most_marches = DRIVEN_MARCHES
-            constant = (self.force or 0.0) - drive.damping * problem.drift
-            self.body = Body(drive.stiffness, drive.damping, drive.mass, constant)
-        if self.force is not None:
-            stuck = self.contact.stiffness * self.interval * problem.unit_drift
-            self.unit = min(stuck, settings.slope * problem.mean_load)
-        floor = TIGHTER * SLOW_STEP_SHARE if settings.tighter else SLOW_STEP_SHARE
-        share = min(max(rate * np.pi * STEP_SHARE, floor), STEP_SHARE)
-        self.tolerance = relative * self.unit
-        self.step_tolerance = min(share, MARCH_SHARE / resolution.steps) * self.tolerance
-        self.static_force = self.least = np.nan
-        self.limit: np.ndarray | None = None
-        # of the searches of this run, and of earlier runs from which it starts
-        self.marches, self.earlier_periods, self.effort = 0, 0.0, Effort()
+    problem: Problem
+    model: str
+    resolution: Resolution
+    settings: Settings
+    contact: Contact
+    body: Body | None
+    goal: Goal
+    relative: float
 
-    def run(self, guess: Run | None) -> Run:
-        """Try one initial state after the other, and return the Run of the last search, with the
-        effort of all searches."""
-        problem, full = self.problem, self.problem.mean_load
-        find = self.settings.method.search or find_periodic_state
-        for start in (self.prescribed if self.body is None else self.driven)(guess):
-            most = MARCHES_FROM_COARSER if start.near else self.most_marches
-            goal = Goal(self.tolerance, self.step_tolerance, most, start.near)
-            drift_rate, slope = NOT_SLOW, np.inf
-            if self.force is None:  # the velocity is known
-                drift_rate = DriftRate(self.static_force, full, self.gain, self.least)
-                if self.body is not None:
-                    # 1 - mu decreases at most as fast as 1 / velocity^2, as at large velocities
-                    slope = 2.0 * (1.0 - start.friction) * full / (problem.drift * self.interval)
-            place = self.contact, self.path, drift_rate, problem.half_period_mirror
-            period_map = PeriodMap(*place, self.body, slope, budget=self.settings.budget)
-            periodic = self.count(find(period_map, start.state, goal, start.place))
-            if periodic.converged:
-                break
-        march, periods = periodic.march, periods_of(self.marches, problem)
-        reason = unsolved(march, self.step_tolerance)
-        if not periodic.converged:
-            reason = f"no periodic state within {periods:g} periods: {periodic.distance:.1e} left"
-        mean = mean_forces(self.contact, problem, self.path, march.forces)[FORWARD]
-        values = {
-            "friction": float(mean) / full,
-            "dissipation": dissipated_energy(self.contact, self.path, march),
-        }
-        if self.body is not None:
-            rate = float(march.body[-1, 0] - march.body[0, 0]) / self.interval
-            values["velocity"] = problem.velocity + rate / problem.unit_drift
-        return Run(
-            values,
-            distance=periodic.distance / self.unit,
-            residual=march.residual / self.unit,
-            periods=periods + self.earlier_periods,
-            effort=self.effort,
-            reason=reason,
-            state=periodic.start,
-            place=march.body[0] if len(march.body) else AT_REST,
-            static_force=self.static_force,
-            limit=self.limit,
+
+def _periodic_run(
+    problem: Problem,
+    model: str,
+    resolution: Resolution,
+    relative: float,
+    settings: Settings,
+    *,
+    guess: Run | None,
+) -> Run:
+    """Search for the periodic state of one run, trying several initial states in turn.
+
+    `relative` is the tolerance of the result.  `unit` is the force, divided by mu F_z, that
+    corresponds to an error of 1 in the result.  If the velocity is prescribed or a spring pulls the
+    contact, the result is a force.  For a prescribed force, the result is a velocity, and `unit` is
+    the smaller of two estimates.  The first estimate is the product of two numbers: the stiffness
+    of the contact, and the displacement of the contact in an interval at velocity 1.  The second
+    estimate is the rise of the friction force with the velocity.
+    """
+    method, drive, full = settings.method, problem.drive, problem.mean_load
+    contact = contact_of(problem, model, resolution, settings)
+    path = path_of(problem, contact, resolution.steps, method.integrator)
+    interval = float(path.phase[-1] - path.phase[0])
+    rate = contact.stiffness * problem.drift
+    unit, most, body = full, MOST_MARCHES, None
+    if drive is not None:
+        most, force = DRIVEN_MARCHES, (drive.force or 0.0) * full
+        constant = force - drive.damping * problem.drift
+        body = Body(drive.stiffness, drive.damping, drive.mass, constant)
+        if drive.force is not None:
+            stuck = contact.stiffness * interval * problem.unit_drift
+            unit = min(stuck, settings.slope * full)
+    floor = TIGHTER * SLOW_STEP_SHARE if settings.tighter else SLOW_STEP_SHARE
+    share = min(max(rate * np.pi * STEP_SHARE, floor), STEP_SHARE)
+    tolerance = relative * unit
+    step_tolerance = min(share, MARCH_SHARE / resolution.steps) * tolerance
+    # if the velocity is not known, the drift gives no error
+    gain = rate * interval if problem.force is None else np.inf
+    goal = Goal(tolerance, step_tolerance, full=full, gain=gain)
+    setup = Setup(problem, model, resolution, settings, contact, body, goal, relative)
+    find: Any = method.search or find_periodic_state
+    common: dict[str, Any] = {"mirror": problem.half_period_mirror, "budget": settings.budget}
+    periods, effort, lap = 0.0, Effort(), 0.5 if problem.half_period_mirror else 1.0
+    for start in _prescribed(setup, guess) if body is None else _driven(setup, guess):
+        if body is not None:
+            common |= {"body": body, "place": start.place}
+            if drive is not None and drive.force is None:
+                # 1 - mu decreases at most as fast as 1 / velocity^2, as at large velocities
+                fall = 2.0 * (1.0 - start.friction) * full
+                common["slope"] = fall / (problem.drift * interval)
+        goal = goal._replace(
+            most_marches=MARCHES_FROM_COARSER if start.near else most,
+            near=start.near,
+            static_force=start.static_force,
+            least=start.least,
         )
+        periodic = find(contact, path, start.state, goal, **common)
+        periods += start.periods + lap * periodic.marches
+        effort += start.effort + periodic.effort
+        if periodic.converged:
+            break
+    march = periodic.march
+    reason = unsolved(march, step_tolerance)
+    if not periodic.converged:
+        reason = f"no periodic state within {periods:g} periods: {periodic.distance:.1e} left"
+    mean = mean_forces(contact, problem, path, march.forces)[FORWARD]
+    values = {
+        "friction": float(mean) / full,
+        "dissipation": dissipated_energy(contact, path, march),
+    }
+    if body is not None:
+        advance = float(march.body[-1, 0] - march.body[0, 0]) / interval
+        values["velocity"] = problem.velocity + advance / problem.unit_drift
+    return Run(
+        values,
+        distance=periodic.distance / unit,
+        residual=march.residual / unit,
+        periods=periods,
+        effort=effort,
+        reason=reason,
+        state=periodic.start,
+        place=march.body[0] if len(march.body) else AT_REST,
+        static_force=start.static_force,
+        limit=start.limit,
+    )
 
-    def count(self, search: PeriodicState) -> PeriodicState:
-        """Add the marches and the effort of a search to those of the run, and return the search."""
-        self.marches, self.effort = self.marches + search.marches, self.effort + search.effort
-        return search
 
-    def prescribed(self, guess: Run | None) -> Iterator[Start]:
-        """Yield initial states at a prescribed velocity, best first."""
-        problem, contact, method = self.problem, self.contact, self.settings.method
-        if problem.straight or not contact.sticks:
-            self.static_force = 0.0
-        if guess is not None:
-            yield from self._from_run(guess)
-        start = slipping = forward_slip(contact)
-        near_limit = method.prepared and contact.sticks
-        if near_limit and problem.straight:
-            # if the drift alone adds full friction in an interval, DriftRate.error is at most the
-            # change of the state, whatever the limit
-            if self.gain < problem.mean_load:
-                excess = min(SLOW_EXCESS * self.rise, LARGEST_EXCESS)
-                start = self._find_limit() + excess * slipping
-        elif near_limit and problem.drift < SLOW_LOOP:
-            # the force of this limit only sets `least`
-            rest, tolerance = replace(problem, velocity=0.0), max(self.rise, self.tolerance)
-            path = path_of(rest, contact, self.resolution.steps, method.integrator)
-            tolerances = tolerance, STEP_SHARE * tolerance
-            limit, oscillation = limit_on_a_loop(
-                contact, rest, path, *tolerances, self.settings.budget
-            )
-            self.count(oscillation)
-            self.least = limit.force
+def _prescribed(setup: Setup, guess: Run | None) -> Iterator[Start]:
+    """Yield initial states at a prescribed velocity, best first."""
+    problem, contact, settings = setup.problem, setup.contact, setup.settings
+    slipping, method = forward_slip(contact), settings.method
+    start = Start(slipping)
+    if problem.straight or not contact.sticks:
+        start = start._replace(static_force=0.0)
+    known = None if guess is None else _from_run(setup, guess, start)
+    if known is not None:
+        yield known
+        start = known._replace(state=slipping, near=False)
+    # the accuracy of a static limit is chosen according to the rise of friction above it
+    near_limit, rise = method.prepared and contact.sticks, problem.drift ** (2.0 / 3.0)
+    if near_limit and problem.straight:
+        # if the drift alone adds full friction in an interval, Goal.drift_error is at most the
+        # change of the state, whatever the limit
+        if setup.goal.gain < problem.mean_load:
+            limit, start = _at_limit(setup, start)
+            excess = min(SLOW_EXCESS * rise, LARGEST_EXCESS)
+            start = start._replace(state=limit + excess * slipping)
+    elif near_limit and problem.drift < SLOW_LOOP:
+        # the force of this limit only sets `least`
+        rest, tolerance = replace(problem, velocity=0.0), max(rise, setup.goal.tolerance)
+        path = path_of(rest, contact, setup.resolution.steps, method.integrator)
+        loop, oscillation = limit_on_a_loop(
+            contact, rest, path, tolerance, STEP_SHARE * tolerance, settings.budget
+        )
+        start = start._replace(
             # a factor of SLOW_EXCESS would prevent convergence at the smallest drifts
-            start = limit.oscillating + limit.shift + self.rise * slipping
-        if method.prepared:
-            yield Start(project(start, contact.bound))
-        yield Start(slipping)
+            state=loop.oscillating + loop.shift + rise * slipping,
+            least=loop.force,
+            periods=oscillation.marches * (0.5 if problem.half_period_mirror else 1.0),
+            effort=oscillation.effort,
+        )
+    if method.prepared:
+        yield start._replace(state=project(start.state, contact.bound))
+    yield start._replace(state=slipping, periods=0.0, effort=Effort())
 
-    def _find_limit(self) -> np.ndarray:
-        """Return the tractions of the static limit of a motion on a line, and set
-        `static_force`."""
-        tolerance = STEP_SHARE * max(self.rise, self.tolerance)
-        limit = limit_on_a_line(self.contact, self.problem.oscillation, tolerance)
-        self.settings.budget.take(limit.effort)
-        if not unsolved(limit.march, tolerance):
-            self.static_force = limit.force
-        self.limit = limit.shift + limit.oscillating
-        return self.limit
 
-    def _from_run(self, guess: Run) -> Iterator[Start]:
-        """Yield the initial state that follows from a converged run.
+def _at_limit(setup: Setup, start: Start) -> tuple[np.ndarray, Start]:
+    """Return the tractions of the static limit of a motion on a line, and the start with this
+    limit."""
+    problem, contact = setup.problem, setup.contact
+    tolerance = STEP_SHARE * max(problem.drift ** (2.0 / 3.0), setup.goal.tolerance)
+    line = limit_on_a_line(contact, problem.oscillation, tolerance, setup.settings.budget)
+    limit = line.shift + line.oscillating
+    if not unsolved(line.march, tolerance):
+        start = start._replace(static_force=line.force)
+    return limit, start._replace(limit=limit)
 
-        No state is yielded if the tractions of the run are unknown or cannot be interpolated.
-        """
-        contact = self.contact
-        if guess.state is None or not guess.converged:
-            return
-        if guess.state.shape == (2, *contact.forward_position.shape):
-            self.static_force, self.limit = guess.static_force, guess.limit
-            yield Start(guess.state, guess.place, friction=guess.mu)
-            return
-        # the static limit, which has kinks, is computed on each mesh
-        excess = guess.state if guess.limit is None else guess.state - guess.limit
-        near = contact.prolong(excess)
-        if near is not None:
-            near = near if guess.limit is None else near + self._find_limit()
-            yield Start(project(near, contact.bound), guess.place, near=True, friction=guess.mu)
 
-    def driven(self, guess: Run | None) -> Iterator[Start]:
-        """Yield initial states under a prescribed force or on a spring, best first."""
-        contact, problem, slipping = self.contact, self.problem, forward_slip(self.contact)
-        for one in self._similar_runs(guess):
-            yield from self._from_run(one)
-        share = max(self.tolerance, LOOSEST_START) / problem.mean_load
-        run = self._earlier_run(replace(problem, drive=None), self.resolution, share)
-        self.static_force, self.limit = run.static_force, run.limit
-        # tractions at a prescribed velocity, and their mean force over a period
-        starts = [(slipping, float(np.sum(contact.weight * slipping[0])))]
-        if run.state is not None:
-            starts.insert(0, (run.state, run.mu * problem.mean_load))
-        body, force = self.body, self.force
-        assert body is not None
-        for tractions, mean in starts:
-            if force is not None:
-                if mean > 0.0 and 0.0 <= force < MOST_SCALED * mean:
-                    tractions = tractions * (force / mean)
-                tractions = project(tractions, contact.bound)
-            place = (body.load - mean) / body.stiffness if body.stiffness else 0.0
-            yield Start(tractions, np.array([place, 0.0]), friction=run.mu)
+def _from_run(setup: Setup, run: Run, start: Start) -> Start | None:
+    """Return the initial state that follows from a converged run.
 
-    def _similar_runs(self, guess: Run | None) -> Iterator[Run]:
-        """Yield runs with a similar state. If a guess is given, it is the first run. The second run
-        has fewer steps (see `COARSENING`)."""
-        if guess is not None:
-            yield guess
-        if self.resolution.steps >= PREPARED_FROM:
-            fewer = replace(self.resolution, steps=self.resolution.steps // COARSENING)
-            yield self._earlier_run(self.problem, fewer, self.relative)
+    Returns None if the tractions of the run are unknown or cannot be interpolated.
+    """
+    contact, state = setup.contact, run.state
+    if state is None or not run.converged:
+        return None
+    start = start._replace(place=run.place, friction=run.mu)
+    if state.shape == (2, *contact.forward_position.shape):
+        return start._replace(state=state, static_force=run.static_force, limit=run.limit)
+    # the static limit, which has kinks, is computed on each mesh
+    near = contact.prolong(state if run.limit is None else state - run.limit)
+    if near is None:
+        return None
+    if run.limit is not None:
+        limit, start = _at_limit(setup, start)
+        near = near + limit
+    return start._replace(state=project(near, contact.bound), near=True)
 
-    def _earlier_run(self, problem: Problem, resolution: Resolution, tolerance: float) -> Run:
-        run = simulate(problem, self.model, resolution, tolerance, settings=self.settings)
-        self.earlier_periods += run.periods
-        self.effort += run.effort
-        return run
+
+def _driven(setup: Setup, guess: Run | None) -> Iterator[Start]:
+    """Yield initial states under a prescribed force or on a spring, best first."""
+    problem, resolution, contact = setup.problem, setup.resolution, setup.contact
+    body, force, full = setup.body, problem.force, problem.mean_load
+    assert body is not None
+    start = Start(forward_slip(contact))
+    known = None if guess is None else _from_run(setup, guess, start)
+    if known is not None:
+        yield known
+        start = known
+    if resolution.steps >= PREPARED_FROM:  # a run with fewer steps has a similar state
+        fewer = replace(resolution, steps=resolution.steps // COARSENING)
+        run = simulate(problem, setup.model, fewer, setup.relative, settings=setup.settings)
+        start = start._replace(periods=run.periods, effort=run.effort)
+        known = _from_run(setup, run, start)
+        if known is not None:
+            yield known
+            start = known._replace(periods=0.0, effort=Effort())
+    share, free = max(setup.goal.tolerance, LOOSEST_START) / full, replace(problem, drive=None)
+    run = simulate(free, setup.model, resolution, share, settings=setup.settings)
+    start = start._replace(
+        near=False,
+        friction=run.mu,
+        static_force=run.static_force,
+        limit=run.limit,
+        periods=start.periods + run.periods,
+        effort=start.effort + run.effort,
+    )
+    # tractions at a prescribed velocity, and their mean force over a period
+    slipping = forward_slip(contact)
+    starts = [(slipping, float(np.sum(contact.weight * slipping[0])))]
+    if run.state is not None:
+        starts.insert(0, (run.state, run.mu * full))
+    for tractions, mean in starts:
+        if force is not None:
+            if mean > 0.0 and 0.0 <= force * full < MOST_SCALED * mean:
+                tractions = tractions * (force * full / mean)
+            tractions = project(tractions, contact.bound)
+        place = (body.load - mean) / body.stiffness if body.stiffness else 0.0
+        yield start._replace(state=tractions, place=np.array([place, 0.0]))
+        start = start._replace(periods=0.0, effort=Effort())

@@ -31,7 +31,8 @@ from __future__ import annotations
 from collections.abc import Callable
 from contextlib import suppress
 from dataclasses import replace
-from functools import lru_cache, partial
+from functools import partial
+from operator import sub
 from typing import NamedTuple
 
 import numpy as np
@@ -41,6 +42,7 @@ from microslip.contact.contact import (
     Contact,
     March,
     StepFailure,
+    forward_slip,
     full_slip,
     rigid_displacement,
 )
@@ -50,6 +52,7 @@ from microslip.periodic.discretise import (
     STRONGEST_FOCUS,
     Resolution,
     bounds_at_phases,
+    contact_of,
     dissipated_energy,
     focus_strength,
     mean_forces,
@@ -64,18 +67,17 @@ from microslip.periodic.run import (
     Effort,
     Run,
     Settings,
-    periods_of,
     unsolved,
 )
-from microslip.periodic.search import Goal, PeriodicState, PeriodMap, find_periodic_state
+from microslip.periodic.search import Goal, PeriodicState, find_periodic_state
 from microslip.scene.hertz import HERTZ
 from microslip.scene.problem import Problem
 
-STEPS = 4
-"""Number of steps from one turning point to the next.  Between turning points, the slip of each
-point grows in a constant direction.  Therefore, backward Euler gives the same tractions for any
-number of steps.  A second-order method can end a step below the bound.  Even a small distance from
-the bound matters, because s depends on the square root of this distance."""
+QUARTER = np.linspace(0.0, np.pi / 2, 3)
+"""Phases from the mean position to the second turning point.  Between turning points, the slip of
+each point grows in a constant direction.  Therefore, backward Euler gives the same tractions for
+any number of steps.  A second-order method can end a step below the bound.  Even a small distance
+from the bound matters, because s depends on the square root of this distance."""
 SLOW_LOOP = 0.02
 """If the drift is below this value, the stick zone of the static limit determines the state on a
 loop.  The value is in u_lim per radian of phase."""
@@ -123,11 +125,6 @@ class StaticLimit(NamedTuple):
     force: float
     march: March
 
-    @property
-    def effort(self) -> Effort:
-        """Effort of the last march."""
-        return Effort.of(self.march.solves, self.march.iterations, self.march.state.size)
-
 
 def at_turning_points(problem: Problem) -> bool:
     """Return whether the tractions at the turning points determine the static limit.
@@ -137,22 +134,20 @@ def at_turning_points(problem: Problem) -> bool:
     return problem.straight and not problem.motion.loads
 
 
-@lru_cache(maxsize=32)
-def _quarter(oscillation: Callable) -> Path:
-    """Return the path from the mean position to the second turning point."""
-    return make_path(oscillation, np.linspace(0.0, np.pi / 2, STEPS // 2 + 1), EULER)
-
-
-def limit_on_a_line(contact: Contact, oscillation: Callable, step_tolerance: float) -> StaticLimit:
+def limit_on_a_line(
+    contact: Contact, oscillation: Callable, step_tolerance: float, budget: Budget | None = None
+) -> StaticLimit:
     """Compute the static limit of a contact from its tractions at the turning points.
 
     `oscillation(phase)` returns the rigid displacement without forward motion.  The first turning
     point is at the phase -pi/2.
     """
-    start = np.zeros((2, *contact.lateral_position.shape))
     # by Masing's rule the first quarter period from a stress-free start ends on the closed loop, at
     # the second turning point; the tractions at the first one have the opposite sign
-    march = contact.march(_quarter(oscillation), start, step_tolerance)
+    quarter = make_path(oscillation, QUARTER, EULER)
+    march = contact.march(quarter, 0.0 * forward_slip(contact), step_tolerance)
+    if budget is not None:
+        budget.take(march.solves, march.iterations, march.state.size)
     shift = lens_corner(-march.state, contact.bound)
     force = float(np.sum(contact.weight * shift[FORWARD]))
     return StaticLimit(shift, -march.state, force, march)
@@ -203,9 +198,8 @@ def loop_energy(
     """
     if oscillating is None:
         path = make_path(oscillation, np.pi * np.array([-0.5, 0.5, 1.5]), EULER)
-        cycle, goal = PeriodMap(contact, path, mirror=False), Goal(ROUNDING, ROUNDING)
-        start = np.zeros(cycle.shape)
-        oscillating = cycle.image(find_periodic_state(cycle, start, goal).march.state)
+        start, goal = 0.0 * forward_slip(contact), Goal(ROUNDING, ROUNDING)
+        oscillating = find_periodic_state(contact, path, start, goal, mirror=False).march.state
     place = np.array(oscillation(np.array(-0.5 * np.pi)), dtype=float)
     slip = rigid_displacement(contact, place) - contact.displacement(oscillating)
     return 4.0 * float(np.vdot(contact.weight * full_slip(contact, *oscillating), slip))
@@ -239,17 +233,15 @@ def limit_on_a_loop(
     tuple of StaticLimit and search.PeriodicState
         The limit, and the periodic state.
     """
-    mirror = problem.half_period_mirror
-    period_map = PeriodMap(contact, path, mirror=mirror, budget=budget)
-    rounds: list[PeriodicState] = []
-    start, goal = np.zeros(period_map.shape), Goal(tolerance, step_tolerance, MARCHES)
-    while not rounds or not (rounds[-1].converged or len(rounds) == MOST_ROUNDS):
-        rounds.append(find_periodic_state(period_map, start, goal))
-        start = rounds[-1].start
-    marches = sum(one.marches for one in rounds)
-    iterations = sum(one.iterations for one in rounds)
-    periodic = replace(rounds[-1], marches=marches, iterations=iterations)
-    march, shift = periodic.march, np.zeros(period_map.shape)
+    mirror, rounds, found = problem.half_period_mirror, 0, False
+    start, goal = 0.0 * forward_slip(contact), Goal(tolerance, step_tolerance, MARCHES)
+    marches, effort = 0, Effort()
+    while not found and rounds < MOST_ROUNDS:
+        periodic = find_periodic_state(contact, path, start, goal, mirror=mirror, budget=budget)
+        start, found, rounds = periodic.start, periodic.converged, rounds + 1
+        marches, effort = marches + periodic.marches, effort + periodic.effort
+    periodic = periodic._replace(marches=marches, effort=effort)
+    march, shift = periodic.march, 0.0 * start
     force = float(mean_forces(contact, problem, path, march.forces)[FORWARD])
     if contact.sticks:
         tractions, bounds = tractions_at_phases(contact, path, march)
@@ -332,13 +324,12 @@ def limit_run(
         if not contact.sticks:
             energy = loop_energy(contact, displacement)
             return Run({"friction": 0.0, "dissipation": energy}, distance=0.0, residual=0.0), None
-        limit = limit_on_a_line(contact, displacement, inner)
-        settings.budget.take(limit.effort)
+        limit = limit_on_a_line(contact, displacement, inner, settings.budget)
         energy = loop_energy(contact, displacement, limit.oscillating)
         sticks = np.hypot(*limit.shift) > LARGEST_SHIFT * np.max(contact.bound)
         # the limit needs a march of a quarter period and no search, so there are no periods
         distance, periods = 0.0, 0.0
-        effort = limit.effort._replace(iterations=0, updates=0)
+        effort = Effort.of(limit.march.solves, 0, limit.march.state.size)
         reason = unsolved(limit.march, inner)
     else:
         path = path_of(problem, contact, resolution.steps, settings.method.integrator)
@@ -351,7 +342,8 @@ def limit_run(
         if contact.sticks:
             sticks = limit.shift[FORWARD] > LARGEST_SHIFT * bounds_at_phases(contact, path).max()
         distance, effort = FELT * periodic.distance, periodic.effort
-        periods, reason = periods_of(periodic.marches, problem), unsolved(limit.march, inner)
+        periods = periodic.marches * (0.5 if problem.half_period_mirror else 1.0)
+        reason = unsolved(limit.march, inner)
         if periodic.distance > ENOUGH * accuracy:  # the distance is part of the error
             reason = f"no periodic state within {periods:g} periods: {periodic.distance:.1e} left"
     load = problem.mean_load
@@ -443,14 +435,15 @@ def edge_focus(
     limit, budget = replace(problem, velocity=0.0, poisson=0.0, drive=None), budget or Budget()
     if limit in _EDGES:
         radii, effort = _EDGES[limit]
-        budget.take(effort)
+        budget.taken += effort
+        budget.take()
     else:
         before, radii = budget.taken, ()
         with suppress(StepFailure):
             radii = _edges_of(limit, Settings(budget=budget), progress)
         if len(_EDGES) >= MOST_STORED:
             _EDGES.pop(next(iter(_EDGES)))
-        _EDGES[limit] = radii, budget.taken - before
+        _EDGES[limit] = radii, Effort(*map(sub, budget.taken, before))
     return Focus(radii, focus_strength(drift)) if radii else None
 
 
@@ -478,7 +471,7 @@ def static_run(
     For the arguments and the result, see simulate.simulate.  The velocity of the problem is 0.
     """
     if at_turning_points(problem) or settings.focus is not None:  # the edges are known
-        contact = settings.contact(problem, model, resolution)
+        contact = contact_of(problem, model, resolution, settings)
         return limit_run(contact, problem, resolution, tolerance, settings)[0]
     runs, _ = stick_edges(problem, model, resolution, tolerance, settings=settings)
     effort = sum((one.effort for one in runs), Effort())
@@ -522,7 +515,7 @@ def stick_edges(
         if progress is not None:
             progress(resolution)
         before, focus = radii, Focus(radii, STRONGEST_FOCUS) if radii else None
-        contact = replace(settings, focus=focus).contact(problem, model, resolution)
+        contact = contact_of(problem, model, resolution, replace(settings, focus=focus))
         run, sticks = limit_run(contact, problem, resolution, tolerance, settings)
         runs.append(run)
         radii = _stick_radii(contact, sticks)

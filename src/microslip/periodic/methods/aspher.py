@@ -108,7 +108,7 @@ def _run(problem: Problem, model: str, resolution: Resolution, tolerance: float)
     force, means, residuals, change = 0.0, [], [], math.inf
     for number in range(2 * MOST_PERIODS):
         forces, residual = half_period(solver, path, number)
-        means.append(float(path.mean(np.array([force, *forces]))))
+        means.append(float(path.weights @ np.array([force, *forces])))
         residuals.append(residual)
         force = forces[-1]
         if number % 2 == 1 and number > 1:
