@@ -66,8 +66,8 @@ def main() -> None:
         rows.append({"motion": motion})
         rows[-1] |= {str(n): f"{one:.0e}" for n, one in zip(ANGLES, worst, strict=True)}
         print(rows[-1], flush=True)
-    heading = "The entries are the largest differences of the friction from that with"
-    text = f"{heading} {MANY} angles, among {options.points} random points of each motion.\n\n"
+    heading = "Each entry is the largest difference between the friction and its value with"
+    text = f"{heading} {MANY} angles, at {options.points} random points of the motion.\n\n"
     tables.publish(text + tables.markdown(rows), options)
 
 

@@ -44,9 +44,9 @@ UNIFORM = (25, 97, 193)
 JUDGEMENTS = """\
 The first table tests certified maps at random points, uniformly distributed in the logarithm of the
 velocity and in the amplitude. The points were used neither to make a map nor to choose a constant.
-A point is covered if the error of the map is at most its estimate plus the error estimate of the
-reference. The last column is the smallest fraction of the surplus that would still be enough to
-cover all points."""
+A point is covered if the error of the map is at most the sum of the error estimates of the map and
+the reference. The last column is the smallest fraction of the surplus that would cover all
+points."""
 GRIDS = """\
 The second table compares the maps with uniform grids whose nodes are as accurate as the points of
 the map. Between the nodes, the error estimate is that of `dataset.microslip.at`."""

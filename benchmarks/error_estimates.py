@@ -302,8 +302,8 @@ def _verdict(lines):
     plain = [off(line) / max(line["error"], 1e-12) for line in converged] or [0.0]
     text = (
         f"Of {len(lines)} points, {n} converged and have a reference. At {x} of these, the error"
-        " exceeds its estimate by more than the uncertainty of the reference"
-        f" ({CONFIDENCE:.0%} limit: {1e3 * limit:.2f} in 1,000). The largest ratio of"
+        " exceeds its estimate by more than the uncertainty of the reference. The"
+        f" {CONFIDENCE:.0%} confidence limit is {1e3 * limit:.2f} in 1,000. The largest ratio of"
         f" error to tolerance is {farthest:.2f}. The largest ratio of error to estimate is"
         f" {largest:.2f}, the median is {np.median(plain):.2f}, and 99 % of these ratios are below"
         f" {np.quantile(plain, 0.99):.2f}."
@@ -343,9 +343,9 @@ def _exceptions(lines):
     text = []
     for line in sorted(filter(failed, lines), key=ratio, reverse=True):
         text.append(
-            f"\nPoint {_named(line)} fails by a factor of {ratio(line):.2f}: the error is"
+            f"\nOne estimate is too small by a factor of {ratio(line):.2f}. The error is"
             f" {off(line):.1e} +- {line['uncertainty']:.0e} (from a {line['by']} run), but the"
-            f" estimate is {line['error']:.1e}."
+            f" estimate is {line['error']:.1e}. This is point {_named(line)}."
         )
     for line in filter(energy_failed, lines):
         text.append(
@@ -355,7 +355,7 @@ def _exceptions(lines):
         )
     for line in lines:
         if not line["converged"]:
-            text.append(f"\nPoint {line['k']} did not converge: {line['reason']}.")
+            text.append(f"\nPoint {line['k']} did not converge: `{line['reason']}`.")
     without = sum(not line["by"] for line in lines)
     if without:
         text.append(f"\n{without} points have no reference.")

@@ -81,8 +81,8 @@ LAST_DIGITS = {"stiffness_forward": 3, "stiffness_lateral": 3}
 
 CONTACT_CASES = """\
 CONTACT: each cell contains the published value and that of `microslip`. Values in bold disagree.
-Force and work divided by the friction force are computed on a refined mesh and may differ by
-0.002. A stiffness may differ by 1.5 %. All other values agree if they are equal to the last printed
+The force and the work, divided by the friction force, are computed on a refined mesh. They may
+differ by 0.002. A stiffness may differ by 1.5 %. All other values must agree to the last printed
 digit."""
 
 
