@@ -301,10 +301,11 @@ def _verdict(lines):
     twice = [line for line in lines if len(line.get(ALL_REFERENCES, ())) > 1]
     plain = [off(line) / max(line["error"], 1e-12) for line in converged] or [0.0]
     text = (
-        f"Of {len(lines)} points, {n} converged and have a reference. At {x} of these, the error"
-        " exceeds its estimate by more than the uncertainty of the reference. The"
-        f" {CONFIDENCE:.0%} confidence limit is {1e3 * limit:.2f} in 1,000. The largest ratio of"
-        f" error to tolerance is {farthest:.2f}. The largest ratio of error to estimate is"
+        f"Of {len(lines)} points, {n} converged and have a reference. At {x} of these points, the"
+        " error exceeds its estimate by more than the uncertainty of the reference. The"
+        f" {CONFIDENCE:.0%} confidence limit of this rate is {1e3 * limit:.2f} in 1,000."
+        f" The largest ratio of error to tolerance is {farthest:.2f}. The largest ratio of error to"
+        " estimate is"
         f" {largest:.2f}, the median is {np.median(plain):.2f}, and 99 % of these ratios are below"
         f" {np.quantile(plain, 0.99):.2f}."
     )
