@@ -8,6 +8,7 @@ import microslip
 
 ONE = {
     "numpy": lambda x: np.array(x),
+    "numpy, one value": lambda x: np.array([x]),
     "xarray": lambda x: xr.DataArray(x),
     "a row of a dataset": lambda x: xr.DataArray([x, 9 * x], dims="t", coords={"t": [0, 1]})[0],
     "one value": lambda x: xr.DataArray([x], dims="t", attrs={"units": "1"}),

@@ -37,6 +37,7 @@ REFUSED = {
     f"{GIVEN} tabs.yaml": "tabs.yaml: not valid YAML:",
     f"{GIVEN} --config points_per_job=0": "good.yaml, --config: points_per_job: 0 is not allowed",
     f"{GIVEN} --config results=good.yaml": "--config: results: good.yaml is not a folder",
+    f"{GIVEN} --directory /proc/x --quiet all": "cannot write to /proc/x/.snakemake: ",
 }
 
 
@@ -77,6 +78,14 @@ def test_targets_and_the_name_of_a_configuration_are_handed_to_snakemake(place, 
     for target in ("fig2_transverse_map", "bore", "results/bore.nc", "all"):
         in_process.run("sweep", target)
         assert target in started.pop()
+
+
+def test_a_failure_is_a_line_also_if_snakemake_prints_nothing(here, monkeypatch):
+    monkeypatch.setattr("snakemake.cli.main", lambda _: sys.exit(1))
+    (here / "given.yaml").write_text(GOOD)
+    process = in_process.run("sweep", "--configfile", "given.yaml", "--quiet", "all")
+    assert (process.returncode, process.stderr.count("\n")) == (1, 1)
+    assert "not finished" in process.stderr
 
 
 def test_an_interrupt_ends_with_its_exit_code(here, monkeypatch):

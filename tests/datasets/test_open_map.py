@@ -16,9 +16,13 @@ def test_what_cannot_be_opened_is_one_line(tmp_path):
         open_map("tranverse", tmp_path)
     with pytest.raises(CacheError, match="bore.nc is not there"):
         open_map("bore", tmp_path)
+    eq6_map(1e-4).drop_vars("checksum").to_netcdf(tmp_path / "old.nc")
+    with pytest.raises(CacheError, match="older version: run the sweep again"):
+        open_map("old", tmp_path)
     path.write_bytes(path.read_bytes()[:-100])
-    with pytest.raises(CacheError, match="transverse.nc is damaged"):
-        open_map("transverse", tmp_path)
+    (tmp_path / "link.nc").symlink_to(path)
+    with pytest.raises(CacheError, match=f"link.nc: it is truncated .* delete {path} and run the"):
+        open_map("link", tmp_path)
 
 
 def test_a_dataset_that_declares_more_than_it_holds_is_refused_unread(tmp_path):

@@ -5,7 +5,7 @@ import pickle
 import numpy as np
 import pytest
 import xarray as xr
-from stubs.eq6_map import map_of, places
+from stubs.eq6_map import map_of, places, with_checksums
 from stubs.new_process import output
 
 from microslip.datasets.interpolation import Axis, Grid
@@ -23,8 +23,7 @@ def friction(v, a, nu=0.0):
 
 def made_up(velocity=VELOCITY, amplitude=AMPLITUDE, error=0.0, nu=0.0, **more):
     v, a = np.meshgrid(velocity, amplitude)
-    data = map_of(friction(v, a, nu), velocity, amplitude, error, **more).assign_coords(poisson=nu)
-    return data.assign(work=("velocity", np.arange(len(velocity)) ** 2))
+    return map_of(friction(v, a, nu), velocity, amplitude, error, nu, **more)
 
 
 @pytest.mark.parametrize("imports", ["microslip, xarray", "xarray, microslip"])
@@ -76,7 +75,7 @@ def test_the_bound_covers_the_interpolation_error_and_the_errors_of_the_points()
     assert np.median(fine.mu_macro_error) < 0.1 * np.median(answer.mu_macro_error)
     data = made_up()
     data["mu_macro_error"][1::2, 1::2] = 0.01  # next to every point
-    off = data.microslip.at(v, a)
+    off = with_checksums(data).microslip.at(v, a)
     assert (off.mu_macro_error - answer.mu_macro_error).values == pytest.approx(0.01)
 
 
@@ -135,14 +134,13 @@ def test_a_static_limit_is_not_interpolated():
 
 def test_a_map_over_forces_has_velocities():
     data = made_up().rename(mu_macro="velocity", mu_macro_error="velocity_error", velocity="force")
-    answer = (
-        data.rename(velocity="mean").rename(mean="velocity").microslip.at(force=0.3, amplitude=1.1)
-    )
+    data = with_checksums(data.rename(velocity="mean").rename(mean="velocity"), "velocity")
+    answer = data.microslip.at(force=0.3, amplitude=1.1)
     assert float(answer.velocity) == float(made_up().microslip.at(0.3, 1.1).mu_macro)
 
 
 PARTS = {
-    "two variables": lambda data: data[["mu_macro", "mu_macro_error"]],
+    "three variables": lambda data: data[["mu_macro", "mu_macro_error", "checksum"]],
     "a slice": lambda data: data.sel(velocity=slice(0.01, 6), amplitude=slice(0.4, 2.6)),
     "by numbers": lambda data: data.isel(velocity=slice(3, None), amplitude=slice(1, 12)),
     "lazy": lambda data: data.chunk({"velocity": 4, "amplitude": 5}),
@@ -150,6 +148,12 @@ PARTS = {
     "pickled after a query": lambda data: pickle.loads(pickle.dumps(data)),
     "without indexes": lambda data: data.drop_indexes(["velocity", "amplitude"]),
     "as one ratio": lambda data: data.expand_dims("poisson"),
+    "one of several ratios": lambda data: xr.concat([made_up(nu=0.5), data], "poisson")[
+        {"poisson": 1}
+    ],
+    "stacked": lambda data: data.stack(n=["velocity", "amplitude"]).unstack(),
+    "in a file": lambda data: xr.load_dataset(data.to_netcdf()),
+    "with a gap": lambda data: data.reindex(velocity=[*VELOCITY, 20]).where(data.converged),
 }
 
 
@@ -175,8 +179,6 @@ ONE = {"velocity": 1, "amplitude": 1}
         *((made_up(), ONE | {name: 0.2}, name) for name in ("poisson", "mass")),
         (made_up()[["mu_macro"]], ONE, "mu_macro_error"),
         (made_up().isel(velocity=[0, 0, 1]), ONE, "velocity"),
-        # values between points have unknown errors; their numbers of solves are not integers
-        (made_up().interp(velocity=[0.01, 0.02]), ONE | {"velocity": 0.015}, "mu_macro"),
         (made_up().astype(str), ONE, "mu_macro"),
         (made_up().expand_dims(made=2), ONE, "made"),
     ],
@@ -185,3 +187,32 @@ def test_bad_points_and_datasets_are_refused_by_name(data, place, argument):
     with pytest.raises(InputError) as caught:
         data.microslip.at(**place)
     assert caught.value.argument == argument
+
+
+def several():
+    """Maps of two Poisson's ratios, with points that did not converge."""
+    data = xr.concat([made_up(nu=0.0), made_up(nu=0.5)], "poisson")
+    data["converged"][:, 6, 6] = False
+    return with_checksums(data)
+
+
+CHANGED = {
+    "midpoints": lambda data: data.interp(amplitude=AMPLITUDE[:-1] + 0.125),
+    "between ratios": lambda data: data.interp(poisson=[0.0, 0.25]),
+    "smoothed": lambda data: data.rolling(velocity=3, center=True).mean(),
+    "averaged": lambda data: data.mean("poisson"),
+    "without its ratio": lambda data: data.isel(poisson=0, drop=True),
+    "rolled": lambda data: data.roll(velocity=1),
+    "other ratio": lambda data: data.assign_coords(poisson=[0.0, 0.3]),
+    "less error": lambda data: data.assign(mu_macro_error=0.5 * data.mu_macro_error - 1e-5),
+    "all converged": lambda data: data.assign(converged=xr.ones_like(data.converged)),
+    "one changed": lambda data: data.where(data.velocity > 1e-3, data + 1e-16),
+}
+
+
+@pytest.mark.parametrize("change", CHANGED)
+def test_a_grid_whose_points_are_not_the_computed_ones_is_refused(change):
+    place = {"velocity": 1.1, "amplitude": 1.1, "poisson": 0.1}
+    assert several().microslip.at(**place).mu_macro_error < 0.5
+    with pytest.raises(InputError, match="^(mu_macro|poisson) = .* not the computed map: open"):
+        CHANGED[change](several()).microslip.at(**place)

@@ -3,6 +3,8 @@
 import numpy as np
 import xarray as xr
 
+from microslip.config.quantities import AXES
+from microslip.datasets.interpolation import checksums
 from microslip.theory import paper
 
 FINE = {"velocity": np.geomspace(0.01, 10, 41), "amplitude": np.linspace(0.05, 4, 41)}
@@ -24,15 +26,24 @@ def eq6_map(error, velocity=FINE["velocity"], amplitude=FINE["amplitude"]):
     return map_of(mu, velocity, amplitude, error)
 
 
-def map_of(mu, velocity, amplitude, error=0.0, **attributes):
+def map_of(mu, velocity, amplitude, error=0.0, poisson=0.0, **attributes):
     """Dataset of friction (amplitudes, velocities) with an error estimate; all points converged."""
     dims = ("amplitude", "velocity")
-    return xr.Dataset(
+    dataset = xr.Dataset(
         {
             "mu_macro": (dims, mu),
             "mu_macro_error": (dims, np.full(mu.shape, error)),
             "converged": (dims, np.ones(mu.shape, bool)),
         },
-        {"velocity": velocity, "amplitude": amplitude, "poisson": 0.0},
+        {"velocity": velocity, "amplitude": amplitude, "poisson": poisson},
         {"motion": "transverse"} | attributes,
     )
+    return with_checksums(dataset)
+
+
+def with_checksums(dataset, name="mu_macro"):
+    """The dataset with checksums of its present points."""
+    value, error = dataset[name], dataset[f"{name}_error"].values
+    codes = checksums([dataset[one] for one in AXES if one in dataset.coords], value.values, error)
+    codes = codes.reshape(value.shape) * dataset.converged.values
+    return dataset.assign(checksum=value.copy(data=codes))

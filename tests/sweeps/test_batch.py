@@ -1,6 +1,7 @@
 """Batch files, the records that they share, journals, and errors of the solver."""
 
 import errno
+import shutil
 from unittest.mock import Mock
 
 import numpy as np
@@ -43,9 +44,7 @@ def journals(folder):
 DAMAGE = {
     "a bit": lambda text: text.replace(b'"0.5"', b'"0.6"', 1),
     "half of it": lambda text: text[: len(text) // 2],
-    "a record": lambda text: text.partition(b"\n")[2],
     "the checksum": lambda text: text[: text.rfind(b"\n", 0, -1) + 1],
-    "another file": lambda text: b"velocity,mu_macro\n",
 }
 
 
@@ -64,11 +63,22 @@ def test_a_damaged_batch_is_noticed_and_solved_again_to_the_same_bytes(kind, sol
     assert path.read_bytes() == whole
 
 
+def test_a_batch_copied_over_another_one_is_noticed_and_solved_again(solver, tmp_path):
+    for name, velocity in (("slow", 0.5), ("fast", 5)):
+        batch.solve(points(velocity=[velocity]), tmp_path / f"{name}.jsonl")
+    path = tmp_path / "slow.jsonl"
+    whole = path.read_bytes()
+    shutil.copy(tmp_path / "fast.jsonl", path)
+    assert batch.is_final(tmp_path / "fast.jsonl") and not batch.is_final(path)
+    assert batch.solve(points(velocity=[0.5]), path)["computed"] == 3
+    assert path.read_bytes() == whole
+
+
 def test_a_job_takes_the_points_of_other_batches_with_the_same_rows(solver, tmp_path):
     first = batch.solve(points(), tmp_path / "a.jsonl")
     assert (first["points"], first["computed"], solver.calls) == (6, 6, 6)
     assert batch.solve(points(), tmp_path / "b.jsonl")["computed"] == 0
-    assert (tmp_path / "a.jsonl").read_bytes() == (tmp_path / "b.jsonl").read_bytes()
+    assert batch.read(tmp_path / "a.jsonl") == batch.read(tmp_path / "b.jsonl")
     assert batch.solve(points(amplitude=[0, 0.5, 1, 2]), tmp_path / "c.jsonl")["computed"] == 2
     assert batch.solve(points(velocity=[0.1, 0.2, 1]), tmp_path / "d.jsonl")["computed"] == 3
     assert batch.solve(points(tolerance=1e-2), tmp_path / "e.jsonl")["computed"] == 6

@@ -80,8 +80,8 @@ def _run(arguments: list[str]) -> int:
         words = ["--snakefile", str(source_digest.workflow_file("Snakefile")), *arguments]
         if "SNAKEMAKE_PROFILE" not in os.environ and not any(map(SETS_CORES.match, arguments)):
             words = ["--cores", "all", *words]
-        _check(words)
-    except (InputError, ConfigError, FileNotFoundError) as error:
+        is_silent = _check(words)
+    except (InputError, ConfigError, CacheError, FileNotFoundError) as error:
         place = "the current folder: " if isinstance(error, FileNotFoundError) else ""
         complain(f"microslip sweep: {place}{getattr(error, 'strerror', None) or error}")
         return 2
@@ -98,8 +98,10 @@ def _run(arguments: list[str]) -> int:
         signal.signal(signal.SIGINT, interrupt)
     try:
         snakemake(words)
-    except (KeyboardInterrupt, SystemExit):  # an interrupt of planning, or of the jobs
+    except (KeyboardInterrupt, SystemExit) as end:  # an interrupt of planning, or of the jobs
         if not interrupts:
+            if is_silent and getattr(end, "code", None):
+                complain("microslip sweep: not finished; run it without --quiet for the reason")
             raise
     if interrupts:
         complain("microslip sweep: interrupted")
@@ -130,15 +132,15 @@ def _spare_cache() -> None:
     complain(f"microslip sweep: {home} cannot be written to: Snakemake's own files are in {spare}")
 
 
-def _check(arguments: list[str]) -> None:
-    """Raise InputError for invalid arguments, or ConfigError for an invalid configuration."""
+def _check(arguments: list[str]) -> bool:
+    """Raise InputError for invalid arguments, ConfigError for an invalid configuration, or
+    CacheError for a folder that cannot be written to.  Returns True if Snakemake will not print
+    errors."""
     options = _parsed(arguments)
     if options is None:
-        return
+        return False
     if os.environ.get("NUMBA_DISABLE_JIT"):
         import_module("microslip.foundation.compiled")  # refuses it
-    if options.directory is None and not os.access(".", os.W_OK):
-        raise InputError("--directory", os.getcwd(), "allowed is a folder that can be written to")
     for name in ("cores", "jobs"):
         count = getattr(options, name)
         if isinstance(count, int) and count < 1:
@@ -156,6 +158,8 @@ def _check(arguments: list[str]) -> None:
             hint = near_miss(target, [*names, *configurations()])
             allowed = f"{hint}allowed is one of {', '.join(names)}, or a file"
             raise InputError("TARGET", target, allowed)
+    files.refuse_unwritable(Path(options.directory or ".", ".snakemake"))
+    return "all" in map(str, options.quiet or ())
 
 
 def _configuration(options: argparse.Namespace) -> Configuration:

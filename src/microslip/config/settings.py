@@ -15,7 +15,7 @@ from pydantic import BaseModel, ConfigDict, Field, model_validator
 from pydantic_core import CoreSchema, core_schema
 
 from microslip.config.kinds import KINDS
-from microslip.config.quantities import DRIVES
+from microslip.config.quantities import AXES, DRIVES
 from microslip.contact.registry import MODELS
 from microslip.foundation.arguments import LARGEST
 from microslip.foundation.canonical import number
@@ -37,8 +37,6 @@ SHARE_OF_POINTS = 0.3
 """Default tolerance of the points in a certified map, divided by the error of the map."""
 STATIC_AMPLITUDES = {"transverse": 1.0, "bore": 5.0}
 """Largest amplitude at which the paper's map of a motion shows static friction."""
-AXES = ("mass", "damping", "stiffness", "poisson", "amplitude", "velocity", "force")
-"""Axes of a sweep, in the order of a dataset's dimensions."""
 STUDIES = ("accuracy", "stability", "claims")
 """Keys of the studies. These keys are also the names of the datasets."""
 SOLVING = ("all", "solve_batch", "solve_map")

@@ -10,8 +10,9 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
+from microslip.config.quantities import AXES
 from microslip.datasets import interpolation
-from microslip.datasets.interpolation import ANY, AXES, SAME
+from microslip.datasets.interpolation import ANY, SAME
 from microslip.datasets.variables import ANCILLARY, described
 from microslip.foundation.errors import InputError
 

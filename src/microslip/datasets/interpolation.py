@@ -20,7 +20,9 @@ from functools import cached_property
 
 import numpy as np
 import xarray as xr
+from numpy.typing import ArrayLike
 
+from microslip.config.quantities import AXES
 from microslip.foundation.errors import InputError
 from microslip.sweeps.map_coordinates import MapCoordinates
 
@@ -28,6 +30,8 @@ NODES = 4
 """Number of nodes of a local cubic."""
 COORDINATES = "map_coordinates"
 """Name of the attribute that contains the scaled coordinates of a certified map as JSON."""
+CHECKSUM = "checksum"
+"""Name of the variable that contains the checksums of the points of a regular map."""
 CHECKSUMS = "checksums"
 """Name of the attribute that contains the checksums of the parts of a certified map."""
 BORDERS = {
@@ -37,8 +41,6 @@ BORDERS = {
 }
 """Names of the variables that contain the lower and the upper ends of the cells, keyed by
 direction."""
-AXES = ("mass", "damping", "stiffness", "poisson", "amplitude", "velocity", "force")
-"""Coordinates of maps, in the order of the dimensions of a result."""
 NUMBERS = ("cell", "node", "point")
 """Dimensions of a certified map.  The coordinates along these dimensions are the indices of the
 cells, nodes and points."""
@@ -46,10 +48,9 @@ PARTS = (*NUMBERS, "mu_macro", "cell_error", "cell_node", *sum(BORDERS.values(),
 """Variables of a certified map that have a checksum."""
 SAME = 1e-12
 """Difference below which two coordinates count as equal."""
-LOST = "dataset.microslip.at needs it, and the dataset has lost it: keep it"
-NOT_WHOLE = (
-    "in the dataset, so the certified map is not whole: select from the result of `at`, "
-    "and open the map again with open_map (or make it again if its file is of another version)"
+CHANGED = (
+    "in the dataset, so it is not the computed map: open it again with open_map, and select from "
+    "the result of `at` (or delete its file in results/data, and run the sweep again)"
 )
 ANY = "microslip.solve computes any"
 
@@ -339,7 +340,7 @@ def cells_of(dataset: xr.Dataset) -> Cells:
     for name, checksum in (original | checksums).items():
         is_lost = name not in checksums and name not in AXES
         if is_lost or original.get(name) != checksum:
-            raise InputError(name, "is missing" if is_lost else "has changed", NOT_WHOLE)
+            raise InputError(name, "is missing" if is_lost else "has changed", CHANGED)
     coordinates = MapCoordinates.from_json(dataset.attrs[COORDINATES])
     borders = np.array([[parts[n] for n in BORDERS[d]] for d in coordinates.directions], float)
     nodes = parts["mu_macro"].astype(float)[parts["cell_node"].astype(int)]
@@ -347,43 +348,54 @@ def cells_of(dataset: xr.Dataset) -> Cells:
     return Cells(coordinates, borders.transpose(2, 0, 1), nodes, parts["cell_error"].astype(float))
 
 
+def checksums(axes: Iterable[ArrayLike], value: np.ndarray, error: np.ndarray) -> np.ndarray:
+    """Return the checksums of the points of a regular map, as a flat array.
+
+    The checksum of a point is the CRC-32 of its coordinates, its value and the error of this value,
+    as little-endian numbers in double precision.
+
+    Parameters
+    ----------
+    axes : iterable of array_like
+        Coordinates along each dimension, and constant coordinates, in the order of AXES.
+    value, error : numpy.ndarray
+        Values and errors at the points.  The last coordinate changes fastest.
+    """
+    places = np.meshgrid(*axes, indexing="ij")
+    table = np.column_stack([one.ravel() for one in (*places, value, error)]).astype("<f8")
+    codes = [zlib.crc32(row.tobytes()) for row in table]
+    return np.array(codes, np.uint32).view(np.int32)
+
+
 def grid_of(dataset: xr.Dataset, name: str) -> Grid:
     """Read a variable of a regular map as a `Grid`.  Values that did not converge count as unknown.
 
-    Raises InputError with the name of the variable or coordinate that is missing or not allowed.
+    Raises InputError with the name of the variable or coordinate that is missing or not allowed, or
+    if a known value is not that of a computed point.
     """
-    names = [name, f"{name}_error"]
+    names = [name, f"{name}_error", CHECKSUM]
     nodes = dataset[[one for one in names if one in dataset.variables]]
     dims = [dim for dim in AXES if dim in nodes.dims]
-    for one in (*dims, *names):
+    for one in (*dims, *names, "poisson"):
         if one not in nodes.variables or not nodes[one].size:
-            raise InputError(one, None, LOST)
+            raise InputError(one, "is missing", CHANGED)
         if nodes[one].dtype.kind not in "iuf":
             raise InputError(one, f"of type {nodes[one].dtype}", "allowed are numbers")
     for dim in nodes.dims:
         if dim not in dims:
             raise InputError(str(dim), nodes.sizes[dim], "entries; allowed is one: select it")
         if nodes[dim].to_index().has_duplicates:
-            raise InputError(
-                str(dim), "is there twice", "in the dataset; allowed is each value once"
-            )
-    # between points, the numbers of solves are not integers
-    if "work" in dataset and ((dataset["work"] % 1.0) > 0.0).any():
-        allowed = "allowed are computed points: use dataset.microslip.at on the map itself"
-        raise InputError(name, "interpolated", f"in the dataset; {allowed}")
+            raise InputError(str(dim), "is there twice", CHANGED)
     if "converged" in dataset:
         nodes = nodes.where(dataset["converged"] == 1)  # a join fills gaps with NaN
     nodes = nodes.compute().sortby(dims).transpose(*dims)
-    value, error = (nodes[one] for one in names)
-    most = 1.0 + error + SAME if name == "mu_macro" else np.inf
-    wrong = {dim: (~(nodes[dim] < np.inf) | (nodes[dim] < 0.0), "are numbers >= 0") for dim in dims}
-    wrong |= {error.name: (error < 0.0, "is 0 or more"), name: (abs(value) > most, "is -1 to 1")}
-    for one, (bad, allowed) in wrong.items():
-        if bad.any():
-            first = float(nodes[one].values[bad.values][0])
-            raise InputError(one, first, f"in the dataset; allowed {allowed}")
+    value, error, original = (nodes[one].values for one in names)
+    coordinates = [nodes[one] for one in AXES if one in nodes.coords]
+    has_changed = checksums(coordinates, value, error) != original.ravel()
+    if has_changed[~np.isnan(value.ravel())].any():
+        raise InputError(name, "has changed", CHANGED)
     axes = {}
     for dim in dims:
         values = nodes[dim].values.astype(float)
         axes[dim] = Axis(values, int(dim == "velocity" and len(values) > 1 and values[0] == 0.0))
-    return Grid(axes, *(nodes[one].values.astype(float) for one in names))
+    return Grid(axes, value.astype(float), error.astype(float))

@@ -200,10 +200,9 @@ def whole(path: str | os.PathLike[str]) -> xr.Dataset:
     the file is not a netCDF file.
     """
     refuse_oversized(path)
-    with xr.open_dataset(path, engine="netcdf4") as file:
-        dataset = file.load()
+    dataset = xr.load_dataset(path, engine="netcdf4")
     for group in group_names(path):
-        with xr.open_dataset(path, engine="netcdf4", group=group) as part:
-            dataset = dataset.merge(part.load(), compat="identical", join="exact")
+        part = xr.load_dataset(path, engine="netcdf4", group=group)
+        dataset = dataset.merge(part, compat="identical", join="exact")
     coded_names = [n for n, v in dataset.variables.items() if TEXTS in v.attrs]
     return dataset.assign({name: texts(dataset[name]) for name in coded_names})

@@ -16,6 +16,7 @@ from typing import Any
 
 import xarray as xr
 
+from microslip.datasets.interpolation import CHECKSUM, CHECKSUMS
 from microslip.datasets.netcdf import group_names, refuse_oversized
 from microslip.foundation.errors import CacheError, InputError
 from microslip.foundation.spec import near_miss
@@ -23,9 +24,6 @@ from microslip.sweeps.content import is_whole
 
 PAPER = ("transverse", "bore", "continuous_bore")
 """Names of the sweeps of the paper."""
-SOLVED = {"mu_macro", "velocity_error"}
-"""Variables that identify the dataset of a sweep.  Such a dataset contains at least one of these
-variables."""
 
 
 def open_map(
@@ -86,12 +84,13 @@ def open_map(
             advice = "run the workflow first, or name its results folder"
             raise CacheError(f"{path} is not there: {advice}")
         if not is_whole(path):
-            raise CacheError(f"{path} is damaged: run the workflow again, which makes it anew")
+            raise OSError("it is truncated or not a netCDF-4 file")
         refuse_oversized(path)
         dataset = _opened(path, chunks=chunks)
-        if "motion" not in dataset.attrs or not dataset.variables.keys() & SOLVED:
+        if CHECKSUM not in dataset.variables and CHECKSUMS not in dataset.attrs:
             dataset.close()
-            raise CacheError(f"{path} is not the dataset of a sweep")
+            old = "or of an older version: run the sweep again"
+            raise CacheError(f"{path} is not the dataset of a sweep, {old}")
         if group is None:
             return dataset
         if group not in (groups := group_names(path)):
@@ -100,10 +99,8 @@ def open_map(
         return part.assign_attrs(dataset.attrs | part.attrs)
     except OSError as error:  # a damaged file, or an invalid file name
         why = " ".join((error.strerror or str(error)).split())[:120]
-        raise CacheError(
-            f"cannot read the dataset {name!s} of {results!s}: {why}; allowed: a netCDF file as "
-            "the workflow makes it: run it again"
-        ) from None
+        remedy = f"if it is damaged, delete {os.path.realpath(path)} and run the sweep again"
+        raise CacheError(f"cannot read the dataset {path}: {why}; {remedy}") from None
 
 
 def _opened(path: Path, **how: Any) -> xr.Dataset:

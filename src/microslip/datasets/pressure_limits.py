@@ -56,7 +56,7 @@ def formulas_under(motion: str, name: str) -> dict[str, ClosedForm]:
             # An elliptic stick zone carries the same fraction of the load as a circular one.
             functions = ZONE.function, of_sphere[STATIC].function
         for form, function in zip(exact, functions, strict=False):
-            forms[form.name] = replace(form, function=_each(function))
+            forms[form.name] = replace(form, function=np.vectorize(function, otypes=[float]))
     return forms
 
 
@@ -75,7 +75,3 @@ def _of_indenter(motion: str, pressure: Pressure) -> tuple[Callable, Callable]:
         return float(pressure.load(stick, 1.0)) if stick > 0.0 else 0.0
 
     return zone, lambda amplitude: static(float(place(amplitude)))
-
-
-def _each(function: Callable[[float], float]) -> Callable:
-    return np.vectorize(lambda value: float(function(float(value))), otypes=[float])

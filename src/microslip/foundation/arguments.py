@@ -23,20 +23,19 @@ constant force."""
 
 
 def without_array(value: Any) -> Any:
-    """Extract the number from a NumPy array without dimensions, or from a DataArray with one value
-    and no unit.  Return every other value unchanged.
+    """Extract the number from a NumPy array with one value, or from a DataArray with one value and
+    no unit.  Return every other value unchanged.
 
     Arrays of other libraries, masked arrays and arrays with a unit are also returned unchanged.
     """
     xarray, numpy = sys.modules.get("xarray"), sys.modules.get("numpy")
     if xarray is not None and isinstance(value, xarray.DataArray):
-        if value.size != 1 or value.attrs.get("units", "1") not in ("", "1"):
-            return value
-        inside = without_array(value.squeeze().data)
-        return inside if is_real(inside) else value
+        inside = without_array(value.data)
+        is_plain = is_real(inside) and value.attrs.get("units", "1") in ("", "1")
+        return inside if is_plain else value
     # subclasses can carry a mask or a unit
-    if numpy is not None and type(value) is numpy.ndarray and value.ndim == 0:
-        return value[()]
+    if numpy is not None and type(value) is numpy.ndarray and value.size == 1:
+        return value.reshape(())[()]
     return value
 
 

@@ -144,7 +144,7 @@ def read(value: Any, si: str) -> Quantity:
     Parameters
     ----------
     value : object
-        A string such as "10 N" or "10 N +- 5 %", a quantity of pint, a DataArray of one value, or a
+        A string such as "10 N" or "10 N +- 5 %", a quantity of pint, an array of one value, or a
         number in the SI unit.
     si : str
         SI unit; empty for a pure number, which can also be in per cent.  Hz and rad/s accept
@@ -180,7 +180,7 @@ def read(value: Any, si: str) -> Quantity:
 def plain_number(value: Any) -> float:
     """Convert a real number of any type to a float.  Raises ValueError for every other object."""
     if hasattr(value, "dtype") and value.size == 1 and not hasattr(value, "mask"):
-        value = value.item() if value.ndim == 0 or hasattr(value, "dims") else value
+        value = value.item()
     if getattr(value, "ndim", 0):
         raise ValueError(f"it is an array of shape {value.shape}")
     if isinstance(value, bool) or not isinstance(value, Real | Decimal):

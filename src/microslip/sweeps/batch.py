@@ -1,11 +1,12 @@
 """Batch files and journals.  A batch file contains the records of a batch, and a journal contains
 the records that a job has computed so far.
 
-The first line of a batch file lists the names of the rows to which its requests belong.  Each of
-the following lines is a record, and the last line is a checksum.  The file is written atomically.
-Batch files also serve as a cache: a job takes records from all journals in the folder, and from all
-batch files that contain points of the same rows.  A journal contains the records that a job has
-computed so far, so a killed job loses only the point in progress.
+The first line of a batch file contains the name of the file and the names of the rows to which its
+requests belong.  Each of the following lines is a record, and the last line is a checksum.  The
+file is written atomically.  Batch files also serve as a cache: a job takes records from all
+journals in the folder, and from all batch files that contain points of the same rows.  A journal
+contains the records that a job has computed so far, so a killed job loses only the point in
+progress.
 
 A record is a dict with the keys `key`, `request`, `result` and `versions`.
 """
@@ -63,7 +64,7 @@ def write(path: str | Path, records: Sequence[dict]) -> None:
     file cannot be written."""
     final = all(is_settled(record["result"]) for record in records)
     rows = sorted({row_of(record["request"]) for record in records})
-    lines = [canonical_json({"rows": rows}), *map(canonical_json, records)]
+    lines = [canonical_json({"name": Path(path).name, "rows": rows}), *map(canonical_json, records)]
     content = "".join(f"{line}\n" for line in lines).encode()
     files.write_atomically(Path(path), content + _checksum(content, final))
 
@@ -71,14 +72,16 @@ def write(path: str | Path, records: Sequence[dict]) -> None:
 def read(path: str | Path) -> list[dict]:
     """Return the records of a batch file in the order of the file.  Raises CacheError if the file
     is missing or damaged."""
-    content, _ = _checked(path)
-    return [json.loads(line) for line in content.splitlines()[1:]]
+    return [json.loads(line) for line in _checked(path)[0].splitlines()[1:]]
 
 
 def is_final(path: str | Path) -> bool:
-    """Return True if a batch file is undamaged and all its records are final."""
+    """Return True if a batch file is undamaged and no copy of another one, and all its records are
+    final."""
     with suppress(CacheError):
-        return _checked(path)[1]
+        content, final = _checked(path)
+        name = json.loads(content[: content.index(b"\n")]).get("name", Path(path).name)
+        return final and name == Path(path).name
     return False
 
 
@@ -183,8 +186,7 @@ class Job(ExitStack):
             if keys.issuperset(self._add(_lines_of(file))):
                 with suppress(OSError):
                     file.unlink()
-        statistics = {"points": len(records), "computed": len(self.seconds)}
-        return statistics | {"seconds": sum(self.seconds)}
+        return {"points": len(records), "computed": len(self.seconds), "seconds": sum(self.seconds)}
 
     def _glob(self, pattern: str) -> list[Path]:
         return sorted(self.path.parent.glob(pattern))
