@@ -29,6 +29,7 @@ STEADY = {"motion": "continuous-bore", "amplitude": None}
 ALONE = dict.fromkeys(("velocity", "amplitude"))
 BAD = [
     *(("solve", "motion", {"motion": one}) for one in ("sideways", None, ["bore"])),
+    ("solve", "motion", {"motion": microslip.Transverse, "velocity": None}),
     *(("solve", "velocity", {"velocity": one}) for one in (-1e-9, None, *NUMBERS)),
     *(("solve", "amplitude", {"amplitude": one}) for one in (-0.1, None, *NUMBERS)),
     ("solve", "amplitude", STEADY | {"amplitude": 1.0}),
@@ -42,8 +43,8 @@ BAD = [
     *(("solve", "steps", {"steps": one}) for one in (0, 4, 9, 16.0, *NUMBERS)),
     *(("solve", "most_work", {"most_work": one}) for one in (0, -1.0, math.nan, "1", True)),
     *(("solve", "time_limit", {"time_limit": one}) for one in (0, math.nan, "1")),
-    ("solve", "progress", {"progress": 3}),
-    ("solve", "method", {"method": "none"}),
+    *(("solve", "progress", {"progress": one}) for one in (3, object)),
+    *(("solve", "method", {"method": one}) for one in ("none", None, np.ones(3))),
     ("solve", "method", {"method": "paper"}),
     ("solve", "method", {"method": "euler", "stiffness": 1.0}),
     ("solve", "velocity", {"motion": PROBLEM}),
@@ -81,6 +82,7 @@ BAD = [
     ("shakedown", "motion", {"motion": "transverse-bore"}),
     *(("shakedown", "force", {"force": one}) for one in (-0.1, math.nan, None)),
     ("shakedown", "force", {"motion": FORCED, "amplitude": None}),
+    ("shakedown", "velocity", {"motion": PROBLEM, "amplitude": None}),
     *(("shakedown", "tolerance", {"tolerance": one}) for one in (0.5, None)),
     ("shakedown", "model", {"model": "rigid"}),
     ("propulsion", "motion", {"motion": "transverse"}),

@@ -164,7 +164,8 @@ LATER = (
     MOTION
     + """
     def displacement(self, phase, velocity, amplitude, poisson):
-        return velocity * phase, 0 * phase, 0 * phase / (velocity in (0.0, 1.0) or 1 // 0)
+        1 / (velocity in (0.0, 1.0))
+        return super().displacement(phase, velocity, amplitude, poisson)
 """
 )
 

@@ -7,14 +7,22 @@ import pytest
 
 from microslip.foundation.errors import InputError
 from microslip.scene.by_name import MOTIONS, motion_named
+from microslip.scene.hertz import Hertz
 from microslip.scene.motion import Motion, Wave
-from microslip.scene.named import Elliptic, TransverseBore
+from microslip.scene.named import Elliptic, Transverse, TransverseBore
 from microslip.scene.pressure import Pressure
 from microslip.scene.problem import Force, Problem, Spring
 
 PERIODIC = [one() for one in MOTIONS.values() if one.periodic]
 MIRRORED = [TransverseBore(phase=40), *(one for one in PERIODIC if one.half_period_mirror)]
 PHASE = np.linspace(-3.0, 3.0, 101)
+PLACE = {
+    "motion": Transverse(),
+    "velocity": 0.1,
+    "amplitude": 0.5,
+    "poisson": 0.3,
+    "follows": False,
+}
 
 
 @pytest.mark.parametrize("motion", MIRRORED, ids=str)
@@ -76,14 +84,42 @@ def aside(phase, velocity):
     return np.sin(phase)
 
 
+def declared(base=Motion, **attributes):
+    """A class of motions with these attributes."""
+    return type("Own", (base,), attributes)
+
+
+STILL, LOOP = own(ahead, aside, lambda p, v: 0.0 * p), own(ahead, aside, lambda p, v: np.cos(p))
 OWN = [
     OwnWave,
-    type("Misspelt", (Motion,), {"waves": {"lateral": Wave(), "sideways": Wave()}}),
+    *(
+        declared(waves={"lateral": Wave(), name: one})
+        for name, one in (("sideways", Wave()), ("angle", 1.0))
+    ),
+    *(declared(waves={"load": Wave(degrees=one)}) for one in (math.nan, 1e300, "90")),
+    declared(waves={"load": Wave(), "indentation": Wave()}),
+    declared(waves={"lateral": Wave()}, periodic=False),
+    declared(STILL, waves={"forward": Wave()}),
+    declared(LOOP, rotates=False),
+    *(declared(LOOP, **{name: True}) for name in ("half_disc", "straight")),
+    declared(half_period_mirror=True, waves={"lateral": Wave(cycles=2)}),
+    declared(propels=False, waves={"lateral": Wave(), "forward": Wave(cycles=2)}),
     own(ahead, lambda phase, velocity: phase, aside),  # not periodic
     own(aside, aside, aside),  # does not advance
     own(ahead, aside),
     own(ahead, lambda phase, velocity: 1j * phase, aside),
 ]
+
+
+def test_symmetries_follow_from_an_own_displacement():
+    """A lead of the load relative to the displacement counts."""
+    motion = declared(LOOP, waves={"load": Wave(cycles=2, degrees=90.0)})()
+    assert (motion.rotates, motion.half_disc, motion.straight, motion.propels) == (
+        True,
+        *3 * (False,),
+    )
+    assert motion.half_period_mirror and STILL().straight and not STILL().rotates
+    assert motion.depth(np.array([0.0]), 0.5, Hertz()) == pytest.approx(1.5 ** (2.0 / 3.0))
 
 
 def test_an_own_displacement_is_accepted_while_it_is_finite():
@@ -100,6 +136,7 @@ def test_an_own_displacement_is_accepted_while_it_is_finite():
         (Force, {"force": 0.5, "mass": -1.0}, "mass"),
         (Spring, {"stiffness": -1.0}, "stiffness"),
         *((one, {}, "motion = ") for one in OWN),
+        *((Problem, PLACE | {name: one}, name) for name in PLACE for one in (None, [1.0], 10**400)),
         (Pressure, {}, "pressure = .*defines G_star"),
         *((Elliptic, {"phase": value}, "phase") for value in (math.nan, math.inf, "1", None)),
     ],

@@ -17,7 +17,9 @@ from microslip.contact.registry import MODELS
 from microslip.contact.rings import make_rings
 from microslip.foundation.errors import InputError
 from microslip.scene.by_name import PRESSURES, motion_named, pressure_named
-from microslip.scene.hertz import Ellipse
+from microslip.scene.hertz import Ellipse, Hertz
+from microslip.scene.indenters import Indenter, Power
+from microslip.scene.named import Transverse
 from microslip.scene.pressure import Pressure
 from microslip.scene.problem import Problem
 from microslip.theory import hertz, indenters, paper
@@ -127,6 +129,43 @@ def test_an_indenter_keeps_what_closed_forms_claim(name):
     assert pressure.total(pressure.of_load(depth)) == pytest.approx(depth, rel=1e-9)
     assert pressure.radius(0.0) == pressure.of_load(0.0) == pressure.stick_radius(1.0) == 0.0
     assert pressure.stick_radius(0.3) == pytest.approx(float(pressure.radius(0.7)))
+
+
+class Depth(Indenter):
+    """A class that defines `depth` alone."""
+
+    def depth(self, c):
+        return np.asarray(c, float) ** 2.5
+
+
+def test_an_indenter_needs_no_more_than_its_depth():
+    own, exact, r = Depth(), Power(2.5), np.linspace(0.05, 0.95, 7)
+    assert own.G_star == pytest.approx(exact.G_star, rel=1e-9)
+    assert own.bound(r) == pytest.approx(exact.bound(r), rel=1e-9)
+    assert own.of_load(r) == pytest.approx(exact.of_load(r), rel=1e-9)
+
+
+CONTRADICTIONS = [
+    (Depth, "slope", lambda self, c: 3.0 * c**2),
+    (Depth, "slope", lambda self, c: 5.0 * c**1.5),
+    (Depth, "depth", lambda self, c: 2.0 * c**2),
+    (Depth, "radius", lambda self, depth: depth),
+    *((Depth, name, lambda self, one: one) for name in ("of_load", "loading")),
+    (Depth, "load", lambda self, r, c: r**2),
+    (Hertz, "ring_means", lambda self, psi: (1.0, np.sin(psi[1:]))),
+    *((Ellipse, name, 1.5) for name in ("G_star", "torque")),
+    (Ellipse, "largest", 0.5),
+    (Ellipse, "area", 3.0),
+    *((Ellipse, "cell_loads", one) for one in (lambda self, n: np.eye(n), lambda self, n: [1.0])),
+    (Ellipse, "cell_loads", lambda self, n: np.tile(np.arange(n) * 2.0 / (n - 1) / n**2, (n, 1))),
+]
+
+
+@pytest.mark.parametrize(("base", "name", "value"), CONTRADICTIONS)
+def test_attributes_of_an_own_pressure_that_contradict_each_other_are_named(base, name, value):
+    kind = type("Own", (base,), {name: value, "__post_init__": lambda self: None})
+    with pytest.raises(InputError, match=f"^pressure = 'own': .*{name}.* contradict each other"):
+        Problem(Transverse(), 0.1, 0.5, pressure=kind())
 
 
 # Marches under each pressure

@@ -6,6 +6,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import microslip
+from microslip.foundation.errors import InputError
 from microslip.scene.by_name import pressure_named
 
 PRESSURES = ("hertz", "power:exponent=1", "power:exponent=4", "punch:flat=0.8")
@@ -66,6 +67,14 @@ def test_a_response_of_the_full_contact_agrees(pressure):
     difference = np.abs(model.force(path) - full.force_forward)
     assert np.all(difference <= model.error_on_any_path + full.force_error[:, 0])
     assert np.all(difference[:3] <= model.error + full.force_error[:3, 0])
+
+
+@pytest.mark.parametrize(
+    "factors", [(-1.0, 2.0), (1.0, 0.0), (np.nan, 1.0), (1.0, 1e200), ("1", 1)]
+)
+def test_units_are_positive_numbers(factors):
+    with pytest.raises(InputError, match="^(force|displacement) = "):
+        microslip.iwan(elements=2).scaled(*factors)
 
 
 def test_the_error_contains_the_effect_of_poissons_ratio():

@@ -167,8 +167,7 @@ def history(
     cells = CELLS if cells is None else limits.within("cells", cells, low=2, kind="whole")
     steps = STEPS if steps is None else limits.within("steps", steps, low=1, kind="whole")
     periods = limits.within("periods", periods, high=limits.LIMITS["periods"].high // steps)
-    if limits.within("travel", travel) == 0.0:
-        raise InputError("travel", travel, "allowed is a finite number above 0")
+    travel = limits.within("travel", travel)
     if not periodic and travel / velocity > LONGEST_PHASE:
         allowed = f"allowed is at least {LONGEST_PHASE:g} times less than the travel, {travel:g}"
         raise InputError("velocity", velocity, allowed)
@@ -309,12 +308,10 @@ def response(
     if isinstance(state, Response):
         path, first, start = _joined(state, path)
     refuse_start("state", start, path.rotates, "a Response or ")
-    poisson = limits.within("poisson", poisson)
     tolerance = limits.within("tolerance", tolerance, high=1.0)
-    if progress is not None and not callable(progress):
+    if progress is not None and (isinstance(progress, type) or not callable(progress)):
         raise InputError("progress", progress, "allowed is a function of two arguments")
-    pressure = pressure if isinstance(pressure, Pressure) else pressure_named(pressure)
-    problem = Problem(path, poisson=poisson, pressure=pressure)
+    problem = Problem(path, poisson=poisson, pressure=pressure_named(pressure))
     model = limits.choose_model(problem)
     ladder = ladder_for(problem, model, tolerance)
 
@@ -493,12 +490,10 @@ def iwan(
     InputError
         If an argument is invalid.
     """
-    record = pressure if isinstance(pressure, Pressure) else pressure_named(pressure)
+    record = pressure_named(pressure)
     poisson = limits.within("poisson", poisson)
     if not (record.is_indenter or (record.hertzian and not poisson)):
-        allowed = (
-            "allowed is an axisymmetric indenter (hertz, power, punch), or an ellipse at nu = 0"
-        )
+        allowed = "allowed is an axisymmetric indenter such as hertz, or an ellipse at nu = 0"
         raise InputError("pressure", record.name, allowed)
     shape = record if record.is_indenter else HERTZ  # an ellipse has the loading curve of a sphere
     if elements is not None and tolerance is not None:

@@ -363,8 +363,9 @@ def shakedown(
     if not problem.motion.periodic:
         raise InputError("motion", problem.motion.name, "allowed is a motion that oscillates")
     force = real("force", force, 0.0)
-    if tolerance is None:
-        raise InputError("tolerance", tolerance, "allowed is a number")
+    if problem.velocity:
+        raise InputError("velocity", problem.velocity, "allowed is 0: the contact comes to rest")
+    tolerance = limits.within("tolerance", tolerance)
     problem = limits.without_forward_motion(replace(problem, velocity=0.0, drive=Force(force)))
     given: dict[str, Any] = {"model": model, "tolerance": tolerance, "progress": progress}
     request = request_of(problem, most_work=most_work, time_limit=time_limit, **given)

@@ -18,6 +18,7 @@ from microslip.foundation.arguments import (
     SMALLEST_STIFFNESS,
     SMALLEST_TOLERANCE,
     count,
+    is_real,
     real,
 )
 from microslip.foundation.errors import InputError
@@ -61,7 +62,7 @@ LIMITS = {
     "angles": Limit(2, 1000, "even"),
     "steps": Limit(8, LARGEST["steps"], "even"),
     "periods": Limit(1, 10 * LARGEST["steps"], "whole"),
-    "travel": Limit(0.0, 1e6),
+    "travel": Limit(1e-9, 1e6),
     "elements": Limit(1, 10_000, "whole"),
 }
 """Limits of the arguments by name.  A function that needs other limits passes them to `within`.
@@ -125,30 +126,29 @@ def problem_of(
     given, own = motion if isinstance(motion, Problem) else None, None
     if isinstance(motion, Problem):
         beside: dict[str, object] = {"velocity": velocity, "amplitude": amplitude, **(drive or {})}
-        beside |= {"pressure": None if pressure == HERTZ else pressure, "poisson": poisson or None}
+        beside |= {"pressure": None if pressure is HERTZ else pressure}
+        beside |= {"poisson": None if is_real(poisson) and poisson == 0.0 else poisson}
         for name, value in beside.items():
             if value is not None:
                 raise InputError(name, value, "allowed is none beside a Problem, which has its own")
         own, velocity, amplitude = motion.drive, motion.velocity, motion.amplitude
-        poisson, pressure, motion = motion.poisson, motion.pressure, motion.motion
+        kind, shape = motion.motion, motion.pressure
         if own is not None and drive is None:
             raise InputError("drive", str(own), "allowed is none here: the velocity is prescribed")
         if own is not None:
             body = {name: getattr(own, name) or None for name in ("stiffness", "mass", "damping")}
             _drive_of(None if own.force is not None else velocity, own.force, **body)
-    elif drive is not None:
-        own = _drive_of(velocity, **drive)
-    motion = motion if isinstance(motion, Motion) else motion_named(motion)
-    pressure = pressure if isinstance(pressure, Pressure) else pressure_named(pressure)
-    slowest = -LARGEST["velocity"] if drive is not None and motion.propels else 0.0
+    else:
+        kind, shape = motion_named(motion), pressure_named(pressure)
+        own = None if drive is None else _drive_of(velocity, **drive)
+    slowest = -LARGEST["velocity"] if drive is not None and kind.propels else 0.0
     velocity = within("velocity", 0.0 if velocity is None else velocity, low=slowest)
-    if velocity < 0.0 and not pressure.mirrored:
-        allowed = f"allowed is a number of at least 0 under {pressure.name}"
+    if velocity < 0.0 and not shape.mirrored:
+        allowed = f"allowed is a number of at least 0 under {shape.name}"
         raise InputError("velocity", velocity, f"{allowed}, which need not be symmetric")
-    poisson = within("poisson", poisson)
-    if motion.periodic and amplitude is not None:
+    if kind.periodic and amplitude is not None:
         amplitude = within("amplitude", amplitude)
-    return given or Problem(motion, velocity, amplitude, poisson, pressure, own)
+    return given or Problem(kind, velocity, amplitude, poisson, shape, own)
 
 
 def _drive_of(
@@ -327,6 +327,8 @@ def refuse(problem: Problem, model: str, method: str = SHIPPED) -> None:
         Name of the method.
     """
     motion, drive, periodic = problem.motion, problem.drive, problem.motion.periodic
+    if not isinstance(method, str):
+        raise InputError("method", method, f"allowed is a name such as {SHIPPED}")
     shipped = method == SHIPPED
     if not shipped:
         lack = missing(method)

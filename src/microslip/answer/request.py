@@ -141,7 +141,7 @@ def request_of(
     for name, value in budget.items():
         if value is not None and not (is_real(value) and value > 0.0):
             raise InputError(name, value, "allowed is a number above 0")
-    if progress is not None and not callable(progress):
+    if progress is not None and (isinstance(progress, type) or not callable(progress)):
         raise InputError("progress", progress, "allowed is a function of one argument")
     own = limits.choose_model(problem, model)
     limits.refuse(problem, own, method)

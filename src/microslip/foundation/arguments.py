@@ -74,3 +74,17 @@ def count(name: str, value: object, low: int, *, most: float, even: bool = False
     if even and value % 2:
         raise InputError(name, value, "allowed is an even number (half of it is run, too)")
     return int(value)
+
+
+def numbers(name: str, values: Any) -> Any:
+    """Convert an argument to an array of floats.  Raise an InputError that names the argument if
+    the conversion is impossible."""
+    import numpy as np  # late, since configurations do not need NumPy
+
+    try:
+        array = np.asanyarray(values)
+        if array.dtype.kind in "iufO" and not np.ma.is_masked(array):  # object: such as Decimal
+            return np.array(values, float, order="C")
+    except (TypeError, ValueError, OverflowError):
+        pass
+    raise InputError(name, values, "allowed is an array of numbers, none of them masked")

@@ -26,7 +26,7 @@ from dataclasses import dataclass, field, fields, replace
 from functools import lru_cache
 from pathlib import Path
 from types import ModuleType
-from typing import TYPE_CHECKING, Any, Generic, TypeVar
+from typing import TYPE_CHECKING, Any, Generic, TypeVar, cast
 
 from microslip.foundation import spec
 from microslip.foundation.csv_table import check_format
@@ -345,8 +345,9 @@ class Family(Generic[T]):
         self.argument, self.base, self.create = argument, base, lru_cache(8)(create)
         self.classes = {spec.name_of(one): one for one in classes}
 
-    def __call__(self, text: str) -> T:
-        """Return the object for a name such as "power:exponent=1" or "file:measured.csv".
+    def __call__(self, text: str | T) -> T:
+        """Return the object for a name such as "power:exponent=1" or "file:measured.csv".  An
+        object of the base class is returned unchanged.
 
         Raises
         ------
@@ -354,12 +355,15 @@ class Family(Generic[T]):
             If the name is unknown, if its file cannot be used, or if the class does not have a
             parameter or refuses its value.
         """
+        if isinstance(text, self.base):
+            return cast(T, text)
         named, path = parse(text, self.argument), ""
         if named is not None and not named.is_code:
             return read_object(named, self.argument, self.create)
         names = [*self.classes, "file:NAME", "NAME.py"]
         if not isinstance(text, str) or text == "file":
-            raise InputError(self.argument, text, f"allowed is one of {', '.join(names)}")
+            allowed = f"allowed is one of {', '.join(names)}, or an object of {self.base.__name__}"
+            raise InputError(self.argument, text, allowed)
         if named is None:
             if "." in text.partition(":")[0]:  # to suggest the prefix
                 names[-2] = f"file:{text}"

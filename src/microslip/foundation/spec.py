@@ -5,13 +5,14 @@ from __future__ import annotations
 
 import math
 import re
+import sys
 from collections.abc import Iterable
 from dataclasses import fields
 from functools import cached_property
 from typing import Any
 
 from microslip.foundation.arguments import is_real, without_array
-from microslip.foundation.errors import InputError
+from microslip.foundation.errors import InputError, shown
 
 NUMBER = re.compile(
     r"[+-]?(([0-9]+\.?[0-9]*|\.[0-9]+)(e[+-]?[0-9]+)?|inf|infinity|nan)", re.ASCII | re.IGNORECASE
@@ -129,21 +130,21 @@ def refuse_strange(record: Any, what: str) -> None:
     for field in fields(record):
         if isinstance(field.default, int | float):
             value = without_array(getattr(record, field.name))
-            if not (is_real(value) and math.isfinite(value)):
+            if not (is_real(value) and abs(value) <= sys.float_info.max):
                 raise InputError(what, value, f"allowed for {field.name} is a finite number")
             object.__setattr__(record, field.name, value)
 
 
-def refuse_outside(
-    text: str, what: str, key: str, number: float, limits: tuple, *, kind: str = "a number"
-) -> None:
-    """Raise InputError about the argument `what` if a number is outside the given limits.
+def refuse_outside(text: str, what: str, key: str, number: object, limits: tuple) -> None:
+    """Raise InputError about the argument `what` unless a value is a number within its limits.
 
-    kind: description of the number in the message.
+    limits: smallest and largest number.  A third element replaces the description "a number" in the
+    message.
     """
-    low, high = limits
-    if not low <= number <= high:
-        raise InputError(what, text, f"{key} = {number:g}: allowed is {kind} in {low:g}..{high:g}")
+    (low, high, kind), value = (*limits, "a number")[:3], without_array(number)
+    if not (is_real(value) and low <= value <= high):
+        word = f"{value:g}" if isinstance(value, float) else shown(value)
+        raise InputError(what, text, f"{key} = {word}: allowed is {kind} in {low:g}..{high:g}")
 
 
 def name_of(cls: type) -> str:

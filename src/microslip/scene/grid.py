@@ -192,17 +192,18 @@ def cropped(points: Sequence[np.ndarray], values: np.ndarray, reading: str) -> G
 
 
 def distances(x: np.ndarray, y: np.ndarray) -> np.ndarray:
-    """Integrate the distance from the origin over each rectangle of a grid.
+    """Compute the mean distance from the origin over each rectangle of a grid.
 
     The edges of the rectangles are x and y.
     """
+    areas = np.diff(x)[:, None] * np.diff(y)
     x, y = x[:, None], y[None, :]
     r = np.hypot(x, y)
     tiny = 1e-99  # replaces 0 in logarithms, which are then multiplied by 0
     corner = 2.0 * x * y * r
     corner = corner + x**3 * np.arcsinh(y / np.maximum(np.abs(x), tiny))
     corner = corner + y**3 * np.arcsinh(x / np.maximum(np.abs(y), tiny))
-    return np.diff(np.diff(corner / 6.0, axis=0), axis=1)
+    return np.diff(np.diff(corner / 6.0, axis=0), axis=1) / areas
 
 
 def largest_displacement(loads: np.ndarray, forward: float, lateral: float) -> float:

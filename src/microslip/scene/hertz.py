@@ -7,12 +7,11 @@ contacts of a torus and of the rim of a cup.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, partialmethod
 
 import numpy as np
 import scipy
 
-from microslip.foundation import spec
 from microslip.foundation.errors import InputError
 from microslip.scene.grid import of_corner_loads
 from microslip.scene.pressure import Pressure, RoundPressure
@@ -20,6 +19,23 @@ from microslip.theory import hertz
 
 SMALLEST_RATIO = 0.05
 """Smallest ratio of the semi-axes."""
+
+
+def hertz_loads(cells: int) -> np.ndarray:
+    """Compute the load of Hertz pressure on each cell of the rectangle around the ellipse.
+
+    The result is an array of shape (cells, cells). The loads do not depend on the ratio of the
+    semi-axes.
+    """
+    edges = np.arange(cells + 1) * 2.0 / cells - 1.0
+    x, y = edges[:, None], edges[None, :]
+    # load on the rectangle between the centre and (x, y), odd in both coordinates; like the
+    # pressure, the root is zero outside the disc
+    root = np.sqrt(np.maximum(1.0 - x * x - y * y, 0.0))
+    load = x * y * root - np.arctan2(x * y, root)
+    load = load + 0.5 * x * (3.0 - x * x) * np.arctan2(y, root)
+    load = load + 0.5 * y * (3.0 - y * y) * np.arctan2(x, root)
+    return of_corner_loads(load / (2.0 * np.pi))
 
 
 @dataclass(frozen=True)
@@ -47,11 +63,12 @@ class Ellipse(Pressure):
     across: int = 0
 
     hertzian = True
+    cell_loads = staticmethod(hertz_loads)
+    loading = staticmethod(hertz.mindlin_force)  # the same as for a sphere
+    ranges = {"ratio": (SMALLEST_RATIO, 1.0)}
 
     def __post_init__(self) -> None:
         super().__post_init__()
-        limits = (SMALLEST_RATIO, 1.0)
-        spec.refuse_outside(self.name, "pressure", "ratio", self.ratio, limits)
         if self.across not in (0, 1):
             raise InputError("pressure", self.name, f"across = {self.across:g}: allowed is 0 or 1")
 
@@ -87,32 +104,6 @@ class Ellipse(Pressure):
     def half_widths(self) -> tuple[float, float]:
         return (self.ratio, 1.0) if self.across else (1.0, self.ratio)
 
-    def cell_loads(self, cells: int) -> np.ndarray:
-        """Compute the load on each cell, as an array of shape (cells, cells)."""
-        return hertz_loads(cells)
-
-    def loading(self, displacement: np.ndarray | float) -> np.ndarray | float:
-        """Return the tangential force after a displacement from rest.  The force is the same as for
-        a sphere."""
-        return hertz.mindlin_force(displacement)
-
-
-def hertz_loads(cells: int) -> np.ndarray:
-    """Compute the load of Hertz pressure on each cell of the rectangle around the ellipse.
-
-    The result is an array of shape (cells, cells). The loads do not depend on the ratio of the
-    semi-axes.
-    """
-    edges = np.arange(cells + 1) * 2.0 / cells - 1.0
-    x, y = edges[:, None], edges[None, :]
-    # load on the rectangle between the centre and (x, y), odd in both coordinates; like the
-    # pressure, the root is zero outside the disc
-    root = np.sqrt(np.maximum(1.0 - x * x - y * y, 0.0))
-    load = x * y * root - np.arctan2(x * y, root)
-    load = load + 0.5 * x * (3.0 - x * x) * np.arctan2(y, root)
-    load = load + 0.5 * y * (3.0 - y * y) * np.arctan2(x, root)
-    return of_corner_loads(load / (2.0 * np.pi))
-
 
 @dataclass(frozen=True)
 class Hertz(Pressure):
@@ -120,13 +111,11 @@ class Hertz(Pressure):
 
     summary = "a sphere on a flat"
     hertzian = True
+    cell_loads = staticmethod(hertz_loads)
+    loading = staticmethod(hertz.mindlin_force)
     G_star = hertz.G_STAR
     torque = hertz.TORQUE_FULL_SLIP
     largest = 1.5 / np.pi
-
-    def cell_loads(self, cells: int) -> np.ndarray:
-        """Compute the load on each cell, as an array of shape (cells, cells)."""
-        return hertz_loads(cells)
 
     def ring_means(self, psi: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Compute the mean friction bound and the lever arm of the rings with the edges r =
@@ -157,16 +146,10 @@ class Hertz(Pressure):
         """Return the load within the radius r if the contact radius is c."""
         return c**3 - np.maximum((c - r) * (c + r), 0.0) ** 1.5
 
-    def loading(self, displacement: np.ndarray | float) -> np.ndarray | float:
-        """Return the tangential force after a displacement from rest (Mindlin)."""
-        return hertz.mindlin_force(displacement)
-
 
 HERTZ = Hertz()
 
 
-HOLES = (0.05, 0.95)
-"""Range of the radius of the hole, divided by the outer radius."""
 _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(12)
 
 
@@ -191,10 +174,7 @@ class Ring(RoundPressure):
 
     inner: float = 0.5
 
-    def __post_init__(self) -> None:
-        super().__post_init__()
-        kind = "a share of the outer radius"
-        spec.refuse_outside(self.name, "pressure", "inner", self.inner, HOLES, kind=kind)
+    ranges = {"inner": (0.05, 0.95, "a share of the outer radius")}
 
     @property
     def summary(self) -> str:
@@ -236,11 +216,8 @@ class Ring(RoundPressure):
         values = self._top * self._half**2 * np.sin(turn) ** 2 * 2.0 * np.pi * r**power
         return 0.5 * np.diff(at) * (values @ _WEIGHTS)
 
-    def ring_loads(self, psi: np.ndarray) -> np.ndarray:
-        return self._ring_integrals(psi, 1)
-
-    def ring_moments(self, psi: np.ndarray) -> np.ndarray:
-        return self._ring_integrals(psi, 2)
+    ring_loads = partialmethod(_ring_integrals, power=1)
+    ring_moments = partialmethod(_ring_integrals, power=2)
 
     @property
     def torque(self) -> float:
@@ -276,10 +253,6 @@ class Ring(RoundPressure):
             settings = {"epsabs": 0.0, "epsrel": 1e-10, "limit": 200}
             return sum(quad(of_circle, *part, **settings)[0] for part in parts)
 
-        best = minimize_scalar(
-            lambda r: -displacement(r),
-            bounds=(inner, 1.0),
-            method="bounded",
-            options={"xatol": 1e-7},
-        )
+        options = {"xatol": 1e-7}
+        best = minimize_scalar(lambda r: -displacement(r), bounds=(inner, 1.0), options=options)
         return float(-best.fun)

@@ -19,12 +19,13 @@ is 0 within the flat end, and a parabola outside.
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 
-from microslip.foundation import spec
 from microslip.scene.pressure import RoundPressure
 from microslip.theory.hertz import unit_rule
 
@@ -38,6 +39,11 @@ SMALLEST_CONTACT = 1e-100
 _GRID = np.linspace(0.0, 1.0, 257)
 _CORRECTIONS = 6
 """Number of Newton steps, starting from an initial guess from a table."""
+_HALVINGS = 100
+"""Number of bisections. This number is enough for full precision."""
+_STEP = 3e-4
+"""Step of the differences, divided by the distance from the flat end.  For r^n with n up to 20, the
+relative error is below 1e-10."""
 _REFINEMENTS = 3
 """Number of grids in the search for the largest friction bound.  Each grid is 128 times finer than
 the previous one."""
@@ -45,7 +51,10 @@ the previous one."""
 
 @dataclass(frozen=True)
 class Indenter(RoundPressure):
-    """Base class of axisymmetric indenters.  A subclass defines `depth`, `slope` and `radius`.
+    """Base class of axisymmetric indenters.
+
+    A subclass defines `depth(c)`, which returns the indentation depth for the contact radius c.  At
+    the contact radius 1, the depth is 1.  With formulas, `slope` and `radius` are faster.
 
     Attributes
     ----------
@@ -54,27 +63,37 @@ class Indenter(RoundPressure):
     """
 
     flat = 0.0
-
-    def depth(self, c: np.ndarray) -> np.ndarray:
-        """Return the indentation depth for the contact radius c. At the contact radius 1, the depth
-        is 1."""
-        raise NotImplementedError
+    needs = ("depth",)
 
     def slope(self, c: np.ndarray) -> np.ndarray:
-        """Return the derivative of `depth`. The derivative is 0 for c below the radius of the flat
-        end."""
-        raise NotImplementedError
+        """Compute the derivative of `depth` by differences of fourth order.  The derivative is 0
+        for c below the radius of the flat end."""
+        c = np.maximum(c, self.flat + SMALLEST_CONTACT)
+        step = _STEP * np.maximum(c - self.flat, SMALLEST_CONTACT)
+        near, far = (self.depth(c + k * step) - self.depth(c - k * step) for k in (1.0, 2.0))
+        return (8.0 * near - far) / (12.0 * step)
 
     def radius(self, depth: np.ndarray) -> np.ndarray:
-        """Return the contact radius at a depth. This function is the inverse of `depth`."""
-        raise NotImplementedError
+        """Compute the contact radius at a depth, the inverse of `depth`, by bisection."""
+        depth = np.asarray(depth, float)
+        low, high = np.full(depth.shape, self.flat), np.ones(depth.shape)
+        while np.any(self.depth(high) < depth):
+            high = 2.0 * high
+        for _ in range(_HALVINGS):
+            middle = 0.5 * (low + high)
+            below = self.depth(middle) < depth
+            low, high = np.where(below, middle, low), np.where(below, high, middle)
+        return np.where(depth > 0.0, high, 0.0)[()]
+
+    def _pairs(self) -> Iterator[tuple[str, Any, Any, float]]:
+        ends = np.linspace(self.flat, 1.0, 9)
+        c, step = _above(self.flat, ends[:, None])
+        yield "slope and depth", np.sum(step * self.slope(c), axis=-1), self.depth(ends), 0.005
+        yield from super()._pairs()
 
     @cached_property
     def G_star(self) -> float:
-        # x = flat + (1 - flat) s^2 removes the square root of the slope at the edge of a flat end
-        nodes, weights = unit_rule(_NODES)
-        x = self.flat + (1.0 - self.flat) * nodes**2
-        step = (1.0 - self.flat) * 2.0 * nodes * weights
+        x, step = _above(self.flat, 1.0)
         return 0.5 / float(np.sum(step * x * self.slope(x)))
 
     def _rule(
@@ -166,10 +185,6 @@ class Indenter(RoundPressure):
         return -np.diff(self._moment_outside(np.sin(psi)))
 
 
-EXPONENTS = (1.0, 100.0)
-"""Range of the exponent of a power law."""
-
-
 @dataclass(frozen=True)
 class Power(Indenter):
     """The pressure of an indenter with the profile r^exponent.
@@ -187,9 +202,7 @@ class Power(Indenter):
 
     exponent: float = 2.0
 
-    def __post_init__(self) -> None:
-        super().__post_init__()
-        spec.refuse_outside(self.name, "pressure", "exponent", self.exponent, EXPONENTS)
+    ranges = {"exponent": (1.0, 100.0)}
 
     @property
     def summary(self) -> str:
@@ -224,12 +237,6 @@ class Power(Indenter):
         return (self.exponent + 1.0) / over if over > 0.0 else np.inf
 
 
-LARGEST_FLAT = 0.99
-"""Largest allowed radius of the flat end, divided by the contact radius."""
-_HALVINGS = 100
-"""Number of bisections. This number is enough for full precision."""
-
-
 @dataclass(frozen=True)
 class Punch(Indenter):
     """The pressure of a flat punch with a rounded edge.
@@ -251,10 +258,7 @@ class Punch(Indenter):
 
     flat: float = 0.8
 
-    def __post_init__(self) -> None:
-        super().__post_init__()
-        kind, limits = "a share of the contact radius", (0.0, LARGEST_FLAT)
-        spec.refuse_outside(self.name, "pressure", "flat", self.flat, limits, kind=kind)
+    ranges = {"flat": (0.0, 0.99, "a share of the contact radius")}
 
     @property
     def summary(self) -> str:
@@ -277,17 +281,13 @@ class Punch(Indenter):
         c = np.maximum(c, self.flat)
         return self._scale * (2.0 * _root(c, self.flat) - self.flat * _angle(c, self.flat))
 
-    def radius(self, depth: np.ndarray) -> np.ndarray:
-        """Compute the contact radius at an indentation depth by bisection."""
-        depth = np.asarray(depth, float)
-        low, high = np.full(depth.shape, self.flat), np.ones(depth.shape)
-        while np.any(self.depth(high) < depth):
-            high = 2.0 * high
-        for _ in range(_HALVINGS):
-            middle = 0.5 * (low + high)
-            below = self.depth(middle) < depth
-            low, high = np.where(below, middle, low), np.where(below, high, middle)
-        return np.where(depth > 0.0, high, 0.0)[()]
+
+def _above(flat: float, end: np.ndarray | float) -> tuple[np.ndarray, np.ndarray]:
+    """Return the nodes and the weights of a quadrature rule for integrals over the slope from the
+    flat end to `end`."""
+    nodes, weights = unit_rule(_NODES)
+    # x = flat + (end - flat) s^2 removes the square root of the slope at the edge of a flat end
+    return flat + (end - flat) * nodes**2, (end - flat) * 2.0 * nodes * weights
 
 
 def _root(c: np.ndarray, flat: float) -> np.ndarray:

@@ -23,7 +23,8 @@ from typing import Any, ClassVar, NamedTuple, NoReturn
 import numpy as np
 
 from microslip.foundation import spec
-from microslip.foundation.errors import InputError
+from microslip.foundation.arguments import is_real
+from microslip.foundation.errors import InputError, shown
 from microslip.scene.pressure import Pressure
 from microslip.theory import hertz, masing, oscillating_load, paper
 
@@ -32,13 +33,18 @@ FOCUS_RANGE = (0.05, 0.9995)
 stick zone carries almost no load."""
 
 LOOP = np.linspace(0.0, 2.0 * np.pi, 721)
-"""Phases at which the extremes of an oscillation over one period are evaluated."""
+"""Phases at which an oscillation over one period is evaluated, every half degree."""
 ENDS = np.array([0.0, 2.0 * np.pi])
 """Phases of the start and the end of a period."""
 HALF_PERIOD = (-np.pi / 2, np.pi / 2)
 """Phases of two consecutive turning points of a sine."""
 MOST_CYCLES = 20
 """Largest number of cycles in a period."""
+DEGREES = (-1e6, 1e6)
+"""Range of the phase lead, in degrees.  The phase of a larger lead would be inaccurate."""
+WEAKER = {"rotates": True, "half_disc": False, "half_period_mirror": False}
+WEAKER |= {"straight": False, "propels": True}
+"""Value of each attribute that makes the weaker assumption about the symmetry of a motion."""
 PLANE = ("forward", "lateral", "angle")
 NORMAL = ("load", "indentation")
 
@@ -126,39 +132,36 @@ class Motion(spec.Named):
 
     def __post_init__(self) -> None:
         spec.refuse_strange(self, "motion")
-        shares = {name: wave.share for name, wave in self.waves.items()}
-        for name in shares.keys() - {*PLANE, *NORMAL}:
-            allowed = f"waves: {name!r}; allowed are {', '.join(PLANE + NORMAL)}"
-            raise InputError("motion", self.name, allowed)
-        for name, share in shares.items():
-            spec.refuse_outside(self.name, "motion", name, share, (0.0, 1.0), kind="a share")
         for name, wave in self.waves.items():
-            if wave.cycles not in range(1, MOST_CYCLES + 1):
-                cycles = f"{'normal' if name in NORMAL else name}_cycles = {wave.cycles:g}"
-                allowed = f"allowed is a whole number from 1 to {MOST_CYCLES}"
-                raise InputError("motion", self.name, f"{cycles}: {allowed}")
-        if shares and not any(shares.values()):
-            raise InputError("motion", self.name, f"allowed is {' or '.join(shares)} above 0")
-        for name, wave in self.waves.items():
-            if wave.form is not np.sin and not _is_like_sine(wave.form):
+            if name not in (*PLANE, *NORMAL) or not isinstance(wave, Wave):
+                allowed = f"allowed are a Wave for each of {', '.join(PLANE + NORMAL)}"
+                self._refuse(f"waves: {name!r} is {wave!r}; {allowed}")
+            spec.refuse_outside(self.name, "motion", name, wave.share, (0.0, 1.0, "a share"))
+            spec.refuse_outside(self.name, "motion", f"phase of {name}", wave.degrees, DEGREES)
+            if not is_real(wave.cycles) or wave.cycles not in range(1, MOST_CYCLES + 1):
+                key = f"{'normal' if name in NORMAL else name}_cycles = {shown(wave.cycles)}"
+                self._refuse(f"{key}: allowed is a whole number from 1 to {MOST_CYCLES}")
+            if not callable(wave.form) or not _is_like_sine(wave.form):
                 allowed = "with form(-x) = -form(x), form(pi - x) = form(x) and form(pi/2) = 1"
-                raise InputError(
-                    "motion", self.name, f"form of {name}: allowed is a function {allowed}"
-                )
-        if self.periodic and type(self).displacement is not Motion.displacement:
-            self._refuse_displacement()
-
-    def _refuse_displacement(self) -> None:
-        """Raise InputError if `displacement` is of the wrong kind at the start or the end of a
-        period."""
-        still, moving = (self.moved(ENDS, velocity, 1.0, 0.0) for velocity in (0.0, 1.0))
-        if not np.allclose(still[:, 0], still[:, 1], rtol=0.0, atol=ROUNDING):
-            self._refuse("allowed is one that is equal after a period of 2 pi at velocity 0")
-        if not moving[0, 1] > moving[0, 0]:
-            self._refuse("allowed is one that advances at velocity 1")
+                self._refuse(f"form of {name}: allowed is a function {allowed}")
+        if self.waves and not self.components:
+            self._refuse(f"allowed is {' or '.join(self.waves)} above 0")
+        if self.components.keys() >= {*NORMAL}:
+            self._refuse("waves: allowed is load or indentation, not both")
+        if self.components.keys() - NORMAL - self.moving or not self.periodic and self.waves:
+            self._refuse("waves contradict displacement; allowed are its oscillations alone")
+        if self.periodic and np.ptp(self._loop[:, [0, -1]], axis=1).max() > ROUNDING:
+            self._refuse("displacement: allowed is one that is equal after 2 pi at velocity 0")
+        if self.periodic and not self.drift(1.0, 1.0, 0.0) > 0.0:
+            self._refuse("displacement: allowed is one that advances at velocity 1")
+        for name, weaker in WEAKER.items():
+            derived = getattr(Motion, name)
+            own = getattr(type(self), name) is not derived and getattr(self, name) != weaker
+            if own and derived.func(self) == weaker:
+                self._refuse(f"{name} = {not weaker} contradicts displacement; allowed is {weaker}")
 
     def _refuse(self, problem: str) -> NoReturn:
-        raise InputError("motion", self.name, f"displacement: {problem}")
+        raise InputError("motion", self.name, problem)
 
     # Symmetries
 
@@ -166,23 +169,33 @@ class Motion(spec.Named):
     def components(self) -> dict[str, Wave]:
         """Waves with a nonzero share in the motion.
 
-        If there is a single wave, its phase lead has no effect and is set to 0.
+        If there is a single wave, and no own displacement, its phase lead has no effect and is set
+        to 0.
         """
         waves = {name: wave for name, wave in self.waves.items() if wave.share}
-        if len(waves) == 1:
+        if len(waves) == 1 and type(self).displacement is Motion.displacement:
             return {name: wave._replace(degrees=0.0) for name, wave in waves.items()}
         return waves
 
     @cached_property
+    def moving(self) -> set[str]:
+        """Names of the directions that oscillate."""
+        if type(self).displacement is Motion.displacement:
+            return {*self.components}
+        sizes = np.ptp(self._loop, axis=1)
+        moving = sizes > ROUNDING * sizes.max()
+        return {*np.array(PLANE)[moving], *self.components.keys() & NORMAL}
+
+    @cached_property
     def loads(self) -> bool:
         """Whether the normal load oscillates; see `depth`, `deepest` and `mean_load`."""
-        return not self.components.keys().isdisjoint(NORMAL)
+        return not self.moving.isdisjoint(NORMAL)
 
     @cached_property
     def rotates(self) -> bool:
         """Whether the contact rotates.  If the contact rotates, the tractions depend on the polar
         angle."""
-        return "angle" in self.components
+        return "angle" in self.moving
 
     @cached_property
     def half_disc(self) -> bool:
@@ -192,7 +205,17 @@ class Motion(spec.Named):
         The symmetry is a mirror across the lateral axis for rotations, and a point reflection for
         other motions.  A rotation combined with a lateral motion has neither symmetry.
         """
-        return not {"angle", "lateral"} <= self.components.keys()
+        return not self.moving >= {"angle", "lateral"}
+
+    def _repeats(self, *signs: float, shift: float = np.pi) -> bool:
+        """Return whether, after a shift in phase, the displacements are multiplied by the three
+        signs, and the load is the same."""
+        phases = (LOOP + shift) % ENDS[1]
+        now = np.vstack([self._loop, self._normal(LOOP)])
+        later = np.vstack([self.moved(phases, 0.0, 1.0, 0.0), self._normal(phases)])
+        mean, factors = now[:, :-1].mean(axis=1)[:, None], np.array([*signs, 1.0])[:, None]
+        apart = np.abs(later - mean - factors * (now - mean)).max()
+        return bool(apart <= ROUNDING * np.abs(now - mean).max())
 
     @cached_property
     def half_period_mirror(self) -> bool:
@@ -201,17 +224,20 @@ class Motion(spec.Named):
 
         If False, the time integration covers a whole period.
         """
-        odd = {name: wave.cycles % 2 == 1 for name, wave in self.components.items()}
-        return bool(odd) and all(one == (name in ("lateral", "angle")) for name, one in odd.items())
+        return self.periodic and bool(self.moving) and self._repeats(1.0, -1.0, -1.0)
 
     @cached_property
     def straight(self) -> bool:
         """Whether the oscillation alone follows a straight line and turns at the phases -pi/2 and
         pi/2."""
-        plane = [wave for name, wave in self.components.items() if name in PLANE]
-        if self.loads:
-            return not plane
-        return all(wave.cycles == 1 and wave.lead % np.pi == 0.0 for wave in plane)
+        if not self.periodic or self.moving.isdisjoint(PLANE):
+            return True
+        end, start = self._loop[:, [180, 540]].T  # phases pi/2 and 3 pi/2
+        half, offset = 0.5 * (end - start), self._loop - 0.5 * (start + end)[:, None]
+        along = half @ offset / max(half @ half, np.finfo(float).tiny)
+        apart = np.abs(offset - half[:, None] * along).max() / np.abs(offset).max()
+        forth = np.where(np.cos(LOOP[1:] - LOOP[1] / 2.0) > 0.0, 1.0, -1.0) * np.diff(along)
+        return not self.loads and bool(max(apart, -forth.min()) <= ROUNDING)
 
     @cached_property
     def propels(self) -> bool:
@@ -219,11 +245,10 @@ class Motion(spec.Named):
         negative.
 
         Propulsion is impossible if a shift of the oscillation in time has the same effect as a
-        reversal of its forward component.  Let d be the greatest common divisor of the numbers of
-        cycles of all components.  After a fraction 1/(2 d) of the period, a component with n cycles
-        has the opposite value if n / d is odd. If n / d is even, the component has the same value
-        as before.  The oscillation cannot propel the contact if, after this time, the forward
-        component is reversed and the load is the same as before.  The signs of the lateral
+        reversal of its forward component.  The shift is a fraction 1/(2 d) of the period, where d
+        divides the numbers of cycles of all components.  The oscillation cannot propel the contact
+        if, after this time, the forward component is reversed, the other components have the same
+        or the opposite values, and the load is the same as before.  The signs of the lateral
         component and of the angle do not matter.  The reason is that, under a symmetric pressure,
         two images of a solution are solutions as well.  The mirror image reverses the forward
         component and the angle.  The point reflection q(-forward, -lateral) reverses the angle.
@@ -232,12 +257,10 @@ class Motion(spec.Named):
         three images give every combination of signs.  In all images, the forward force has the sign
         of the forward motion.
         """
-        if "forward" not in self.components:
-            return False
-        cycles = {name: int(wave.cycles) for name, wave in self.components.items()}
-        common = math.gcd(*cycles.values())
-        load = max(cycles.get(name, 0) for name in NORMAL)
-        return cycles["forward"] // common % 2 == 0 or load // common % 2 == 1
+        signs = [(-1.0, a, b) for a in (1.0, -1.0) for b in (1.0, -1.0)]
+        shifts = np.pi / np.arange(1, MOST_CYCLES + 1)
+        reverses = (self._repeats(*one, shift=shift) for shift in shifts for one in signs)
+        return "forward" in self.moving and not any(reverses)
 
     @cached_property
     def cycles(self) -> int:
@@ -253,6 +276,12 @@ class Motion(spec.Named):
 
     # Displacement in the plane
 
+    @cached_property
+    def _loop(self) -> np.ndarray:
+        """Displacements at the phases `LOOP` for the amplitude 1, as an array of shape (3,
+        phases)."""
+        return self.moved(LOOP, 0.0, 1.0, 0.0)
+
     def displacement(
         self, phase: np.ndarray, velocity: float, amplitude: float, poisson: float
     ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
@@ -265,7 +294,7 @@ class Motion(spec.Named):
             if name in PLANE:
                 parts[name] = amplitude * wave(phase)
         forward, lateral, turn = parts.values()
-        if self.edge_velocity or self.rotates:
+        if self.edge_velocity or "angle" in self.components:
             unit = hertz.bore_unit(poisson)
             turn = unit * turn
             if self.edge_velocity:
@@ -288,11 +317,12 @@ class Motion(spec.Named):
         except ValueError:  # arrays of different shapes
             values = np.array(None)
         if values.shape != (3, *np.shape(phase)) or values.dtype.kind not in "if":
-            self._refuse("allowed is three arrays of real numbers, with the shape of the phase")
+            problem = "allowed is three arrays of real numbers, with the shape of the phase"
+            self._refuse(f"displacement: {problem}")
         if not np.isfinite(values).all():
             where = np.broadcast_to(phase, values.shape)[~np.isfinite(values)][0]
             problem = f"returns a number that is not finite at the phase {where:.6g}"
-            self._refuse(f"{problem}; allowed are finite numbers")
+            self._refuse(f"displacement: {problem}; allowed are finite numbers")
         return values
 
     def drift(self, velocity: float, amplitude: float, poisson: float) -> float:
@@ -318,10 +348,7 @@ class Motion(spec.Named):
     @cached_property
     def reach(self) -> float:
         """Largest distance from the mean position, divided by the amplitude of the motion."""
-        forward, lateral = (
-            self.components[name](LOOP) if name in self.components else 0.0 for name in PLANE[:2]
-        )
-        return float(np.max(np.hypot(forward, lateral)))
+        return float(np.hypot(*self._loop[:2]).max())
 
     def focus(self, velocity: float, amplitude: float, pressure: Pressure) -> float | None:
         """Return the radius of the kink in the traction towards which the rings are graded, or None
@@ -333,9 +360,9 @@ class Motion(spec.Named):
         radius (Eq 30).  Lubkin's radius is derived for Hertz pressure, but a mesh graded towards it
         does no harm under other pressures.
         """
-        if self._normal.share:
-            smallest = pressure.radius(self._extreme(-1.0, amplitude, pressure))
-            return within_rings(smallest / pressure.radius(self.deepest(amplitude, pressure)))
+        if self.loads:
+            smallest, largest = map(pressure.radius, self._extremes(amplitude, pressure))
+            return within_rings(float(smallest / largest))
         if self.reach > 0.0:
             return stick_focus(amplitude * self.reach, pressure)
         if "angle" not in self.components:
@@ -367,12 +394,13 @@ class Motion(spec.Named):
         """Convert a load or an indentation to the indentation depth. The depth is 0 if there is no
         contact."""
         height = np.maximum(height, 0.0)
-        return pressure.of_load(height) if "load" in self.components else height
+        return pressure.of_load(height) if "load" in self.moving else height
 
-    def _extreme(self, sign: float, amplitude: float, pressure: Pressure) -> float:
-        """Return the smallest (sign = -1) or largest (sign = 1) indentation depth."""
-        height = np.array(1.0 + sign * amplitude * self._normal.share)
-        return float(self._depth_at(height, pressure))
+    def _extremes(self, amplitude: float, pressure: Pressure) -> tuple[float, float]:
+        """Return the smallest and the largest indentation depth."""
+        swing = amplitude * self._normal.share * np.array([-1.0, 1.0])
+        least, most = self._depth_at(1.0 + swing, pressure)
+        return float(least), float(most)
 
     def depth(self, phase: np.ndarray, amplitude: float, pressure: Pressure) -> np.ndarray:
         """Compute the indentation depth divided by its reference value.
@@ -383,7 +411,7 @@ class Motion(spec.Named):
 
     def deepest(self, amplitude: float, pressure: Pressure) -> float:
         """Return the largest value of `depth` in a period."""
-        return self._extreme(1.0, amplitude, pressure) if self.loads else 1.0
+        return self._extremes(amplitude, pressure)[1] if self.loads else 1.0
 
     def mean_load(self, amplitude: float, pressure: Pressure) -> float:
         """Compute the mean normal load, divided by its reference value."""

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from microslip.foundation.errors import InputError
+from microslip.foundation import spec
 from microslip.scene.motion import Motion, Wave, within_rings
 from microslip.scene.pressure import Pressure
 
@@ -65,7 +65,6 @@ class ContinuousBore(Motion):
     velocity_label = "v0 / (omega a)"
     amplitude_label = ""
     periodic = False
-    rotates = True
 
     def displacement(
         self, phase: np.ndarray, velocity: float, amplitude: float, poisson: float
@@ -185,12 +184,12 @@ class Normal(Motion):
     )
 
     def __post_init__(self) -> None:
+        spec.refuse_strange(self, "motion")
         if self.load == self.indentation == 0.0:
-            raise InputError("motion", self.name, "allowed is load or indentation above 0")
+            self._refuse("allowed is load or indentation above 0")
         super().__post_init__()
         if self.indentation > 0.0 and self.load != 1.0:
-            allowed = f"load = {self.load:g}: allowed is no load beside an indentation"
-            raise InputError("motion", self.name, allowed)
+            self._refuse(f"load = {self.load:g}: allowed is no load beside an indentation")
 
     @property
     def waves(self) -> dict[str, Wave]:  # type: ignore[override]

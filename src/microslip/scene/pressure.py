@@ -19,6 +19,7 @@ units is 3/4 for a sphere.
 from __future__ import annotations
 
 import hashlib
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any, ClassVar
@@ -26,6 +27,7 @@ from typing import Any, ClassVar
 import numpy as np
 
 from microslip.foundation import spec
+from microslip.foundation.arguments import numbers
 from microslip.foundation.errors import InputError
 from microslip.scene.grid import (
     FINE,
@@ -45,6 +47,8 @@ Units = tuple[float | None, float | None]
 """Unit of the coordinates in m, and unit of the pressure in Pa.  Both units are None for
 dimensionless values."""
 NO_UNITS: Units = None, None
+COMPARED = 64
+"""Number of squares along each side, and of rings, for the comparison of two attributes."""
 
 
 @dataclass(frozen=True)
@@ -58,6 +62,8 @@ class Pressure(spec.Named):
     ----------
     summary : str
         One-line description.
+    ranges : mapping of str to tuple
+        Smallest and largest value of each parameter.
     G_star : float
         Reduced shear modulus 4G/(2 - nu).
     torque : float
@@ -79,6 +85,8 @@ class Pressure(spec.Named):
     """
 
     summary: ClassVar[Any] = ""
+    ranges: ClassVar[Mapping[str, tuple]] = {}
+    needs: ClassVar[tuple[str, ...]] = ("G_star", "torque", "largest", "cell_loads")
     G_star: ClassVar[Any] = None
     torque: ClassVar[Any] = None
     largest: ClassVar[Any] = None
@@ -122,9 +130,58 @@ class Pressure(spec.Named):
 
     def __post_init__(self) -> None:
         spec.refuse_strange(self, "pressure")
-        for name in ("G_star", "torque", "largest", "cell_loads"):
+        for name in self.needs:
             if getattr(type(self), name) is None:
                 raise InputError("pressure", self.name, f"allowed is a class that defines {name}")
+        for name, limits in self.ranges.items():
+            spec.refuse_outside(self.name, "pressure", name, getattr(self, name), limits)
+        if type(self).__module__.startswith("microslip."):  # compared by the tests
+            return
+        with np.errstate(all="ignore"):
+            for names, one, other, largest in self._pairs():
+                apart = np.max(np.abs(np.subtract(one, other)))
+                if not apart <= largest * np.max(np.abs(other)):
+                    problem = f"{names} contradict each other: they differ by {apart:.3g}"
+                    raise InputError("pressure", self.name, problem)
+
+    def _pairs(self) -> Iterator[tuple[str, Any, Any, float]]:
+        """Yield quantities that must agree: names, two values, and the largest relative difference.
+
+        For pressures of the package, the differences are at most a quarter of the largest ones.
+        """
+        if self.is_indenter:
+            depth = np.linspace(0.0, 1.0, 9)
+            yield "depth and its value of 1 at 1", self.depth(np.ones(1)), 1.0, 1e-3
+            yield "radius and depth", self.depth(self.radius(depth)), depth, 0.01
+            yield "of_load and load", self.total(self.of_load(depth)), depth, 0.01
+            yield "loading and load", self.loading(1.0 - depth), 1.0 - self.total(depth), 0.01
+        n, (forward, lateral) = COMPARED, self.half_widths
+        edges, loads = np.linspace(-1.0, 1.0, n + 1), np.asarray(self.cell_loads(n))
+        yield "cell_loads and its shape", loads.shape, (n, n), 0.0
+        yield "cell_loads and a sum of 1", loads.sum(), 1.0, 1e-3
+        image = loads[:, ::-1] if self.mirrored else loads
+        yield (
+            "mirrored and cell_loads",
+            loads.sum(axis=0).cumsum(),
+            image.sum(axis=0).cumsum(),
+            0.01,
+        )
+        slip = largest_displacement(loads, forward, lateral)
+        yield "G_star and cell_loads", self.G_star, slip, 0.1
+        lever = np.sum(loads * distances(forward * edges, lateral * edges))
+        yield "torque and cell_loads", self.torque, lever, 0.01
+        cell = forward * lateral * (2.0 / n) ** 2
+        peak, filled = loads.max() / cell, np.count_nonzero(loads) * cell
+        yield "largest and cell_loads", min(self.largest, peak), peak, 0.02
+        yield "area and cell_loads", min(self.area, filled), self.area, 0.02
+        if self.is_round:
+            psi = np.linspace(np.arcsin(self.inner), np.pi / 2, n + 1)
+            means, lever = self.ring_means(psi)
+            rings = np.pi * np.diff(np.sin(psi) ** 2) * means
+            yield "ring_means and torque", rings @ lever, self.torque, 0.01
+            if self.is_indenter:
+                load = self.load(np.sin(psi[1:]), np.ones(n))
+                yield "load and ring_means", load, rings.cumsum(), 0.01
 
     @staticmethod
     def from_array(
@@ -152,12 +209,10 @@ class Pressure(spec.Named):
             If an argument is not an array of numbers, if coordinates are not evenly spaced, if a
             value is negative or not finite, or if all values are 0.
         """
-        if grid not in READINGS:
+        if not isinstance(grid, str) or grid not in READINGS:
             raise InputError("grid", grid, f"allowed is one of {', '.join(READINGS)}")
-        x, y, values = (
-            numbers(name, one)
-            for name, one in (("forward", forward), ("lateral", lateral), ("pressure", pressure))
-        )
+        arrays = {"forward": forward, "lateral": lateral, "pressure": pressure}
+        x, y, values = map(numbers, arrays, arrays.values())
         if values.shape != (x.size, y.size):
             allowed = f"allowed is the shape of the coordinates, {(x.size, y.size)}"
             raise InputError("pressure", values.shape, allowed)
@@ -199,11 +254,7 @@ class Pressure(spec.Named):
         the depth 1 - displacement (Ciavarella, Jaeger).  The result is 0.0 at full slip.  If the
         pressure does not belong to an axisymmetric indenter, the result is None.
         """
-        if self.depth is None:
-            return None
-        if displacement >= 1.0:
-            return 0.0
-        return float(self.radius(1.0 - displacement))
+        return float(self.radius(max(1.0 - displacement, 0.0))) if self.is_indenter else None
 
 
 @dataclass(frozen=True)
@@ -216,11 +267,9 @@ class RoundPressure(Pressure):
     array of shape (n,).
     """
 
-    def ring_loads(self, psi: np.ndarray) -> np.ndarray:
-        raise NotImplementedError
-
-    def ring_moments(self, psi: np.ndarray) -> np.ndarray:
-        raise NotImplementedError
+    needs = (*Pressure.needs, "ring_loads", "ring_moments")
+    ring_loads: ClassVar[Any] = None
+    ring_moments: ClassVar[Any] = None
 
     def ring_means(self, psi: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Compute the mean friction bound and the lever arm of the rings with the edges r =
@@ -233,18 +282,6 @@ class RoundPressure(Pressure):
     def cell_loads(self, cells: int) -> np.ndarray:
         """Compute the load on each cell, as an array of shape (cells, cells)."""
         return round_loads(cells, self.ring_loads, self.inner)
-
-
-def numbers(name: str, values: Any) -> np.ndarray:
-    """Convert an argument to an array of floats.  Raise an InputError that names the argument if
-    the conversion is impossible."""
-    try:
-        array = np.asanyarray(values)
-        if array.dtype.kind in "iufO" and not np.ma.is_masked(array):  # object: such as Decimal
-            return np.array(values, float, order="C")
-    except (TypeError, ValueError):
-        pass
-    raise InputError(name, values, "allowed is an array of numbers, none of them masked")
 
 
 @dataclass(frozen=True, eq=False)
@@ -332,9 +369,7 @@ class Measured(spec.NamedByText, Pressure):
         loads = self.grid.loads(*edges)
         pairs = zip(edges, self._sides, strict=True)
         x, y = ((one - side.middle) / self._half for one, side in pairs)
-        return float(
-            np.sum(loads * distances(x, y) / (np.diff(x)[:, None] * np.diff(y))) / loads.sum()
-        )
+        return float(np.sum(loads * distances(x, y)) / loads.sum())
 
     @property
     def area(self) -> float:

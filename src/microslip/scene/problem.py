@@ -16,7 +16,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import dataclass, replace
-from functools import cached_property
+from functools import cached_property, lru_cache
 
 import numpy as np
 
@@ -26,6 +26,9 @@ from microslip.foundation.errors import InputError
 from microslip.scene.hertz import HERTZ
 from microslip.scene.motion import LOOP, Motion
 from microslip.scene.pressure import Pressure
+
+DRIVEN = {"force": -math.inf, "stiffness": 0.0, "mass": 0.0, "damping": 0.0}
+"""Smallest value of each number of a drive."""
 
 
 class Drive(spec.Named):
@@ -44,6 +47,10 @@ class Drive(spec.Named):
     stiffness: float
     mass: float
     damping: float
+
+    def __post_init__(self) -> None:
+        for name, value in vars(self).copy().items():
+            object.__setattr__(self, name, real(name, value, DRIVEN[name]))
 
 
 @dataclass(frozen=True)
@@ -68,10 +75,6 @@ class Force(Drive):
 
     stiffness = 0.0
     damping = 0.0
-
-    def __post_init__(self) -> None:
-        real("force", self.force, -math.inf)
-        real("mass", self.mass, 0.0)
 
 
 @dataclass(frozen=True)
@@ -100,9 +103,12 @@ class Spring(Drive):
 
     force = None
 
-    def __post_init__(self) -> None:
-        for name in ("stiffness", "mass", "damping"):
-            real(name, getattr(self, name), 0.0)
+
+@lru_cache(maxsize=8)
+def _check(motion: Motion, pressure: Pressure) -> None:
+    """Check objects of classes whose `__post_init__` omits the one of the base class."""
+    Motion.__post_init__(motion)
+    Pressure.__post_init__(pressure)
 
 
 @dataclass(frozen=True)
@@ -150,23 +156,20 @@ class Problem:
     follows: bool = False
 
     def __post_init__(self) -> None:
-        for name, kind in (("motion", Motion), ("pressure", Pressure)):
+        kinds = {"motion": Motion, "pressure": Pressure, "backward": bool, "follows": bool}
+        for name, kind in kinds.items():
             if not isinstance(getattr(self, name), kind):
-                allowed = f"allowed is a {kind.__name__}; microslip.solve takes its text, too"
-                raise InputError(name, getattr(self, name), allowed)
+                raise InputError(name, getattr(self, name), f"allowed is a {kind.__name__}")
         if self.drive is not None and not isinstance(self.drive, Drive):
             raise InputError("drive", self.drive, "allowed is a Force or a Spring")
-        numbers = {"velocity": self.velocity, "poisson": self.poisson}
+        _check(self.motion, self.pressure)
+        limits = {"velocity": (-math.inf, math.inf), "poisson": (0.0, 0.5)}
         if self.motion.periodic:
-            if self.amplitude is None:
-                allowed = f"{self.motion.name} needs an amplitude >= 0"
-                raise InputError("amplitude", None, allowed)
-            numbers["amplitude"] = self.amplitude
+            limits["amplitude"] = (0.0, math.inf)
         elif self.amplitude is not None:
             raise InputError("amplitude", self.amplitude, f"{self.motion.name} has no amplitude")
-        for name, value in numbers.items():
-            if not math.isfinite(value):
-                raise InputError(name, value, "allowed is a finite number")
+        for name, (low, high) in limits.items():
+            object.__setattr__(self, name, real(name, getattr(self, name), low, high))
 
     def __str__(self) -> str:
         """Describe the problem in one line, without default values."""

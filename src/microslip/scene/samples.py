@@ -17,10 +17,10 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from microslip.foundation import spec
-from microslip.foundation.arguments import LARGEST
+from microslip.foundation.arguments import LARGEST, numbers
 from microslip.foundation.errors import InputError
-from microslip.scene.motion import LOOP, NORMAL, PLANE, ROUNDING, Motion, stick_focus, within_rings
-from microslip.scene.pressure import Pressure, numbers
+from microslip.scene.motion import NORMAL, PLANE, ROUNDING, Motion, Wave
+from microslip.scene.pressure import Pressure
 
 if TYPE_CHECKING:
     from scipy.interpolate import CubicSpline
@@ -45,23 +45,9 @@ class _Samples(Motion):
     by_load: bool
 
     @cached_property
-    def loads(self) -> bool:
-        return self.height is not None
-
-    @cached_property
-    def rotates(self) -> bool:
-        return self._varies(2)
-
-    @cached_property
-    def half_disc(self) -> bool:
-        return not (self.rotates and self._varies(1))
-
-    def _varies(self, column: int) -> bool:
-        return bool(np.ptp(self.rows[:, column]) > 0.0)
-
-    def _depth_at(self, height: np.ndarray, pressure: Pressure) -> np.ndarray:
-        """Return the indentation depth at a load or an indentation."""
-        return pressure.of_load(height) if self.by_load else height
+    def moving(self) -> set[str]:
+        plane = {name for name, one in zip(PLANE, self.rows.T, strict=True) if np.ptp(one) > 0.0}
+        return plane if self.height is None else {*plane, NORMAL[not self.by_load]}
 
 
 @dataclass(frozen=True, eq=False)
@@ -175,15 +161,9 @@ class Sampled(spec.NamedByText, _Samples):
         return _spline(self.rows - self.rows.mean(axis=0))
 
     @cached_property
-    def _height_spline(self) -> CubicSpline:
+    def _normal(self) -> Wave:
         height = np.ones(len(self.rows)) if self.height is None else self.height
-        return _spline(height - 1.0)
-
-    @cached_property
-    def _loop(self) -> np.ndarray:
-        """Displacements at the phases `LOOP` for the amplitude 1, as an array of shape (phases,
-        3)."""
-        return self._plane(LOOP)
+        return Wave(form=_spline(height - 1.0))
 
     @cached_property
     def readings(self) -> tuple[Motion, ...]:
@@ -195,37 +175,12 @@ class Sampled(spec.NamedByText, _Samples):
         text = f"{self.text} (every second row)"
         return (Sampled(self.rows[::2], height, self.by_load, text),)
 
-    def _repeats(self, signs: Sequence[float]) -> bool:
-        """Return whether the motion repeats itself, with the given signs, after half a period.
-
-        The load must be the same after half a period.  The forward, lateral and angular
-        displacements must be multiplied by the given signs.
-        """
-        if len(self.rows) % 2:
-            return False
-        plane = self.rows - self.rows.mean(axis=0)
-        values = plane if self.height is None else np.column_stack([plane, self.height])
-        factors = np.append(np.asarray(signs, float), 1.0)[: values.shape[1]]
-        later = np.roll(values, len(values) // 2, axis=0)
-        return bool(np.abs(later - factors * values).max() <= ROUNDING * np.abs(values).max())
-
-    @cached_property
-    def half_period_mirror(self) -> bool:
-        return self._repeats((1.0, -1.0, -1.0))
-
-    @cached_property
-    def propels(self) -> bool:
-        signs = ((-1.0, a, b) for a in (1.0, -1.0) for b in (1.0, -1.0))
-        return self._varies(0) and not any(map(self._repeats, signs))
-
     @cached_property
     def cycles(self) -> int:
         """Effective number of cycles per period: the root mean square of the numbers of cycles of
         all harmonics.  The result is the largest value of all columns."""
-        power = np.abs(np.fft.rfft(self.rows - self.rows.mean(axis=0), axis=0)) ** 2
-        if self.height is not None:
-            height = np.abs(np.fft.rfft(self.height - self.height.mean())) ** 2
-            power = np.column_stack([power, height])
+        values = self.rows if self.height is None else np.column_stack([self.rows, self.height])
+        power = np.abs(np.fft.rfft(values - values.mean(axis=0), axis=0)) ** 2
         power = power[:, power.sum(axis=0) > 0.0]
         order = np.arange(len(power))[:, None]
         return int(
@@ -238,55 +193,37 @@ class Sampled(spec.NamedByText, _Samples):
         forward, lateral, angle = amplitude * np.moveaxis(self._plane(phase), -1, 0)
         return velocity * phase + forward, lateral, angle
 
-    def focus(self, velocity: float, amplitude: float, pressure: Pressure) -> float | None:
-        """Return the radius towards which rings are graded.
-
-        If the load oscillates, the result is the smallest contact radius divided by the largest.
-        Otherwise, the result is the stick radius of a straight oscillation that has the same
-        largest distance from the centre.
-        """
-        if self.loads:
-            least, most = self._extremes(amplitude, pressure)
-            return within_rings(float(pressure.radius(least) / pressure.radius(most)))
-        if self.rotates:
-            return None
-        reach = np.hypot(*(self._loop[:, :2] - 0.5 * (self._loop.max(0) + self._loop.min(0))[:2]).T)
-        return stick_focus(amplitude * float(reach.max()), pressure)
+    @cached_property
+    def reach(self) -> float:
+        """Largest distance from the centre, or 0 if the contact rotates."""
+        plane = self._loop[:2]
+        centre = 0.5 * (plane.max(axis=1) + plane.min(axis=1))
+        return 0.0 if self.rotates else float(np.hypot(*(plane - centre[:, None])).max())
 
     def stroke(self, amplitude: float, poisson: float) -> float:
-        return 0.5 * amplitude * float(np.ptp(self._loop, axis=0).max())
-
-    def depth(self, phase: np.ndarray, amplitude: float, pressure: Pressure) -> np.ndarray:
-        return self._depth_at(
-            np.maximum(1.0 + amplitude * self._height_spline(phase), 0.0), pressure
-        )
+        return 0.5 * amplitude * float(np.ptp(self._loop, axis=1).max())
 
     def _extremes(self, amplitude: float, pressure: Pressure) -> tuple[float, float]:
         """Return the smallest and the largest indentation."""
-        turns = self._height_spline.derivative().roots(extrapolate=False)
+        spline: Any = self._normal.form
+        turns = spline.derivative().roots(extrapolate=False)
         phases = np.concatenate([[0.0], turns[np.isfinite(turns)]])
         depths = self.depth(phases, amplitude, pressure)
         return float(depths.min()), float(depths.max())
 
-    def deepest(self, amplitude: float, pressure: Pressure) -> float:
-        return self._extremes(amplitude, pressure)[1]
-
     def share_without_load(self, amplitude: float) -> float:
         """Compute the fraction of a period in which the load or the indentation is at most 0."""
-        if not self.loads:
-            return 0.0
-        height = 1.0 + amplitude * self._height_spline(self._fine_phases)
-        return float(np.mean(height <= ROUNDING))
+        return float(np.mean(1.0 + amplitude * self._fine_heights <= ROUNDING))
 
     @cached_property
-    def _fine_phases(self) -> np.ndarray:
-        return np.linspace(0.0, 2.0 * np.pi, 64 * len(self.rows), endpoint=False)
+    def _fine_heights(self) -> np.ndarray:
+        return self._normal(np.linspace(0.0, 2.0 * np.pi, 64 * len(self.rows), endpoint=False))
 
     def mean_load(self, amplitude: float, pressure: Pressure) -> float:
         if not self.loads:
             return 1.0
-        phases = self._fine_phases
-        return float(np.mean(pressure.total(self.depth(phases, amplitude, pressure))))
+        depths = self._depth_at(1.0 + amplitude * self._fine_heights, pressure)
+        return float(np.mean(pressure.total(depths)))
 
 
 FEWEST_SAMPLES = 4
@@ -378,6 +315,8 @@ def checked_columns(
     value.  Every column except the first can be None.  Raises InputError if a column is invalid, or
     if both a load and an indentation are given.
     """
+    if not isinstance(columns, Mapping):
+        raise InputError("columns", columns, "allowed is a mapping of names to arrays")
     arrays: dict[str, np.ndarray] = {}
     for name, values in columns.items():
         if name not in names:

@@ -205,7 +205,7 @@ class Contact:
 
     @property
     def _record(self) -> Motion:
-        return self.motion if isinstance(self.motion, Motion) else motion_named(self.motion)
+        return motion_named(self.motion)
 
     @cached_property
     def mean_load(self) -> float:

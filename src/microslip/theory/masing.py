@@ -35,6 +35,7 @@ from functools import cache
 
 import numpy as np
 
+from microslip.foundation.arguments import numbers, real
 from microslip.foundation.errors import InputError
 from microslip.theory.hertz import IndenterPressure, Numbers, checked, mindlin_force
 
@@ -195,6 +196,10 @@ LOOP_ERRORS = 3.0
 branch of a loop is F(u_max) - 2 F(x) + 2 F(y). The error of each value of F is between 0 and e."""
 
 
+FACTORS = 1e-100, 1e100
+"""Range of the factor between two units."""
+
+
 @dataclass(frozen=True, eq=False)
 class Iwan:
     """Parallel Jenkins elements whose forces add up to the tangential force.
@@ -261,10 +266,7 @@ class Iwan:
         InputError
             If the displacement is not an array of finite numbers with one dimension.
         """
-        try:
-            path = np.asarray(displacement, float)
-        except (TypeError, ValueError):
-            path = np.array(np.nan)
+        path = numbers("displacement", displacement)
         if path.ndim != 1 or not np.isfinite(path).all():
             allowed = "allowed is an array of finite numbers with one dimension"
             raise InputError("displacement", displacement, allowed)
@@ -278,8 +280,10 @@ class Iwan:
         """Return a copy in other units.
 
         force, displacement: the present units of force and displacement, expressed in the new
-        units.
+        units.  Raises InputError unless both are numbers in FACTORS.
         """
+        force = real("force", force, *FACTORS)
+        displacement = real("displacement", displacement, *FACTORS)
         return Iwan(
             self.stiffness * (force / displacement),
             self.limit_force * force,
