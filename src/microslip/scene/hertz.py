@@ -249,9 +249,8 @@ class Ring(RoundPressure):
                 kernel = 4.0 / np.pi * s / (r + s) * scipy.special.ellipkm1(apart)
                 return kernel * top * np.sqrt(max((s - inner) * (1.0 - s), 0.0))
 
-            parts = (inner, r), (r, 1.0)
             settings = {"epsabs": 0.0, "epsrel": 1e-10, "limit": 200}
-            return sum(quad(of_circle, *part, **settings)[0] for part in parts)
+            return quad(of_circle, inner, 1.0, points=[r], **settings)[0]
 
         options = {"xatol": 1e-7}
         best = minimize_scalar(lambda r: -displacement(r), bounds=(inner, 1.0), options=options)
