@@ -113,7 +113,7 @@ def source_name(source: Any) -> str | list:
 
 def check_format(decimal: str, encoding: str) -> None:
     """Raise InputError for an unknown decimal mark or encoding."""
-    if decimal not in (".", ","):
+    if not isinstance(decimal, str) or decimal not in (".", ","):
         raise InputError("decimal", decimal, "allowed is '.' or ','")
     try:
         "".encode(encoding)  # refuses encodings from bytes to bytes
