@@ -41,7 +41,7 @@ def test_a_motion_with_a_symmetry_is_marched_as_on_half_of_the_disc(nu, rotates)
 @pytest.mark.parametrize("contact", [PolarContact(RINGS, ANGLES, True, 0.3), whole(0.3)])
 def test_the_shortest_wave_is_not_coupled(contact):
     """Its cosine, forward, is 0 at all points; its sine, lateral, alternates between the points."""
-    near, _ = ring_influence(contact.rings.psi, ANGLES + 1, True)
+    near, _ = ring_influence(tuple(contact.rings.psi), ANGLES + 1, True)
     wave = np.zeros((2, *contact.forward_position.shape))
     wave[1] = ((-1.0) ** np.arange(wave.shape[1]))[:, None]
     expected = wave * near[ANGLES].sum(axis=1)

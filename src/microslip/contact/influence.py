@@ -291,18 +291,21 @@ def _smooth_ends_gauss(n: int) -> tuple[np.ndarray, np.ndarray]:
     return t * t * (3.0 - 2.0 * t), w * 6.0 * t * (1.0 - t)
 
 
+@lru_cache(maxsize=8)
 def ring_influence(
-    psi: np.ndarray, n_modes: int, coupled: bool, modulus: float = G_STAR
+    edges: tuple[float, ...], n_modes: int, coupled: bool, modulus: float = G_STAR
 ) -> tuple[np.ndarray, np.ndarray]:
     """Compute the influence matrices of angular modes on rings of a half-space.
 
     Within a ring, tractions are proportional to the Hertz friction bound.  Averages are Galerkin
     averages, so that the matrices near[m] are symmetric when weighted with the ring areas.
 
+    Calls with equal arguments return the same arrays, which must not be modified.
+
     Parameters
     ----------
-    psi : np.ndarray, shape (n + 1,)
-        Edges of the rings as angles, with r = sin(psi); they increase up to pi/2.
+    edges : tuple of float
+        Edges of the n rings as angles psi, with r = sin(psi); they increase up to pi/2.
     n_modes : int
         Number of modes.  Modes are numbered from 0 to n_modes - 1.
     coupled : bool
@@ -320,8 +323,7 @@ def ring_influence(
         transpose of this matrix maps conjugate tractions of mode 1 + j to displacements of mode 1 -
         j.
     """
-    psi = np.ascontiguousarray(psi, dtype=float)
-    n = len(psi) - 1
+    psi, n = np.array(edges), len(edges) - 1
     near = np.zeros((n_modes, n, n))
     far = np.zeros((n_modes, n, n))
     averaging = Averaging(

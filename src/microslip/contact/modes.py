@@ -18,15 +18,14 @@ and 2 - m (see influence.py).
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from functools import lru_cache
 
 import numpy as np
 
-from microslip.contact.contact import LATERAL, MIRROR, TORQUE
+from microslip.contact.contact import LATERAL, TORQUE
 from microslip.contact.influence import ring_influence
-from microslip.contact.ring_contact import RingContact, interpolate
-from microslip.contact.rings import Focus, Rings, make_rings
+from microslip.contact.ring_contact import RingContact
+from microslip.contact.rings import Focus, make_rings
 from microslip.scene.hertz import HERTZ
 from microslip.scene.pressure import Pressure
 
@@ -45,27 +44,25 @@ half.  WHOLE means that there is no such symmetry."""
 
 
 def _single_waves(
-    theta: np.ndarray, angles: int, symmetry: str
-) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Return the waves at nu = 0 as three arrays.
+    theta: np.ndarray, angles: int, symmetry: str, near: np.ndarray
+) -> tuple[np.ndarray, np.ndarray]:
+    """Return the waves at nu = 0: their values at the points and their ring matrices.
 
-    The first array contains the number m of each wave.  The second and the third array contain the
-    values of the waves at the points, for the forward and the lateral component.  Both arrays have
-    the shape (waves, points).
+    The values have the shape (2, points, waves), with forward components first.
 
     For a rotation, the forward tractions are sums of cosines of multiples of the polar angle, and
     the lateral tractions are sums of sines.  For a translation, the tractions in both directions
     are cosines and sines with even numbers m.
     """
     numbers = np.arange(angles + 1)
-    cosines, sines = np.cos(np.outer(numbers, theta)), np.sin(np.outer(numbers, theta))
-    cosines[angles] = 0.0  # the exact value at the points
+    cosines, sines = np.cos(np.outer(theta, numbers)), np.sin(np.outer(theta, numbers))
+    cosines[:, angles] = 0.0  # the exact value at the points
     if symmetry == ROTATION:
-        return numbers, cosines, sines
+        return np.stack([cosines, sines]), near[numbers]
     step = 2 if symmetry == TRANSLATION else 1
     numbers = np.concatenate([numbers[:angles:step], numbers[step::step]])
-    waves = np.concatenate([cosines[:angles:step], sines[step::step]])
-    return numbers, waves, waves
+    waves = np.concatenate([cosines[:, :angles:step], sines[:, step::step]], axis=1)
+    return np.stack([waves, waves]), near[numbers]
 
 
 def _pairs(angles: int, symmetry: str) -> tuple[list[tuple[Wave, Wave]], list[tuple[Wave, Wave]]]:
@@ -90,86 +87,34 @@ def _pairs(angles: int, symmetry: str) -> tuple[list[tuple[Wave, Wave]], list[tu
     return coupled, list(zip(single[::2], single[1::2], strict=True))
 
 
-def _coupled_matrices(
-    pairs: Sequence[tuple[Wave, Wave]],
-    single: Sequence[tuple[Wave, Wave]],
-    influence: tuple[np.ndarray, np.ndarray],
-    ratio: np.ndarray,
-    kappa: float,
-) -> np.ndarray:
-    """Return the matrices of all pairs, first the coupled pairs, and then the pairs without
-    coupling.
+def _coupled_waves(
+    theta: np.ndarray, angles: int, symmetry: str, influence: tuple, area: np.ndarray, kappa: float
+) -> tuple[np.ndarray, np.ndarray]:
+    """Return the waves at nu > 0: their values at the points, of shape (1, 2 points, 2 pairs), and
+    the matrices of all pairs, of shape (pairs, 2 n, 2 n).
 
-    The result is an array of shape (pairs, 2, n, 2, n).
+    The coupled pairs come first, followed by the pairs without coupling.
     """
-    near, far = influence
-    n = near.shape[1]
+    pairs, single = _pairs(angles, symmetry)
+    (near, far), n = influence, len(area)
+    ratio = area[None, :] / area[:, None]  # weights for the transpose
     out = np.zeros((len(pairs) + len(single), 2, n, 2, n))
     for block, ((m, part), (other, _)) in zip(out, pairs, strict=False):
         cross = (kappa if part else -kappa) * far[m - 1]
         block[0, :, 0], block[1, :, 1] = near[m], near[abs(other)]
-        block[0, :, 1], block[1, :, 0] = cross, cross.T * ratio.T
+        block[0, :, 1], block[1, :, 0] = cross, cross.T * ratio
     for block, waves in zip(out[len(pairs) :], single, strict=True):
         for k, (m, part) in enumerate(waves):
             block[k, :, k] = near[abs(m)]
             if m == 1:
                 sign = kappa if part else -kappa
-                block[k, :, k] += 0.5 * sign * (far[0] + far[0].T * ratio.T)
-    return out
-
-
-@lru_cache(maxsize=4)
-def _shared_influence(
-    psi: tuple[float, ...], n_modes: int, coupled: bool, modulus: float
-) -> tuple[np.ndarray, np.ndarray]:
-    """Return the influence matrices of modes on rings with the edges `psi`; see ring_influence."""
-    return ring_influence(np.array(psi), n_modes, coupled, modulus=modulus)
-
-
-def influence_modes(
-    rings: Rings, angles: int, symmetry: str, poisson: float, modulus: float
-) -> tuple[tuple[np.ndarray, np.ndarray, np.ndarray], np.ndarray]:
-    """Compute the influence operator for points on rings.
-
-    Parameters
-    ----------
-    rings : rings.Rings
-        Mesh of n rings.
-    angles : int
-        Number of points on one half of each ring.
-    symmetry : str
-        WHOLE, ROTATION or TRANSLATION.
-    poisson, modulus : float
-        Poisson's ratio, and G* in working units.
-
-    Returns
-    -------
-    waves : tuple of np.ndarray
-        The argument `waves` of ring_contact.RingContact.
-    influence : np.ndarray, shape (n, n)
-        Ring matrix of the mode 0.
-    """
-    kappa = poisson / (2.0 - poisson)
-    modes = next((most for most in SHARED_MODES if angles < most), angles + 1)
-    influence = near, _ = _shared_influence(tuple(rings.psi), modes, poisson > 0.0, modulus)
-    points = 2 * angles if symmetry == WHOLE else angles
-    theta = (np.arange(points) + 0.5) * np.pi / angles
-    if kappa == 0.0:
-        numbers, forward, lateral = _single_waves(theta, angles, symmetry)
-        to_points, matrices = np.stack([forward.T, lateral.T]), near[numbers]
-    else:
-        pairs, single = _pairs(angles, symmetry)
-        ratio = rings.area[:, None] / rings.area[None, :]  # weights for the transpose
-        matrices = _coupled_matrices(pairs, single, influence, ratio, kappa)
-        matrices = matrices.reshape(len(matrices), 2 * len(ratio), -1)
-        waves = [wave for pair in (*pairs, *single) for wave in pair]
-        values = np.array([1j**part * np.exp(1j * m * theta) for m, part in waves])
-        values.real[
-            np.array([m == angles and symmetry != TRANSLATION and part == 0 for m, part in waves])
-        ] = 0.0
-        to_points = np.concatenate([values.real, -values.imag], axis=1).T[None]
-    to_waves = np.ascontiguousarray(np.linalg.pinv(to_points))
-    return (to_waves, np.ascontiguousarray(to_points), matrices), near[0]
+                block[k, :, k] += 0.5 * sign * (far[0] + far[0].T * ratio)
+    every = [wave for pair in (*pairs, *single) for wave in pair]
+    values = np.array([1j**part * np.exp(1j * m * theta) for m, part in every])
+    if symmetry != TRANSLATION:
+        values.real[[m == angles and part == 0 for m, part in every]] = 0.0
+    to_points = np.concatenate([values.real, -values.imag], axis=1).T[None]
+    return to_points, out.reshape(len(out), 2 * n, 2 * n)
 
 
 class PolarContact(RingContact):
@@ -214,33 +159,33 @@ class PolarContact(RingContact):
             raise ValueError(f"angles = {angles}: allowed is an even number of at least 2")
         rings = make_rings(cells, focus, pressure)
         self.rotates, self.whole, rows = rotates, whole, 2 * angles if whole else angles
-        self._theta = theta = (np.arange(rows) + 0.5) * np.pi / angles
+        self.theta = theta = (np.arange(rows) + 0.5) * np.pi / angles
         symmetry = WHOLE if whole else ROTATION if rotates else TRANSLATION
-        waves, influence = influence_modes(rings, angles, symmetry, poisson, pressure.G_star)
-        positions = np.stack([np.sin(theta), np.cos(theta)])[..., None] * rings.radius
-        place = influence, rings.bound, rings.area, positions
-        super().__init__(*place, stiffness=pressure.stiffness, waves=waves, rings=rings)
+        modes, kappa = angles + 1, poisson / (2.0 - poisson)
+        for most in reversed(SHARED_MODES):
+            modes = most if angles < most else modes
+        influence = ring_influence(tuple(rings.psi), modes, kappa > 0.0, pressure.G_star)
+        if kappa == 0.0:
+            to_points, matrices = _single_waves(theta, angles, symmetry, influence[0])
+        else:
+            place = theta, angles, symmetry
+            to_points, matrices = _coupled_waves(*place, influence, rings.area, kappa)
+        to_points = np.ascontiguousarray(to_points)
+        to_waves = np.ascontiguousarray(np.linalg.pinv(to_points))
+        super().__init__(
+            influence[0][0],
+            rings.bound,
+            rings.area,
+            np.stack([np.sin(theta), np.cos(theta)])[..., None] * rings.radius,
+            stiffness=pressure.stiffness,
+            waves=(to_waves, to_points, matrices),
+            rings=rings,
+        )
+        self.prolongs = not whole and (not rotates or cells >= FEWEST_PROLONGED)
         self.mirror_rows = np.roll(np.arange(rows)[::-1], angles if whole else 0)
         self.resultants = np.ones(3)
         if not whole:  # the other half of the disc cancels this force
             self.resultants[LATERAL if rotates else TORQUE] = 0.0
-
-    def prolong(self, state: np.ndarray) -> np.ndarray | None:
-        """Interpolate tractions from a coarser mesh to the points of this contact.
-
-        The tractions have the shape (2, angles, cells).  Returns None in three cases: for whole
-        discs, for changing loads, and for rotations with too few rings (see FEWEST_PROLONGED).
-        """
-        few = self.rotates and len(self.bound) < FEWEST_PROLONGED
-        on_rings = None if few or self.whole else super().prolong(state)
-        if on_rings is None:
-            return None
-        # extend the angles beyond the lateral axis, across which forward tractions are even;
-        # lateral tractions are odd for a rotation and even for a translation
-        beyond, count = on_rings[:, [0, -1]] * (MIRROR if self.rotates else 1.0), state.shape[1]
-        fields = np.concatenate([beyond[:, :1], on_rings, beyond[:, 1:]], axis=1)
-        angles = (np.arange(-1, count + 1) + 0.5) / count
-        return interpolate(self._theta / np.pi, angles, fields.swapaxes(1, 2)).swapaxes(1, 2)
 
 
 polar_contact = lru_cache(maxsize=32)(PolarContact)

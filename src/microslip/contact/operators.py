@@ -126,7 +126,7 @@ def transform(
             put(target[at + step * three], i, g, h)
 
 
-@kernel
+@kernel(inline="always")
 def multiply_two(matrix: np.ndarray, pair: np.ndarray, image: np.ndarray) -> None:
     """Multiply two vectors, given as an array of shape (2, n), by the transpose of a matrix of even
     size."""

@@ -16,7 +16,7 @@ from microslip.contact.march import march, strain_energy
 from microslip.contact.operators import multiply, padded
 from microslip.contact.path import Path
 from microslip.contact.rings import Focus, Rings, make_rings
-from microslip.contact.splitting import PENALTIES, best_penalty
+from microslip.contact.splitting import BALANCED_RINGS, PENALTIES
 from microslip.scene.hertz import HERTZ
 from microslip.scene.pressure import Pressure
 
@@ -95,7 +95,12 @@ class RingContact(Contact):
     resultants = np.ones(3)
     mirror_rows: np.ndarray | None = None
     growth: Any = None
+    prolongs = True
+    """Whether tractions from a coarser mesh are a useful initial guess."""
+    theta: np.ndarray | None = None
+    rotates = False
     _joins: Any = None
+    _last: tuple[Any, Any] = (None, None)
 
     def __init__(
         self,
@@ -122,66 +127,69 @@ class RingContact(Contact):
             self.edges = self.growth.edges
 
     @cached_property
-    def operators(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """The operator A and its resolvents; see march.march."""
+    def system(self) -> tuple[tuple, tuple, np.ndarray]:
+        """The arguments `operators` and `points` of march.march, and the friction bounds.
+
+        The operators are A and its resolvents.
+        """
         to_waves, to_points, matrices = self._waves
         cells, columns = len(self.bound), matrices.shape[-1]
-        penalty = np.tile(best_penalty(self.compliance, cells), columns // cells)
-        shifts = PENALTIES[:, None, None, None] * np.diag(penalty)
+        parts, width = columns // cells, padded(cells)
+        penalty = self.compliance * np.sqrt(cells / BALANCED_RINGS)
+        shifts = PENALTIES[:, None, None, None] * np.diag(np.tile(penalty, parts))
         each = np.concatenate([matrices[None], np.linalg.inv(matrices + shifts)])
-        each = each.reshape(*each.shape[:2], -1, cells, columns // cells, cells)
-        width = padded(cells)
-        out = np.zeros((*each.shape[:2], columns // cells, width, columns // cells, width))
+        each = each.reshape(*each.shape[:2], parts, cells, parts, cells)
+        out = np.zeros((*each.shape[:2], parts, width, parts, width))
         out[..., :cells, :, :cells] = each.transpose(0, 1, 4, 5, 2, 3)
-        size = width * columns // cells
-        return to_waves, to_points, out.reshape(*each.shape[:2], size, size)
+        operators = to_waves, to_points, out.reshape(*each.shape[:2], parts * width, -1)
+        fields = np.zeros((5, self.shape[1], width))
+        fields[4] = 1.0  # the penalty of the additional points
+        values = self.weight, self.bound, self.forward_position, self.lateral_position, penalty
+        for field, one in zip(fields, values, strict=True):
+            field[:, :cells] = one
+        weight, bound, *positions, penalty = fields.reshape(5, -1)
+        area, count = float(weight.sum()), float(np.count_nonzero(weight))
+        return operators, (weight, penalty, area, count, np.array(positions)), bound[None]
 
-    @cached_property
-    def points(self) -> tuple[np.ndarray, np.ndarray, float, float, np.ndarray]:
-        """Properties of the points; see march.march."""
-        weight = self.pack(np.broadcast_to(self.weight, self.shape[1:]))
-        penalty = best_penalty(self.compliance, len(self.bound))
-        penalty = self.pack(np.broadcast_to(penalty, self.shape[1:]), 1.0)
-        positions = self.pack(np.stack([self.forward_position, self.lateral_position]))
-        return weight, penalty, float(weight.sum()), float(np.count_nonzero(weight)), positions
-
-    def pack(self, values: np.ndarray, fill: float = 0.0) -> np.ndarray:
+    def pack(self, values: np.ndarray) -> np.ndarray:
         """Convert values of shape (..., rows, cells) to fields of shape (..., points) for compiled
         code.
 
-        Each row of a field has operators.padded(cells) points.  The additional points are set to
-        `fill`.
+        Each row of a field has operators.padded(cells) points.  The additional points are set to 0.
         """
         *shape, rows, cells = values.shape
-        out = np.full((*shape, rows, padded(cells)), fill)
+        out = np.zeros((*shape, rows, padded(cells)))
         out[..., :cells] = values
         return out.reshape(*shape, rows * out.shape[-1])
 
-    def unpack(self, fields: np.ndarray) -> np.ndarray:
-        """Convert fields of compiled code back to values. This method is the inverse of `pack`."""
-        _, rows, cells = self.shape
-        return fields.reshape(*fields.shape[:-1], rows, -1)[..., :cells]
-
     def displacement(self, state: np.ndarray) -> np.ndarray:
         """Return the elastic displacement A q of each point under tractions q."""
-        field, to_waves = self.pack(state), self.operators[0]
+        operators = self.system[0]
+        field, (sectors, waves, rows) = self.pack(state), operators[0].shape
         image = np.empty_like(field)
-        sectors, waves, rows = to_waves.shape
         scratch = np.empty((2, sectors * waves, 2 * field.shape[1] // (sectors * rows)))
-        multiply(self.operators, 0, field, image, scratch)
-        return self.unpack(image)
+        multiply(operators, 0, field, image, scratch)
+        return image.reshape(2, self.shape[1], -1)[..., : self.shape[2]]
 
     def prolong(self, state: np.ndarray) -> np.ndarray | None:
-        """Interpolate tractions from a coarser mesh to the rings of this contact.
+        """Interpolate tractions from a coarser mesh to the points of this contact.
 
         The interpolated quantity is the traction as a fraction of the friction bound.  Returns None
-        for springs and for changing loads.
+        for springs, for changing loads, and if `prolongs` is False.
         """
-        fine = self.rings
-        if fine is None or self._joins is not None:
+        fine, theta = self.rings, self.theta
+        if fine is None or self._joins is not None or not self.prolongs:
             return None
         coarse = make_rings(state.shape[2], fine.focus, fine.pressure)
-        return interpolate(fine.radius, coarse.radius, state / coarse.bound) * self.bound
+        fields = interpolate(fine.radius, coarse.radius, state / coarse.bound) * self.bound
+        if theta is None:
+            return fields
+        # extend the angles beyond the lateral axis, across which forward tractions are even;
+        # lateral tractions are odd for a rotation and even for a translation
+        beyond, count = fields[:, [0, -1]] * (MIRROR if self.rotates else 1.0), state.shape[1]
+        fields = np.concatenate([beyond[:, :1], fields, beyond[:, 1:]], axis=1)
+        angles = (np.arange(-1, count + 1) + 0.5) / count
+        return interpolate(theta / np.pi, angles, fields.swapaxes(1, 2)).swapaxes(1, 2)
 
     def mirrored(self, state: np.ndarray) -> np.ndarray:
         """Return the mirror image of a state, in which the lateral direction is reversed and the
@@ -205,14 +213,20 @@ class RingContact(Contact):
         """
         state = np.ascontiguousarray(state, dtype=float)
         drive = NO_DRIVE if body is None else body.along(path, start)
-        motion, bounds = path.motion, self._bounds_of(path)
+        motion, (operators, points, bounds) = path.motion, self.system
+        if path.depth is not None:  # the bounds along the most recent path are cached
+            if self._last[0] is not path.depth:
+                every = self.bounds_along(path)[:, None]
+                every = np.broadcast_to(every, (len(every), *self.shape[1:]))
+                self._last = path.depth, self.pack(every)
+            bounds = self._last[1]
         guess = None if previous is None else previous.fields
         if guess is None or guess.shape != (len(motion), *self.shape):
             guess = np.empty((0, *self.shape))
         loading, begin = (motion, bounds, path.carry, float(path.end)), (state, guess)
         while True:
             end, history, forces, moves, residual, iterations = march(
-                self.operators, self.points, loading, drive, begin, float(tolerance)
+                operators, points, loading, drive, begin, float(tolerance)
             )
             if iterations >= 0:
                 break
@@ -222,19 +236,8 @@ class RingContact(Contact):
 
     def energy(self, change: np.ndarray) -> float:
         """Return <q, A q>, which is twice the elastic energy of the tractions q."""
-        return strain_energy(self.operators, self.points[0], np.ascontiguousarray(change))
-
-    def _bounds_of(self, path: Path) -> np.ndarray:
-        """Return the friction bounds along a path for compiled code.
-
-        The values for the most recent depths are cached.
-        """
-        last = vars(self).get("_last")
-        if last is None or last[0] is not path.depth:
-            bounds = self.bound[None] if path.depth is None else self.bounds_along(path)
-            bounds = np.broadcast_to(bounds[:, None], (len(bounds), *self.shape[1:]))
-            self._last = last = path.depth, self.pack(bounds)
-        return last[1]
+        operators, points, _ = self.system
+        return strain_energy(operators, points[0], np.ascontiguousarray(change))
 
     def at_indentation(self, deepest: float, start: float) -> RingContact:
         """Return a contact whose rings fill the largest contact area in a period.
@@ -247,7 +250,7 @@ class RingContact(Contact):
             Depth at the start of the period, for which `bound` is computed.
         """
         growth, out = self.growth, copy(self)
-        for name in ("operators", "points", "_last"):
+        for name in ("system", "_last"):
             vars(out).pop(name, None)
         out.radius = radius = float(growth.pressure.radius(deepest))
         softer = radius**growth.influence_power
@@ -367,7 +370,7 @@ class RadialContact(RingContact):
         Calls with equal arguments return the same object, which must not be modified.
         """
         rings = make_rings(cells, focus, pressure)
-        near, _ = ring_influence(rings.psi, 1, False, modulus=pressure.G_star)
+        near, _ = ring_influence(tuple(rings.psi), 1, False, pressure.G_star)
         return RadialContact(near[0], rings.bound, rings.area, pressure.stiffness, rings=rings)
 
 

@@ -7,7 +7,6 @@ like a square root.  Contacts with a hole are refined at the edge of the hole in
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import lru_cache
 from itertools import pairwise
@@ -88,28 +87,18 @@ def make_rings(count: int, focus: Focus | float | None = None, pressure: Pressur
     """
     if count < 2:
         raise InputError("cells", count, "allowed is a whole number of at least 2 rings")
-    if focus is None:
-        return _of_edges(np.linspace(0.0, np.pi / 2, count + 1), focus, pressure)
-    radii, strength = focus if isinstance(focus, Focus) else Focus((focus,))
-    if not (radii and list(radii) == sorted({*radii}) and radii[0] >= 0.0 and radii[-1] <= 1.0):
-        raise InputError("focus", radii, "allowed are radii in 0..1, increasing")
-    # the first ring begins at the edge of the hole, if there is one
-    hole = pressure.inner**2
-    inside = np.sqrt(np.maximum(np.square(radii) - hole, 0.0) / (1.0 - hole))
-    if len(radii) > 1 and not 0.0 < inside[0] <= inside[-1] < 1.0:
-        allowed = f"allowed are several radii between {pressure.inner:g} and 1, ends not included"
-        raise InputError("focus", radii, allowed)
-    places = np.arcsin(inside[: max(count // 2, 1)])
-    return _of_edges(_focused(count, places, strength), focus, pressure)
-
-
-def _of_edges(psi: np.ndarray, focus: Focus | float | None, pressure: Pressure) -> Rings:
-    """Create `Rings` from the edges that apply to a contact without a hole.
-
-    If the contact has a hole, the edges are mapped to the annulus outside the hole.
-    """
-    if pressure.inner > 0.0:
-        hole = pressure.inner**2
+    hole, psi = pressure.inner**2, np.linspace(0.0, np.pi / 2, count + 1)
+    if focus is not None:
+        radii, strength = focus if isinstance(focus, Focus) else Focus((focus,))
+        if not (radii and list(radii) == sorted({*radii}) and radii[0] >= 0.0 and radii[-1] <= 1.0):
+            raise InputError("focus", radii, "allowed are radii in 0..1, increasing")
+        # the first ring begins at the edge of the hole, if there is one
+        inside = np.sqrt(np.maximum(np.square(radii) - hole, 0.0) / (1.0 - hole))
+        if len(radii) > 1 and not 0.0 < inside[0] <= inside[-1] < 1.0:
+            allowed = f"several radii between {pressure.inner:g} and 1, ends not included"
+            raise InputError("focus", radii, f"allowed are {allowed}")
+        psi = _focused(count, np.arcsin(inside[: max(count // 2, 1)]), strength)
+    if hole > 0.0:  # map the disc to the annulus outside the hole
         psi = np.arcsin(np.sqrt(hole + (1.0 - hole) * np.sin(psi) ** 2))
     area, (bound, radius) = np.pi * np.diff(np.sin(psi) ** 2), pressure.ring_means(psi)
     return Rings(psi, area, bound, radius, focus, pressure)
@@ -119,7 +108,9 @@ def _focused(count: int, places: np.ndarray, strength: float) -> np.ndarray:
     """Return count + 1 edges as angles psi.
 
     The edges are graded towards `places`.  Each of the `places` is an edge between two rings.
-    Between two successive places, the rings are widest in the middle.
+    Between two successive places, the rings are widest in the middle.  The number of rings in each
+    piece between a place and a middle is approximately proportional to its angle, with at least a
+    few rings.
     """
     edge = np.pi / 2
     if len(places) == 1 and places[0] in (0.0, edge):
@@ -131,29 +122,20 @@ def _focused(count: int, places: np.ndarray, strength: float) -> np.ndarray:
     for place in places[1:]:
         ends += [0.5 * (ends[-1] + place), place]
     ends.append(edge)
-    psi, before = np.zeros(count + 1), _shared_out(count, ends)
-    for piece, (first, last) in enumerate(pairwise(before)):
+    before, last = np.rint(count * np.array(ends) / edge).astype(int), len(ends) - 1
+    least = max(count // (2 * last), 1)
+    for k in range(1, last):
+        before[k] = max(before[k], before[k - 1] + least)
+    before[last] = count
+    for k in range(last - 1, 0, -1):
+        before[k] = min(before[k], before[k + 1] - least)
+    psi = np.zeros(count + 1)
+    for piece, (first, end) in enumerate(pairwise(before)):
         start, width = ends[piece], ends[piece + 1] - ends[piece]
-        t = np.linspace(0.0, 1.0, last - first + 1)[1:]
+        t = np.linspace(0.0, 1.0, end - first + 1)[1:]
         # every second piece ends at a place, and the other pieces begin at one
         t = 1.0 - t if piece % 2 == 0 else t
         share = (1 - strength) * t + strength * t * t
-        psi[first + 1 : last + 1] = start + width * (1.0 - share if piece % 2 == 0 else share)
+        psi[first + 1 : end + 1] = start + width * (1.0 - share if piece % 2 == 0 else share)
     psi[-1] = edge
     return psi
-
-
-def _shared_out(count: int, ends: Sequence[float]) -> list[int]:
-    """Return the number of rings up to each of the angles `ends`.
-
-    The number is approximately proportional to the angle psi.  Each interval between two successive
-    angles contains at least a few rings.
-    """
-    least = max(count // (2 * len(ends) - 2), 1)
-    before = [int(round(count * end / ends[-1])) for end in ends]
-    for k in range(1, len(ends)):
-        before[k] = max(before[k], before[k - 1] + least)
-    before[-1] = count
-    for k in range(len(ends) - 2, 0, -1):
-        before[k] = min(before[k], before[k + 1] - least)
-    return before

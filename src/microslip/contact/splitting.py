@@ -44,12 +44,16 @@ FIRST_ADVANCE, LONGEST_ADVANCE, HALVINGS = 1e-3, 1e6, 40
 LONGEST_ADVANCE: first and largest trial value, in u_lim.  Each trial value is four times the
 previous one.  HALVINGS: number of bisections."""
 BALANCED_RINGS = 12
-"""At this number of rings, the best penalty equals the self-influence of a ring, provided that half
-of the points stick.  The value is calibrated by benchmarks/splitting.py."""
+"""If half of the points stick, the best penalty is sqrt(rings / BALANCED_RINGS) times the
+self-influence of a ring.  The splitting converges fastest if the penalty is the geometric mean of
+the smallest and the largest eigenvalue of A.  The smallest eigenvalue belongs to a narrow ring, and
+the largest belongs to the whole contact.  The ratio of the two eigenvalues is proportional to the
+number of rings.  The value is calibrated by benchmarks/splitting.py."""
 LEVELS = 4
 """Number of penalties for which a resolvent is computed."""
 PENALTIES = 2.0 ** (np.arange(LEVELS) - 0.5 * (LEVELS - 1))
-"""Possible penalties of a step, from 1/sqrt(8) to sqrt(8) times `best_penalty`."""
+"""Possible penalties of a step, from 1/sqrt(8) to sqrt(8) times the best penalty if half of the
+points stick."""
 BETWEEN_LOOKS = 2e5
 """Approximate number of point updates between two calls of `interrupted`.  These updates take a few
 hundredths of a second.  A call waits for the other threads of the interpreter, so calls should be
@@ -73,24 +77,6 @@ def interrupted() -> bool:
     occurred = _occurred()
     _release(state)
     return occurred != 0
-
-
-def best_penalty(scale: np.ndarray, rings: int) -> np.ndarray:
-    """Return the best penalty for each ring, for the case that half of the points stick.
-
-    The splitting converges fastest if the penalty is the geometric mean of the smallest and the
-    largest eigenvalue of A.  The smallest eigenvalue belongs to a narrow ring, and the largest
-    belongs to the whole contact.  The ratio of the two eigenvalues is proportional to the number of
-    rings.
-
-    Parameters
-    ----------
-    scale : np.ndarray
-        Self-influence of each ring.
-    rings : int
-        Number of rings.
-    """
-    return scale * np.sqrt(rings / BALANCED_RINGS)
 
 
 @kernel
@@ -218,7 +204,7 @@ def rebalance(
         y[0, i] += near / points[1][i]
 
 
-@kernel
+@kernel(inline="always")
 def solve_step(operators: tuple, points: tuple, step: tuple, body: tuple, scratch: tuple) -> tuple:
     """Solve a Coulomb step.
 

@@ -20,8 +20,7 @@ from microslip.contact.path import (
     Path,
     make_path,
     phases_between,
-    turning_point_grading,
-    turning_point_width,
+    turning_point_steps,
 )
 from microslip.contact.registry import MODELS
 from microslip.contact.rings import Focus
@@ -125,12 +124,11 @@ def path_of(problem: Problem, contact: Any, steps: int, integrator: Integrator =
     integrator : path.Integrator
         Time integrator; it sets the positions of the stages.
     """
-    drift, stroke, grading = problem.drift, problem.stroke, contact.grading
-    if grading is None:
-        grading = turning_point_grading(drift, stroke)
-    # on a loop the slip can reverse at any phase
-    on_a_line = problem.straight and problem.motion.periodic
-    width = turning_point_width(drift, stroke) if on_a_line else math.inf
+    grading, width = turning_point_steps(problem.drift, problem.stroke)
+    if contact.grading is not None:
+        grading = contact.grading
+    if not (problem.straight and problem.motion.periodic):
+        width = math.inf  # on a loop the slip can reverse at any phase
     phases = phases_between(problem.turns, steps, grading, width)
     return make_path(problem.displacement, phases, integrator, problem.depth)
 
