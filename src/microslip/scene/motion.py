@@ -26,7 +26,7 @@ from microslip.foundation import spec
 from microslip.foundation.arguments import is_real
 from microslip.foundation.errors import InputError, shown
 from microslip.scene.pressure import Pressure
-from microslip.theory import hertz, masing, oscillating_load, paper
+from microslip.theory import hertz, masing, oscillating_load
 
 FOCUS_RANGE = (0.05, 0.9995)
 """Range of radii towards which rings are graded.  If the stick radius is below this range, the
@@ -77,13 +77,9 @@ class Wave(NamedTuple):
     degrees: float = 0.0
     form: Callable[[np.ndarray], np.ndarray] = np.sin
 
-    @property
-    def lead(self) -> float:
-        """Phase lead in radians."""
-        return math.radians(self.degrees % 360.0)
-
     def __call__(self, phase: np.ndarray) -> np.ndarray:
-        return self.share * self.form(self.cycles * phase + self.lead)
+        lead = math.radians(self.degrees % 360.0)
+        return self.share * self.form(self.cycles * phase + lead)
 
 
 @dataclass(frozen=True)
@@ -332,9 +328,10 @@ class Motion(spec.Named):
         and multiplies it by the velocity.  At small velocities, the rounding error of the
         oscillation would exceed the drift.
         """
-        if self._sines and not self.edge_velocity and "forward" not in self.components:
-            return velocity
-        fast, still = (self.moved(ENDS, one, amplitude, poisson)[0] for one in (1.0, 0.0))
+        if type(self).displacement is Motion.displacement:
+            return velocity * (hertz.bore_unit(poisson) * amplitude if self.edge_velocity else 1.0)
+        fast = self.moved(ENDS, 1.0, amplitude, poisson)[0]
+        still = self.moved(ENDS, 0.0, amplitude, poisson)[0]
         return float(np.diff(fast - still)[0]) / (2.0 * np.pi) * velocity
 
     def stroke(self, amplitude: float, poisson: float) -> float:
@@ -368,7 +365,7 @@ class Motion(spec.Named):
         if "angle" not in self.components:
             return None
         turn = amplitude * self.components["angle"].share
-        return within_rings(float(paper.bore_stick_radius(turn)))
+        return within_rings(float(hertz.lubkin_stick_radius(turn * hertz.bore_unit(0.0))))
 
     def turns(self, velocity: float, amplitude: float) -> tuple[float, ...]:
         """Return the phases at which the time integration starts, turns and ends.

@@ -15,8 +15,8 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass, replace
-from functools import cached_property, lru_cache
+from dataclasses import dataclass, field, replace
+from functools import cached_property, lru_cache, partial
 
 import numpy as np
 
@@ -139,6 +139,21 @@ class Problem:
         Whether the body follows the forward oscillation of the contact, like a massless body under
         a constant force.  If True, the forward oscillation is subtracted from the motion.
 
+    Attributes
+    ----------
+    size : float
+        Amplitude of the motion, or 0 for a steady motion.
+    force : float or None
+        Prescribed force.  The force is None if the velocity is prescribed directly, or if a spring
+        pulls the contact.
+    half_period_mirror : bool
+        Whether the second half of a period is the mirror image of the first half; see Motion.
+    straight : bool
+        Whether the oscillation alone follows a straight line; see Motion.
+    depth : callable or None
+        Function that returns the indentation depth at a phase, divided by the reference depth.
+        None if the load is constant.
+
     Raises
     ------
     InputError
@@ -154,6 +169,11 @@ class Problem:
     drive: Drive | None = None
     backward: bool = False
     follows: bool = False
+    size: float = field(init=False, repr=False, compare=False)
+    force: float | None = field(init=False, repr=False, compare=False)
+    half_period_mirror: bool = field(init=False, repr=False, compare=False)
+    straight: bool = field(init=False, repr=False, compare=False)
+    depth: Callable | None = field(init=False, repr=False, compare=False)
 
     def __post_init__(self) -> None:
         kinds = {"motion": Motion, "pressure": Pressure, "backward": bool, "follows": bool}
@@ -170,6 +190,15 @@ class Problem:
             raise InputError("amplitude", self.amplitude, f"{self.motion.name} has no amplitude")
         for name, (low, high) in limits.items():
             object.__setattr__(self, name, real(name, getattr(self, name), low, high))
+        motion, size = self.motion, 0.0 if self.amplitude is None else self.amplitude
+        depth = partial(motion.depth, amplitude=size, pressure=self.pressure)
+        vars(self).update(  # the class is frozen
+            size=size,
+            force=None if self.drive is None else self.drive.force,
+            half_period_mirror=motion.half_period_mirror and self.pressure.mirrored,
+            straight=motion.straight and not self.follows,
+            depth=depth if motion.loads else None,
+        )
 
     def __str__(self) -> str:
         """Describe the problem in one line, without default values."""
@@ -181,40 +210,6 @@ class Problem:
         words += [str(self.drive)] if self.drive else []
         return " ".join(words)
 
-    # Symmetries shared by the motion and the pressure
-
-    @property
-    def half_period_mirror(self) -> bool:
-        """Whether the second half of a period is the mirror image of the first half; see Motion."""
-        return self.motion.half_period_mirror and self.pressure.mirrored
-
-    @property
-    def straight(self) -> bool:
-        """Whether the oscillation alone follows a straight line; see Motion."""
-        return self.motion.straight and not self.follows
-
-    @property
-    def force(self) -> float | None:
-        """Prescribed force.  The force is None if the velocity is prescribed directly, or if a
-        spring pulls the contact."""
-        return None if self.drive is None else self.drive.force
-
-    @property
-    def propels(self) -> bool:
-        """Whether the oscillation alone can propel the contact; see Motion."""
-        return self.motion.propels and not self.follows
-
-    # Kinematics
-
-    @property
-    def size(self) -> float:
-        """Amplitude of the motion, or 0 for a steady motion."""
-        return 0.0 if self.amplitude is None else self.amplitude
-
-    @property
-    def _sign(self) -> float:
-        return -1.0 if self.backward else 1.0
-
     def displacement(
         self, phase: np.ndarray, velocity: float | None = None
     ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
@@ -222,7 +217,7 @@ class Problem:
 
         The default of `velocity` is the velocity of the problem.
         """
-        motion, sign = self.motion, self._sign
+        motion, sign = self.motion, -1.0 if self.backward else 1.0
         velocity = sign * (self.velocity if velocity is None else velocity)
         forward, lateral, angle = motion.moved(phase, velocity, self.size, self.poisson)
         if self.follows:
@@ -239,7 +234,7 @@ class Problem:
 
         The phases cover a whole period if the pressure is not symmetric.
         """
-        velocity = 0.0 if self.follows else self._sign * self.velocity
+        velocity = 0.0 if self.follows else -self.velocity if self.backward else self.velocity
         first = self.motion.turns(velocity, self.size)
         if self.motion.half_period_mirror and not self.half_period_mirror:
             return (*first, *(phase + np.pi for phase in first[1:]))
@@ -248,7 +243,13 @@ class Problem:
     @cached_property
     def focus(self) -> float | None:
         """Radius towards which rings are graded, or None; see Motion."""
-        return self.motion.focus(self._sign * self.velocity, self.size, self.pressure)
+        velocity = -self.velocity if self.backward else self.velocity
+        return self.motion.focus(velocity, self.size, self.pressure)
+
+    @property
+    def propels(self) -> bool:
+        """Whether the oscillation alone can propel the contact; see Motion."""
+        return self.motion.propels and not self.follows
 
     @cached_property
     def unit_drift(self) -> float:
@@ -256,10 +257,10 @@ class Problem:
         of u_lim."""
         return self.motion.drift(1.0, self.size, self.poisson)
 
-    @property
+    @cached_property
     def drift(self) -> float:
         """Mean forward displacement per radian of phase, in u_lim."""
-        return self.unit_drift * self.velocity
+        return self.motion.drift(self.velocity, self.size, self.poisson)
 
     @cached_property
     def stroke(self) -> float:
@@ -269,33 +270,23 @@ class Problem:
     @cached_property
     def mean_speed(self) -> float:
         """Mean speed of the oscillation (path length per radian of phase), in units of u_lim."""
-        places = np.array(self.oscillation(LOOP))
+        places = np.array(self.displacement(LOOP, 0.0))
         moves = places[:, 1:] - places[:, :-1]
         return float(np.sqrt(np.sum(moves**2, axis=0)).sum()) / (2.0 * np.pi)
 
-    # Data from files
+    @cached_property
+    def mean_load(self) -> float:
+        """Mean normal load over a period, divided by its reference value."""
+        if not self.motion.loads:
+            return 1.0
+        return float(self.motion.mean_load(self.size, self.pressure))
 
     @property
     def readings(self) -> tuple[Problem, ...]:
         """Problems with alternative interpolations of the same data; see Motion.readings and
         Pressure.readings."""
+        if not (self.motion.readings or self.pressure.readings):
+            return ()
         motions = (replace(self, motion=other) for other in self.motion.readings)
         pressures = (replace(self, pressure=other) for other in self.pressure.readings)
         return (*motions, *pressures)
-
-    # Normal load
-
-    @property
-    def depth(self) -> Callable[[np.ndarray], np.ndarray] | None:
-        """Function that returns the indentation depth at a phase, divided by the reference depth.
-
-        The property is None if the load is constant.
-        """
-        if not self.motion.loads:
-            return None
-        return lambda phase: self.motion.depth(phase, self.size, self.pressure)
-
-    @cached_property
-    def mean_load(self) -> float:
-        """Mean normal load over a period, divided by its reference value."""
-        return float(self.motion.mean_load(self.size, self.pressure))
