@@ -143,7 +143,6 @@ LINES = [
     ("predict transverse --amplitude 1 mm", "unrecognized arguments: mm"),
     ("predict transverse --table comma.csv", "line 2: '1,5 N' has a decimal comma, in load; "),
     ("fold noise.csv --output new.csv --frequency '40 Hz'", " um: peak to peak at "),
-    ("predict transverse --table comma.csv", "or --decimal ','"),  # the option
     ("predict bore --rotation-amplitude 1deg", "has none; it needs amplitude in rad, frequency"),
     ("predict transverse --mu 0.3", "--load: needed; also missing: amplitude, frequency, speed"),
 ]

@@ -89,6 +89,7 @@ def test_errors_convergence_and_effort_are_there(tmp_path, monkeypatch):
             assert data[name].dtype.kind == ("f" if name in ("periods", "work", "effort") else "i")
             assert (data[name] == value).all()
         assert (data.mu_macro_error == 4e-5).all()
+        assert ((data.checksum != 0) == data.converged).all()
         assert list(sweep_dataset.report(data, "transverse"))[:2] == [
             "transverse: 6 points, 3 not converged",
             "  not converged: amplitude 2, velocity 0.1: no periodic state",
@@ -96,10 +97,6 @@ def test_errors_convergence_and_effort_are_there(tmp_path, monkeypatch):
     with netCDF4.Dataset(tmp_path / "transverse.nc") as raw:
         flag = raw["converged"]
         assert flag.dtype == np.int8 and list(flag.flag_values) == [0, 1]
-        assert flag.flag_meanings == "not_converged converged"
-        assert raw["mu_macro"].dimensions == ("amplitude", "velocity")
-        assert raw["model"].flag_meanings == "polar"
-        assert (raw["model"][:] == raw["model"].flag_values).all()
         # texts of variable length crash Python if an open file is opened again
         kinds = {str(variable.dtype) for variable in raw.variables.values()}
         assert kinds <= {"int8", "int16", "int32", "float32", "float64"}
@@ -143,7 +140,6 @@ def test_limits_are_at_the_points_and_on_fine_axes(name, tmp_path, solver):
 def test_single_runs_for_the_figures_are_in_the_dataset(tmp_path, solver):
     data = built("transverse", tmp_path)
     assert data.history_force_forward.dims == ("history_step",)
-    assert data.history_phase.attrs["units"] == "rad"
     assert (float(data.history_velocity), float(data.history_amplitude)) == (0.1, 1.0)
     history = microslip.open_map("transverse", tmp_path, group="history")
     assert history.source_digest == data.source_digest and "Figure 1" in history.title
@@ -173,8 +169,6 @@ def test_conventions_provenance_and_equal_bytes(name, tmp_path, solver):
         assert data.Conventions == "CF-1.11"
         assert data.source.startswith(f"microslip {microslip.__version__}") and data.institution
         assert data.mu_macro.ancillary_variables == "mu_macro_error"
-        assert data.microslip_version == microslip.__version__
-        assert len(data.source_digest) == 64
         assert json.loads(data.configuration)["sweep"]["velocity"] == [0.1, 1, 10]
         assert "numba" in data.library_versions
         assert str(tmp_path) not in str(data.attrs)
@@ -213,7 +207,6 @@ def test_a_single_run_that_fails_is_left_out_and_listed(tmp_path, monkeypatch, s
 # Texts, plots and joins in plain xarray
 
 VERBS = {
-    "transpose": lambda data: data.transpose(),
     "stack": lambda data: data.stack(point=("velocity", "amplitude")).unstack(),
     "where": lambda data: data.where(data.converged),
     "part": lambda data: data.isel(velocity=[0, 2]),

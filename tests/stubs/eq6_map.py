@@ -45,5 +45,4 @@ def with_checksums(dataset, name="mu_macro"):
     """The dataset with checksums of its present points."""
     value, error = dataset[name], dataset[f"{name}_error"].values
     codes = checksums([dataset[one] for one in AXES if one in dataset.coords], value.values, error)
-    codes = codes.reshape(value.shape) * dataset.converged.values
-    return dataset.assign(checksum=value.copy(data=codes))
+    return dataset.assign(checksum=dataset.converged * codes.reshape(value.shape))

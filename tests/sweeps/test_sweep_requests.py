@@ -59,6 +59,15 @@ def sizes_of(points, size):
     return [len(batch.requests) for batch in sweep.divide(points, size)]
 
 
+@pytest.mark.parametrize("size", [1, 2, 10, 100, 300])
+def test_batches_are_equal_within_an_eighth_or_a_row(size):
+    points = points_of(amplitude=list(range(1000)))
+    sizes = sizes_of(points, size)
+    assert len(sizes) == pytest.approx(2000 / size, rel=0.1)
+    assert max(sizes) - min(sizes) <= max(2, 0.25 * size)
+    assert sum(sizes) == 2000
+
+
 def test_long_rows_are_cut_along_the_velocity():
     axis = [float(value) for value in range(1, 200)]
     sizes = sizes_of(points_of(velocity=axis), 50)
