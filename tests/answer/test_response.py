@@ -5,6 +5,7 @@ import pytest
 import reference_march
 
 from microslip.answer.along import response
+from microslip.foundation.errors import InputError
 from microslip.scene.hertz import HERTZ
 from microslip.scene.pressure import Pressure
 from microslip.theory import hertz
@@ -63,6 +64,9 @@ def test_a_response_goes_on_where_another_one_ended():
     assert np.allclose(rest.force_forward, whole.force_forward[59:], atol=1e-9)
     energy = whole.dissipated_energy[59:] - whole.dissipated_energy[59]
     assert np.allclose(rest.dissipated_energy, energy, atol=1e-9)
+    for other in ({"poisson": 0.3}, {"pressure": "ring:inner=0.5"}):
+        with pytest.raises(InputError, match=f"^{[*other][0]} = .*that of the state"):
+            response(path, path, state=first, **other)
 
 
 def test_full_slip_stays_while_sliding_goes_on_and_unloads_as_masing_says():

@@ -8,6 +8,7 @@ import numpy as np
 import pandas as pd
 import pytest
 import xarray as xr
+from bad_input_tables.odd_quantities import Q
 from stubs import in_process, new_process
 from stubs.eq6_map import map_of
 
@@ -142,7 +143,7 @@ LINES = [
     (f"{POINT} --poisson 0.1 --nu=0.2", "--nu is given twice, as --poisson the first time"),
     ("predict transverse --amplitude 1 mm", "unrecognized arguments: mm"),
     ("predict transverse --table comma.csv", "line 2: '1,5 N' has a decimal comma, in load; "),
-    ("fold noise.csv --output new.csv --frequency '40 Hz'", " um: peak to peak at "),
+    ("fold noise.csv --output new.csv", " um: peak to peak at "),
     ("predict bore --rotation-amplitude 1deg", "has none; it needs amplitude in rad, frequency"),
     ("predict transverse --mu 0.3", "--load: needed; also missing: amplitude, frequency, speed"),
 ]
@@ -223,8 +224,22 @@ def at(velocity=0.15):
     return whole().microslip.at(velocity, 1.3)
 
 
+PATH, SQUARE = [0.0, 0.5, 1.0], np.eye(2)
+NO_ARRAYS = [Q(PATH, "um"), np.array([1, 2], "m8[s]"), np.array(["2020"], "M8[D]"), [1j, 2], "1"]
+NO_ARRAYS += [[True, False], ["1", "2"], np.array(["1"], object), [None, 1.0]]
+NO_ARRAYS += [np.ma.array(PATH, mask=[0, 1, 0]), xr.DataArray(PATH, attrs={"units": "mm"})]
+ARRAYS = [
+    lambda values: microslip.Pressure.from_array(values, [0, 1], SQUARE),
+    lambda values: microslip.Pressure.from_array([0, 1], [0, 1], values),
+    lambda values: microslip.response(PATH, load=values),
+    lambda values: microslip.Sampled.of_columns({"lateral": values}),
+    lambda values: microslip.fold(np.arange(3.0), {"load": values}),
+    lambda values: microslip.iwan(elements=2).force(values),
+]
+"""Functions of arrays."""
 CALLS = [
     *((at, {"velocity": value}, "velocity = ") for value in AT),
+    *((function, {"values": value}, "= ") for function in ARRAYS for value in NO_ARRAYS),
     *((microslip.solve, PLACE | {"velocity": value}, "velocity") for value in NO_NUMBERS),
     *((microslip.solve, PLACE | {"pressure": value}, "pressure") for value in NO_NAMES),
     (microslip.solve, PLACE | {"tolerance": list(range(10**5))}, "tolerance"),

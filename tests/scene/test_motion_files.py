@@ -55,7 +55,7 @@ ROWS = "0\n1\n0\n-1\n"
     [
         ("sideways\n" + ROWS, "sideways"),
         ("lateral [um]\n" + ROWS, "lateral has the unit um, which microslip predict accepts"),
-        ("lateral\n0\n1\n0\n", "lateral = 3: allowed are at least 4 rows"),
+        ("lateral\n0\n1\n0\n", "lateral = 3: the number of rows; allowed are at least 4"),
         ("lateral\n0\n1\nx\n-1\n", "line 4: lateral is 'x'; allowed: a number"),
         ("lateral\n0\n\n1\n0\n-1\n", "line 3: no number"),
         ("time\n" + ROWS, "no displacement and n"),

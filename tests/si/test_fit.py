@@ -264,7 +264,7 @@ GOOD = conditions() | {"friction": force(conditions())}
 THREE = {"speed": [1e-4, 1.0001e-4, 1.0002e-4], "amplitude": [U_LIM] * 3}
 MANY = {"speed": np.linspace(1e-3, 1.0, 201), "amplitude": [1e-7] * 201, "friction": np.ones(201)}
 REFUSED = [
-    (THREE | {"friction": [1.0, 1.1, 0.9]}, {}, "determine neither number: mu from"),
+    (THREE | {"friction": [1.0, 1.1, -0.9]}, {}, "neither number: mu from.* is row 3, where fric"),
     ({name: column[:2] for name, column in GOOD.items()}, {}, "2 rows; allowed are at least 3"),
     (MANY, {}, "with a map"),
     (conditions(), {}, "neither friction nor mu"),

@@ -4,6 +4,8 @@ import json
 
 import numpy as np
 import pytest
+from bad_input_tables.odd_quantities import Q
+from xarray import DataArray
 
 import microslip
 from microslip.app.cli import main
@@ -134,9 +136,39 @@ def test_times_within_half_a_unit_of_the_last_digit_are_equally_spaced(offset, f
     assert result.peak_to_peak("lateral")[0] == pytest.approx(2.0, abs=0.05)
 
 
-def test_a_saturated_signal_and_a_square_wave_have_no_such_value():
-    microslip.fold(FINE, {"lateral": np.clip(SINE, -0.8, 0.8)})
-    microslip.fold(FINE, {"lateral": np.sign(np.sin(2.0 * np.pi * FREQUENCY * FINE))})
+def test_a_saturated_signal_and_a_square_wave_are_within_the_error():
+    for wave, most in ((np.clip(SINE, -0.8, 0.8), 0.1), (np.sign(SINE - NOISE), 1.5)):
+        size, error = microslip.fold(FINE, {"lateral": wave}).peak_to_peak("lateral")
+        assert abs(size - np.ptp(wave)) <= error <= most
+
+
+def test_the_peak_is_within_the_error_for_any_number_of_samples_in_a_period():
+    rng, ratios = np.random.default_rng(3), []
+    for _ in range(100):
+        orders = np.arange(1, rng.integers(2, 7))
+        parts = [1.0, *rng.standard_normal(len(orders) - 1)] * np.exp(6j * rng.random(len(orders)))
+        parts *= 0.3 / orders**2
+
+        def wave(turns, parts=parts, orders=orders):
+            return 2.0 * np.real(np.exp(2j * np.pi * np.outer(turns, orders)) @ parts)
+
+        samples, noise = rng.uniform(4.0, 40.0), 10.0 ** rng.uniform(-6.0, -2.0)
+        time = np.arange(round(samples * rng.uniform(10.0, 200.0)))
+        lateral = wave(time / samples) + noise * rng.standard_normal(len(time)) + 1e-3 * time
+        result = microslip.fold(time, {"lateral": lateral}, frequency=1.0 / samples)
+        size, error = result.peak_to_peak("lateral")
+        ratios.append(abs(size - np.ptp(wave(np.linspace(0.0, 1.0, 10_001)))) / error)
+    assert np.mean(np.array(ratios) <= 1.0) > 0.9 and max(ratios) < 2.0
+
+
+def test_units_of_arrays_are_converted_or_refused():
+    plain = microslip.fold(FINE, {"lateral": 1e-6 * SINE})
+    time, lateral = Q(1e3 * FINE, "ms"), DataArray(SINE, attrs={"units": "um"})
+    result = microslip.fold(time, {"lateral": lateral})
+    assert result.frequency == pytest.approx(plain.frequency, rel=1e-12)
+    assert result.columns["lateral"] == pytest.approx(plain.columns["lateral"], rel=1e-6, abs=1e-12)
+    with pytest.raises(InputError, match="^time = .*: allowed is an array of numbers in s"):
+        microslip.fold(Q(FINE, "m"), {"lateral": SINE})
 
 
 TIME = np.arange(1000.0)
@@ -146,28 +178,34 @@ REFUSED = [
     (np.delete(np.round(FINE, 5), 12_000), {"lateral": SINE[1:]}, {}, "not equally spaced"),
     (None, WAVE, {}, "time = .*allowed are"),
     (TIME[::-1], WAVE, {}, "allowed are increasing times"),
-    ([0.0], {"lateral": [1.0]}, {}, "time = 1: allowed are at least 16"),
+    ([0.0], {"lateral": [1.0]}, {}, "time = 1: .*at least 16"),
     (TIME, WAVE, {"frequency": 0.002}, "frequency = 0.002: the record of 999 s has"),
     (TIME, WAVE, {"rows": 63}, "rows = 63: allowed is an even number"),
-    (TIME, {"lateral": np.zeros(9)}, {}, "allowed are as many rows as time: 1000"),
-    (TIME, {}, {}, "columns = .*allowed is one column or more"),
+    (TIME, {"lateral": np.zeros(9)}, {}, "lateral = 9: .*allowed is 1000, as in time"),
+    (TIME, {}, {}, "columns = {}: allowed is one column or more"),
     (TIME, TIME, {}, "columns = .*allowed is a mapping"),
-    (TIME, {"load": WAVE["lateral"] - 2.0}, {}, "load = .*allowed is a mean above 0"),
-    (TIME, {"lateral": np.full(1000, 0.1)}, {}, "columns = .*constant"),
-    (TIME, {"lateral": np.full(1000, 0.1)}, {"frequency": 0.04}, "constant"),
-    (TIME, WHITE, {"frequency": 0.04}, "times its standard error|periods of .* samples;"),
+    (TIME, {"load": WAVE["lateral"] - 2.0}, {}, "load = .*numbers >= 0"),
+    (TIME, {"lateral": np.full(1000, 0.1)}, {}, "lateral = 0.1: .*without an oscillation"),
+    (TIME, {"lateral": 0.1 * TIME}, {"frequency": 0.04}, "lateral = 0.0: .*without an oscillation"),
+    (TIME, WHITE, {"frequency": 0.04}, "frequency = 0.04: no component of the record"),
+    (FINE, {"lateral": SINE}, {"frequency": 250.0}, "frequency = 250.0: no component of the rec"),
     (TIME, {"lateral": np.sin(np.pi * 3.9e-3 * TIME)}, {}, r" [\d.]+ Hz, the strongest comp.*are"),
     (FINE, {"lateral": np.where(ROW % 400, SINE, -9999.0)}, {}, "lateral = -9999.0: this is row 0"),
-    (FINE, {"lateral": np.where(ROW < 12_500, 0.02 * SINE[0], SINE)}, {}, "time = .*throughout"),
+    (
+        FINE,
+        {"lateral": np.where(ROW < 12_500, 0.02 * SINE[0], SINE)},
+        {},
+        "smallest in part 3",
+    ),
     *(
         (RECORD, {"lateral": LATERAL}, {"frequency": factor * FREQUENCY}, "^frequency = ")
         for factor in (0.1, 0.5, 2.0)
     ),
     (FINE, {"lateral": swept(2.0)[1]}, {}, "frequency changes by about 2 Hz"),
     (FINE, {"lateral": np.where(ROW == 9, -999.2, SINE)}, {}, "-999.2: this is row 9, far"),
-    (FINE, {"lateral": np.where(ROW // 3500 == 3, 0.0, SINE)}, {}, "at rest or weak in part 5 "),
-    (FINE, {"lateral": (1.0 - 0.4 * FINE) * SINE}, {}, "amplitude changes by 16 %"),
-    (FINE, {"load": 0.5 + SINE}, {}, "load = -0.4.*: the smallest .*numbers >= 0"),
+    (FINE, {"lateral": np.where(ROW // 3500 == 3, 0.0, SINE)}, {}, "smallest in part 5 of"),
+    (FINE, {"lateral": (1.0 - 0.4 * FINE) * SINE}, {}, "amplitude changes by 20 %"),
+    (FINE, {"load": 0.5 + SINE}, {}, "load = -0.5.*: the smallest .*numbers >= 0"),
 ]
 
 

@@ -312,6 +312,9 @@ def response(
     if progress is not None and (isinstance(progress, type) or not callable(progress)):
         raise InputError("progress", progress, "allowed is a function of two arguments")
     problem = Problem(path, poisson=poisson, pressure=pressure_named(pressure))
+    for name in ("pressure", "poisson"):
+        if isinstance(state, Response) and getattr(problem, name) != getattr(state.problem, name):
+            raise InputError(name, str(getattr(problem, name)), "allowed is that of the state")
     model = limits.choose_model(problem)
     ladder = ladder_for(problem, model, tolerance)
 

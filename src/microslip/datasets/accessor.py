@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-from decimal import Decimal
 from functools import partial
-from numbers import Real
 from typing import Any
 
 import numpy as np
@@ -14,6 +12,7 @@ from microslip.config.quantities import AXES
 from microslip.datasets import interpolation
 from microslip.datasets.interpolation import ANY, SAME
 from microslip.datasets.variables import ANCILLARY, described
+from microslip.foundation.arguments import numbers
 from microslip.foundation.errors import InputError
 
 ALLOWED = "allowed is a finite number, or several"
@@ -108,24 +107,13 @@ def _coordinate(name: str, value: Any) -> xr.DataArray:
     with the dimension `name`.  Values in dask chunks are checked only when they are computed."""
     if isinstance(value, xr.DataArray) and value.chunks is not None:
         return value
-    if hasattr(value, "units") and not isinstance(value, xr.DataArray):
-        raise InputError(name, value, f"{ALLOWED}, without a unit")
-    if np.ma.is_masked(value):
-        raise InputError(name, value, f"{ALLOWED}, none of them masked")
-    try:
-        array = np.asarray(value)
-        if array.dtype.kind == "O" and all(isinstance(one, Real | Decimal) for one in array.flat):
-            array = array.astype(float)
-        good = array.dtype.kind in "iuf" and bool(np.isfinite(array).all())
-    except (TypeError, ValueError, OverflowError):
-        good = False
-    if not good:
+    array = numbers(name, value)
+    if not np.isfinite(array).all():
         raise InputError(name, value, ALLOWED)
     if isinstance(value, xr.DataArray):
         return value.astype(float)
     if array.ndim > 1:
         raise InputError(name, value, f"allowed are {array.ndim} dimensions with names (DataArray)")
-    array = array.astype(float)
     dims = (name,) * array.ndim
     return xr.DataArray(array, dims=dims, coords={name: (dims, array)})
 

@@ -76,15 +76,25 @@ def count(name: str, value: object, low: int, *, most: float, even: bool = False
     return int(value)
 
 
-def numbers(name: str, values: Any) -> Any:
-    """Convert an argument to an array of floats.  Raise an InputError that names the argument if
-    the conversion is impossible."""
+def numbers(name: str, values: Any, si: str = "") -> Any:
+    """Convert an argument to an array of floats in the unit `si`.
+
+    Numbers without a unit are not converted.  Raises InputError for masked values, for a wrong
+    unit, and for values that are no numbers, such as times and booleans.
+    """
     import numpy as np  # late, since configurations do not need NumPy
 
+    from microslip.foundation.units import plain_number, read  # late: it takes a while to load
+
+    unit = str(getattr(values, "units", getattr(values, "unit", "")))  # pint, xarray, astropy
     try:
-        array = np.asanyarray(values)
-        if array.dtype.kind in "iufO" and not np.ma.is_masked(array):  # object: such as Decimal
-            return np.array(values, float, order="C")
+        array = np.asanyarray(getattr(values, "magnitude", values))
+        if array.dtype.kind == "O":  # such as Decimal
+            array = np.vectorize(plain_number, [float])(array)
+        if array.dtype.kind in "iuf" and not np.ma.is_masked(array):
+            factor = 1.0 if unit in ("", "1", "dimensionless") else read(f"1 {unit}", si).si
+            return np.array(array, float, order="C") * factor
     except (TypeError, ValueError, OverflowError):
         pass
-    raise InputError(name, values, "allowed is an array of numbers, none of them masked")
+    allowed = f" in {si}, or without a unit" if si else " without a unit" if unit else ""
+    raise InputError(name, values, f"allowed is an array of numbers{allowed}, none of them masked")

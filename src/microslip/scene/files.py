@@ -120,11 +120,14 @@ HEADING = (
 )
 MATRIX = (
     "allowed: a header without numbers in columns, then one row of the matrix in each line up to "
-    "the end of the file, with decimal=comma after the path for decimal commas"
+    "the end of the file, with decimal=comma after the path for decimal commas, and such numbers "
+    "in double quotes if commas separate them"
 )
 ALONE = "allowed: pressures alone, or columns forward,lateral,pressure without pitch"
 NUMBER = re.compile(r"[+-]?(\d+[.,]?\d*|[.,]\d+)([eE][+-]?\d+)?|nan|inf|B", re.I | re.A)
 """Pattern of a cell of a matrix.  In Tekscan files, B marks a cell outside the sensor."""
+DECIMALS_ALONE = re.compile(r"0\d+", re.A)
+"""Pattern of a cell that contains only the decimals of a number, such as 05 in 1,05."""
 END = "@@"
 """Last line of Tekscan files."""
 LEAST_COORDINATES = 4
@@ -243,24 +246,27 @@ def _matrix(file: NamedFile, content: bytes) -> Values:
     for k, (line, row) in enumerate(zip(lines, rows, strict=True)):
         numbers, cells = sum(map(bool, map(NUMBER.fullmatch, row))), row[:width]
         problem, allowed = "", MATRIX
+        odd = next((j for j, cell in enumerate(cells) if not NUMBER.fullmatch(cell)), 0)
         counts = numbers > 1 or numbers and len(row) == len(rows[start])
         counts = counts and marks[k] == marks[start]
         if k <= start and counts and not NUMBER.fullmatch(row[0]) and numbers == len(cells) - 1:
-            problem, allowed = f"{line[:40]!r} looks like coordinates", ALONE
+            problem, allowed = f"cell 1 is {row[0][:40]!r}, as in a line of coordinates", ALONE
         elif k < start and counts:
-            problem = f"{line[:40]!r} has numbers"
+            problem = f"cell {odd + 1} is {row[odd][:40]!r} in a line with numbers"
         elif k >= start and (not any(row) or line.startswith("#")):
             problem = "no row of the matrix"
         elif k >= start and "" in cells:
             problem = f"cell {cells.index('') + 1} is empty, where 0 stands for no pressure"
         elif k >= start and len(cells) < width:
             problem = f"{len(cells)} cells, but {width} in another line"
+        elif k >= start and marks[k] == "," and any(map(DECIMALS_ALONE.fullmatch, cells)):
+            problem = "digits after a zero, as if commas were decimal"
         if problem:
             raise ValueError(f"line {k + 1}: {problem}; {allowed}")
     flat = ["0" if cell == "B" else cell for row in rows[start:] for cell in row[:width]]
     _refuse_many(len(flat))
     mark = "," if marks[start] == "," and file.decimal == "point" else ";"
-    text = "\n".join([f"pressure{mark}no", *(f"{cell}{mark}0" for cell in flat)])
+    text = "\n".join([f"pressure{mark}no", *(f'"{cell}"{mark}0' for cell in flat)])
     names, decimal = {"pressure": "", "no": ""}, DECIMALS[file.decimal]
     try:
         columns = read_table(text.encode(), names, decimal=decimal).numbers({"pressure": 0.0})

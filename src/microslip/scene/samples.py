@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import hashlib
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
@@ -307,30 +307,30 @@ def _spline(values: np.ndarray) -> CubicSpline:
 
 
 def checked_columns(
-    columns: Mapping[str, Any], names: Sequence[str], fewest: int, most: float
+    columns: Mapping[str, Any], units: Mapping[str, str], fewest: int, most: float
 ) -> dict[str, np.ndarray]:
     """Convert columns to arrays of one length.
 
-    names, fewest, most: names of the allowed columns, smallest number of rows and largest absolute
-    value.  Every column except the first can be None.  Raises InputError if a column is invalid, or
-    if both a load and an indentation are given.
+    units, fewest, most: units of the allowed columns, keyed by name; smallest number of rows;
+    largest absolute value.  Every column except the first can be None.  Raises InputError if a
+    column is invalid, or if both a load and an indentation are given.
     """
     if not isinstance(columns, Mapping):
         raise InputError("columns", columns, "allowed is a mapping of names to arrays")
     arrays: dict[str, np.ndarray] = {}
     for name, values in columns.items():
-        if name not in names:
-            raise InputError("columns", name, f"unknown; allowed are {', '.join(names)}")
+        if name not in units:
+            raise InputError("columns", name, f"unknown; allowed are {', '.join(units)}")
         if values is None:
             continue
-        out = arrays[name] = numbers(name, values)
+        out = arrays[name] = numbers(name, values, units[name])
         if out.ndim != 1:
-            raise InputError(name, out.shape, "allowed is an array of one dimension")
+            raise InputError(name, values, "allowed is an array with one number for each row")
         first, length = next((name, len(one)) for name, one in arrays.items())
         if length < fewest:
-            raise InputError(first, length, f"allowed are at least {fewest} rows")
+            raise InputError(first, length, f"the number of rows; allowed are at least {fewest}")
         if len(out) != length:
-            raise InputError(name, len(out), f"allowed are as many rows as {first}: {length}")
+            raise InputError(name, len(out), f"number of rows; allowed is {length}, as in {first}")
         if (unusual := ~(np.abs(out) <= most)).any():
             row = int(np.argmax(unusual))
             allowed = f"allowed are numbers from -{most:g} to {most:g}; this is row {row}"
@@ -346,7 +346,8 @@ def _rows_of(columns: Mapping[str, Any], fewest: int) -> tuple[np.ndarray, np.nd
     """Convert columns to three values. The first value is an array of the displacements, of shape
     (rows, 3). The second value is an array of the loads or indentations, of shape (rows,), or None.
     The third value is True if the second value is a load."""
-    arrays = checked_columns(columns, PLANE + NORMAL, fewest, LARGEST["amplitude"])
+    units = dict.fromkeys(PLANE + NORMAL, "")
+    arrays = checked_columns(columns, units, fewest, LARGEST["amplitude"])
     heights = [name for name in NORMAL if name in arrays]
     for name in heights:
         if arrays[name].min() < 0.0:

@@ -307,11 +307,12 @@ def fit(
         accuracy = TOLERANCE if tolerance is None else tolerance
         accuracy = read_quantity("tolerance", accuracy, TOLERANCES).si
         friction = _of_solver(about["rows"], motion, bodies.get("nu", 0.0), accuracy)
+    odd = about.pop("odd")
     about |= {"motion": motion, "understood": {"motion": motion} | texts | about["understood"]}
     result = _fitted(about, friction, bodies, level)
     if not result.mu_high < WIDEST_MU * result.mu_low:
         problem = f"mu from {result.mu_low:.3g} to {result.mu_high:.3g} fits as well with another"
-        problem = f"the rows determine neither number: {problem} u_lim; {MORE_ROWS}"
+        problem = f"the rows determine neither number: {problem} u_lim; {odd}; {MORE_ROWS}"
         raise InputError("measured", source_name(measured), problem)
     return result
 
@@ -372,7 +373,11 @@ def _read_rows(source: Any, shared: dict[str, Any], **form: str) -> dict[str, An
     same = np.unique([*rows.values()], axis=1).shape[1] == 1
     refuse(same, "all rows are of one condition; allowed: two or more conditions")
     sigma = numbers.get(f"{what}_error", np.full(count, np.nan))
+    shares = np.maximum(value / numbers["load"] ** (what == "friction"), 1e-300)
+    k = list(good)[int(np.argmax(np.abs(np.log(shares / np.median(shares)))))]
+    where = f"line {table.lines[k]}" if table.lines else f"row {k + 1}"
     return {
+        "odd": f"farthest from the other rows is {where}, where {what} is {columns[what][k]}",
         "quantity": what,
         "labels": {name: [cells[k] for k in good] for name, cells in table.labels.items()},
         "left_out": left_out,

@@ -5,6 +5,10 @@ period.  For a periodic motion, this mean is constant.  The difference between t
 drift is averaged over all whole periods.  The scatter between the periods gives the standard error
 of the average.
 
+The record is interpolated by cubic splines.  A spline multiplies a wave by a known factor, which is
+removed.  The spline also adds fast waves, most of which are discarded.  The error
+includes an estimate of the harmonics that the average omits.
+
 If the frequency drifts, the periods are averaged out of phase, and the average is too small.  The
 noise of neighbouring periods is uncorrelated.  Therefore, the variance of this slow phase drift
 equals the covariance of the phases of neighbouring periods.  The phase of harmonic m is m times the
@@ -23,28 +27,32 @@ import numpy as np
 
 from microslip.foundation.arguments import count, real
 from microslip.foundation.errors import InputError
-from microslip.scene.files import COLUMNS, EVEN
+from microslip.scene.files import COLUMNS, EVEN, UNITS
 from microslip.scene.samples import FEWEST_SAMPLES, NORMAL, UNUSUAL, checked_columns, unusual_rows
 
 FEWEST_PERIODS, FEWEST_PER_PERIOD = 4, 4
 """Smallest number of periods in a record, and smallest number of samples in a period.  At each end
 of the record, half a period is lost."""
+HIGHEST = 0.65
+"""Largest frequency of a harmonic, divided by the sampling rate.  Above one half, the harmonic is
+distinct from others if the samples of different periods lie at different places of the period."""
+RINGING, NOISY = 5.0, 2.0
+"""RINGING: error due to the omitted harmonics, divided by the sum of the last two complex
+amplitudes.  For a jump, whose amplitudes decrease like 1/k, the partial sum overshoots by 4.2 times
+the last amplitude (Gibbs).  NOISY: an amplitude within this number of standard errors counts as
+0."""
 ROWS, MOST_ROWS = 32, 10_000
 """Default number of samples in the period, and largest allowed number.  With more samples, the
 period contains more harmonics, but also more noise."""
 REFINEMENTS = 3
 """Number of corrections of the frequency.  After a correction, the remaining error of the frequency
 is due to the errors of the phases."""
-PARTS, MOST_PARTS, PERIODS_OF_PART = FEWEST_PERIODS, 20, 10
-"""Smallest number of parts of a record, largest number of parts, and number of periods in a part.
-The median amplitude of 10 noisy periods is rarely below one half of the mean."""
-STEADY = 0.5
-"""Smallest allowed ratio of the amplitude of a part to the mean amplitude.  If the ratio is below
-one half, the amplitude of the part is nearer to 0 than to the mean.  In such a part, the motion is
-considered to be interrupted."""
+MOST_PARTS, PERIODS_OF_PART = 20, 10
+"""Largest number of parts of a record whose amplitudes are compared, and number of periods in such
+a part."""
 LARGEST_CHANGE = 0.1
-"""Largest accepted difference between the amplitudes of two quarters of a record, divided by the
-mean amplitude."""
+"""Largest accepted difference between the amplitudes of two parts of a record, divided by the mean
+amplitude."""
 MOST_DECIMALS = 12
 """Times with at most this number of decimals count as rounded.  Times with more decimals need no
 allowance for rounding."""
@@ -64,10 +72,11 @@ of a sine is too small by at most 5e-6 of its amplitude."""
 CONSTANT = 1e-12
 """A column counts as constant if its variation, divided by its largest value, is at most this
 value.  This value allows for rounding errors."""
-NOT_CONSTANT = "constant; allowed is an oscillation"
-TREND, SLOWEST = 3, 3
-"""TREND: degree of the polynomial that is subtracted before the search for the frequency.  SLOWEST:
-smallest number of periods per record in this search."""
+SHORTER = "cut the record into shorter ones"
+LONGER = "use a longer record, or give the correct approximate frequency of the motion"
+NO_OSCILLATION = "in the first row, without an oscillation; allowed is an oscillating column"
+SLOWEST = 3
+"""Smallest number of periods per record in the search for the frequency."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -108,11 +117,14 @@ class Fold:
         The column is interpolated between its samples.  The standard error is an upper bound: twice
         the largest standard error of a sample.
         """
-        return _peak_to_peak(self.columns[name]), 2.0 * float(np.max(self.errors[name]))
+        size, missed = _peak_to_peak(self.columns[name])
+        return size, 2.0 * float(np.max(self.errors[name])) + missed
 
 
-def _peak_to_peak(values: np.ndarray) -> float:
-    return float(np.ptp(np.fft.irfft(np.fft.rfft(values), FINER * len(values)) * FINER))
+def _peak_to_peak(values: np.ndarray) -> tuple[float, float]:
+    """Return the peak-to-peak value, and its largest error due to the distance between points."""
+    fine = np.fft.irfft(np.fft.rfft(values), FINER * len(values)) * FINER
+    return float(np.ptp(fine)), float(np.abs(np.diff(fine, 2)).max() / 4.0)
 
 
 def fold(
@@ -125,7 +137,8 @@ def fold(
     time : array_like, shape (samples,)
         Equally spaced times, in s.  Each time may be rounded to its last digit.
     columns : mapping of array_like, shape (samples,)
-        Columns forward, lateral, angle, and load or indentation, in any units.
+        Columns forward, lateral, angle, and load or indentation, as numbers in any units.
+        Quantities with a unit, such as those of pint, are converted to m, rad and N.
     frequency : float or None
         Approximate frequency, in Hz, which is then refined.  Its error must correspond to less than
         half a period over the whole record.  The default is the frequency of the strongest
@@ -149,7 +162,9 @@ def fold(
     rows = count("rows", rows, 2 * FEWEST_SAMPLES, most=MOST_ROWS, even=True)
     step, rounding, names, values = _checked(time, columns)
     longest, typed = (len(values) - 1) * step, frequency is not None
-    hz = real("frequency", frequency, 0.0) if typed else _strongest(values) / (len(values) * step)
+    hz = _strongest(names, values) / (len(values) * step)
+    hz = real("frequency", frequency, 0.0) if typed else hz
+    absent = f"no component of the record; allowed is the frequency to {0.5 / longest:.3g} Hz"
     spline = CubicSpline(step * np.arange(len(values)), values - values.mean(axis=0))
     integral = spline.antiderivative()
 
@@ -158,62 +173,69 @@ def fold(
         return (integral(time + 0.5 / hz) - integral(time - 0.5 / hz)) * hz
 
     for refinement in range(REFINEMENTS + 1):
-        _check_periods(hz, longest, step, typed)
-        points = max(rows, math.ceil(1.0 / (hz * step)))
-        starts = 0.5 + np.arange(int(hz * longest * (1.0 + 1e-12)) - 1)
-        times = (starts[:, None] + np.arange(points) / points) / hz
-        # Fourier coefficients of each whole period, shape (periods, rows / 2 + 1, columns)
-        parts = np.fft.rfft(spline(times) - drift(times), axis=1)[:, : rows // 2 + 1] / points
-        parts[:, -1] = 0.0
+        _check_periods(hz, longest, step, frequency)
+        points, whole = max(rows, 2 * math.ceil(1.0 / (hz * step))), int(hz * longest + 1e-9) - 1
+        times = (0.5 + np.arange(whole)[:, None] + np.arange(points) / points) / hz
+        turns = hz * step * np.arange(min(rows // 2, math.ceil(HIGHEST / (hz * step))))
+        factors = points * np.sinc(turns) ** 4 * 3.0 / (2.0 + np.cos(2.0 * np.pi * turns))
+        # Fourier coefficients of each whole period, shape (periods, orders + 1, columns)
+        parts = np.fft.rfft(spline(times) - drift(times), axis=1)[:, : len(turns)]
+        parts /= factors[:, None]
         if refinement < REFINEMENTS:
             change, error, variance, order, column = _phases(parts)
             hz += change * hz
-    periods = np.fft.irfft(parts, rows, axis=1) * rows
-    mean, scatter = periods.mean(axis=0), periods.std(axis=0, ddof=1) / math.sqrt(len(periods))
+            _refuse(abs(hz - (frequency or hz)) * longest > 1.0, "frequency", frequency, absent)
+    harmonics = parts.mean(axis=0)
+    deviations = (parts - harmonics) / math.sqrt(whole * (whole - 1.0))
+    scatter = np.linalg.norm(np.fft.irfft(deviations, rows, axis=1) * rows, axis=0)
+    mean = np.fft.irfft(harmonics, rows, axis=0) * rows
+    noise = np.linalg.norm(deviations, axis=0)
+    certain = np.maximum(np.abs(harmonics) - NOISY * noise, 0.0)
+    omitted = certain[2:][-2:].sum(axis=0)
     power = np.abs(parts) ** 2
     # amplitude of the strongest harmonic in each period, the columns together
     sizes = np.sqrt((power[:, order] / np.maximum(power.mean(axis=(0, 1)), 1e-300)).sum(axis=-1))
-    cuts = np.array_split(sizes, min(max(len(sizes) // PERIODS_OF_PART, PARTS), MOST_PARTS))
-    medians = [float(np.median(one)) for one in cuts if len(one)]
-    steady = min(medians) / np.mean(medians)
-    problem = f"not periodic throughout: at rest or weak in part {np.argmin(medians) + 1} of "
-    problem += f"{len(medians)}, where the oscillation is only {100.0 * steady:.2g} % of its mean"
-    problem += "; allowed is a steady one; cut off this part"
-    _refuse(steady < STEADY, "time", longest, problem)
-    peaks = np.array([_peak_to_peak(one) for one in mean.T])
+    count_of_parts = min(max(whole // PERIODS_OF_PART, FEWEST_PERIODS - 1), MOST_PARTS)
+    means = np.array([one.mean() for one in np.array_split(sizes, count_of_parts)])
+    change, random = (one / means.mean() for one in (np.ptp(means), np.diff(sizes).std()))
+    change *= change > SIGNIFICANT * random / math.sqrt(2.0 * whole / len(means))
+    problem = f"the amplitude changes by {100.0 * change:.2g} %, and is smallest in part "
+    problem += f"{np.argmin(means) + 1} of {len(means)}; allowed are {100.0 * LARGEST_CHANGE:g} %"
+    _refuse(change > LARGEST_CHANGE, "time", longest, f"{problem}; {SHORTER}")
+    peaks = np.array([_peak_to_peak(one)[0] for one in mean.T])
     ratios = peaks / np.maximum(2.0 * scatter.max(axis=0), 1e-300)
     best = int(np.argmax(ratios))
+    weak = ratios[best] <= SIGNIFICANT
+    _refuse(weak and typed, "frequency", frequency, absent)
     problem = f"peak to peak at {hz:.6g} Hz, only {ratios[best]:.2g} times its standard error; "
-    problem += f"allowed is at least {SIGNIFICANT:g} times; use a longer record, or give the "
-    problem += "correct approximate frequency of the motion"
+    problem += f"allowed is at least {SIGNIFICANT:g} times; {LONGER}"
     # checked before the drift, since the phases of noise look like a drift
-    _refuse(ratios[best] <= SIGNIFICANT, names[best], peaks[best], problem, 3)
-    _check_repeats(hz, parts, order, column)
-    change = _change(sizes)
-    problem = f"the amplitude changes by {100.0 * change:.2g} % between parts of the record; "
-    problem += f"allowed are {100.0 * LARGEST_CHANGE:g} %; cut the record into shorter ones"
-    _refuse(change > LARGEST_CHANGE, "time", longest, problem)
+    _refuse(weak, names[best], peaks[best], problem, 3)
+    beats = np.abs(np.fft.fft(parts[:, order, column]))
+    _refuse(beats[1:].max() > beats[0], "frequency", frequency or hz, absent)
+    between = np.arange(len(noise)) % order > 0
+    alike = np.all(np.abs(harmonics[between]) <= SIGNIFICANT * noise[between])
+    problem = f"the motion repeats {order} times in a period; allowed is {order * hz:.6g} Hz"
+    _refuse(order > 1 and alike, "frequency", frequency or hz, problem)
     loss = 0.5 * (2.0 * np.pi * np.arange(parts.shape[1])) ** 2 * variance
     drifted = math.sqrt(variance) / (PHASE_OF_A_DRIFT * longest)
     most = drifted * math.sqrt(LARGEST_LOSS / max(loss[order], 1e-300))
-    problem = f"the frequency changes by about {drifted:.2g} Hz during the record of "
-    problem += f"{longest:.6g} s; allowed are {most:.2g} Hz at this length; cut the record into "
-    problem += "shorter ones"
-    _refuse(loss[order] > LARGEST_LOSS, "time", longest, problem)
-    lost = np.fft.irfft(-np.expm1(-loss)[:, None] * parts.mean(axis=0), rows, axis=0) * rows
-    errors = scatter + np.abs(lost) + 0.5 * change * np.abs(mean)
+    problem = f"the frequency changes by about {drifted:.2g} Hz; allowed are {most:.2g} Hz"
+    _refuse(loss[order] > LARGEST_LOSS, "time", longest, f"{problem}; {SHORTER}")
+    lost = np.fft.irfft(-np.expm1(-loss)[:, None] * harmonics, rows, axis=0) * rows
+    errors = scatter + np.abs(lost) + 0.5 * change * np.abs(mean) + RINGING * omitted
     is_normal = np.array([name in NORMAL for name in names])
-    mean += values.mean(axis=0) * is_normal
+    mean += (values.mean(axis=0) + drift(times).mean(axis=(0, 1))) * is_normal
     below = np.maximum(-mean, 0.0) * is_normal
     for index in np.flatnonzero(below.max(axis=0) > LARGEST_LOSS * peaks)[:1]:
         allowed = "the smallest of the mean period; allowed are numbers >= 0"
         raise InputError(names[index], float(mean[:, index].min()), allowed)
-    first, last = drift(np.array([0.5 / hz, longest - 0.5 / hz]))
-    rates = (last - first) / (longest - 1.0 / hz)
+    first, end = drift(np.array([0.5 / hz, longest - 0.5 / hz]))
+    rates = (end - first) / (longest - 1.0 / hz)
     return Fold(
         frequency=float(hz),
         frequency_error=float(hz * math.hypot(error, rounding / longest)),
-        periods=len(periods),
+        periods=whole,
         columns=dict(zip(names, (mean + below).T, strict=True)),
         errors=dict(zip(names, (errors + below).T, strict=True)),
         drift=dict(zip(names, map(float, rates), strict=True)),
@@ -228,39 +250,14 @@ def _refuse(wrong: object, argument: str, value: Any, allowed: str, digits: int 
         raise InputError(argument, value, allowed)
 
 
-def _check_periods(frequency: float, longest: float, step: float, typed: bool) -> None:
+def _check_periods(hz: float, longest: float, step: float, frequency: float | None) -> None:
     """Raise InputError if the record has too few periods, or too few samples in a period."""
-    periods, samples = frequency * longest, 1.0 / max(frequency * step, 1e-300)
+    periods, samples = hz * longest, 1.0 / max(hz * step, 1e-300)
     wrong = periods < FEWEST_PERIODS or samples < FEWEST_PER_PERIOD
     problem = f"the record of {longest:.6g} s has {periods:.6g} periods of {samples:.3g} samples; "
     problem += f"allowed are at least {FEWEST_PERIODS}, of {FEWEST_PER_PERIOD} samples or more"
-    _refuse(typed and wrong, "frequency", frequency, problem)
-    hint = "if this is not the frequency of the motion, give its approximate frequency"
-    where = f"at {frequency:.6g} Hz, the strongest component"
-    _refuse(wrong, "time", longest, f"{where}, {problem}; {hint}")
-
-
-def _check_repeats(frequency: float, parts: np.ndarray, order: int, column: int) -> None:
-    """Raise InputError if `frequency` is not the frequency of the motion, but a multiple or a
-    fraction of that frequency."""
-    beats = np.abs(np.fft.fft(parts[:, order, column]))
-    problem = "the periods differ from each other more than they agree; allowed is the frequency "
-    _refuse(beats[1:].max() > beats[0], "frequency", frequency, f"{problem}of the motion")
-    mean, error = parts.mean(axis=0), parts.std(axis=0, ddof=1) / math.sqrt(len(parts))
-    between = np.arange(len(mean)) % order > 0
-    alike = (np.abs(mean[between]) <= SIGNIFICANT * error[between]).all()
-    problem = f"the motion repeats {order} times in a period; allowed is the frequency of the "
-    problem += f"motion, {order * frequency:.6g} Hz"
-    _refuse(order > 1 and alike, "frequency", frequency, problem)
-
-
-def _change(sizes: np.ndarray) -> float:
-    """Return the largest difference between the mean amplitudes of the quarters of a record,
-    divided by the mean of these amplitudes.  Return 0 if the difference is within the noise."""
-    means = [float(one.mean()) for one in np.array_split(sizes, PARTS) if len(one)]
-    noise = np.diff(sizes).std() / math.sqrt(2.0 * len(sizes) / PARTS)
-    change = float(np.ptp(means))
-    return change / float(np.mean(means)) if change > SIGNIFICANT * noise else 0.0
+    _refuse(wrong and frequency is not None, "frequency", frequency, problem)
+    _refuse(wrong, "time", longest, f"at {hz:.6g} Hz, the strongest component, {problem}; {LONGER}")
 
 
 def _phases(parts: np.ndarray) -> tuple[float, float, float, int, int]:
@@ -272,7 +269,6 @@ def _phases(parts: np.ndarray) -> tuple[float, float, float, int, int]:
     share = power / np.maximum(power.sum(axis=0), 1e-300)
     column = int(np.argmax(share[1:].max(axis=0)))
     order = int(np.argmax(share[1:, column])) + 1
-    _refuse(not power[order, column] > 0.0, "columns", 0.0, NOT_CONSTANT)
     turns = np.unwrap(np.angle(parts[:, order, column])) / (2.0 * np.pi * order)
     place = np.arange(len(turns)) - 0.5 * (len(turns) - 1)
     slope, spread = float(place @ turns / (place @ place)), float(place @ place)
@@ -289,14 +285,12 @@ def _checked(time: Any, columns: Mapping[str, Any]) -> tuple[float, float, list[
     _refuse("time" in columns, "columns", "time", f"unknown; allowed are {known}")
     given = {"time": () if time is None else time, **columns}
     fewest = FEWEST_PER_PERIOD * FEWEST_PERIODS
-    arrays = checked_columns(given, ("time", *COLUMNS), fewest, float(np.finfo(float).max))
+    arrays = checked_columns(given, {"time": "s"} | UNITS, fewest, float(np.finfo(float).max))
     times = arrays.pop("time")
-    _refuse(not arrays, "columns", None, f"allowed is one column or more of {known}")
+    _refuse(not arrays, "columns", dict(columns), f"allowed is one column or more of {known}")
     for name, array in arrays.items():
         for row in unusual_rows(array, is_record=True)[:1]:
             raise InputError(name, float(array[row]), f"this is row {row}, {UNUSUAL}")
-        negative = name in NORMAL and array.mean() <= 0.0
-        _refuse(negative, name, array.mean(), "the mean; allowed is a mean above 0")
     return *_step(times), list(arrays), np.stack(list(arrays.values()), axis=1)
 
 
@@ -328,15 +322,15 @@ def _step(time: np.ndarray) -> tuple[float, float]:
     return float(step), float(np.sqrt(12.0 * alike * np.mean(rest**2) / len(time)))
 
 
-def _strongest(values: np.ndarray) -> float:
-    """Return the number of periods of the strongest spectral component in the record."""
-    x = np.linspace(-1.0, 1.0, len(values))
-    trend = np.polynomial.polynomial.polyvander(x, TREND)
-    rest = values - trend @ np.linalg.lstsq(trend, values, rcond=None)[0]
-    moves = np.abs(rest).max(axis=0) > CONSTANT * np.abs(values).max(axis=0)
-    _refuse(not moves.any(), "columns", 0.0, NOT_CONSTANT)
-    window = np.hanning(len(values))[:, None]
-    spectrum = np.abs(np.fft.rfft(rest[:, moves] * window, axis=0)) ** 2
+def _strongest(names: list[str], values: np.ndarray) -> float:
+    """Return the number of periods of the strongest spectral component in the record.  Raises
+    InputError if no column oscillates."""
+    from scipy.signal import periodogram
+
+    _, spectrum = periodogram(values, window="hann", detrend="linear", axis=0)
+    moves = spectrum.sum(axis=0) > (CONSTANT * np.abs(values).max(axis=0)) ** 2
+    _refuse(not moves.any(), names[0], values[0, 0], NO_OSCILLATION)
+    spectrum = spectrum[:, moves]
     height = np.sqrt((spectrum / spectrum.sum(axis=0)).sum(axis=1))
     first = SLOWEST + int(np.argmax(height[SLOWEST:]))
     low, top, high = (height[min(n, len(height) - 1)] for n in (first - 1, first, first + 1))
