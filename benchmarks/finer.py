@@ -23,7 +23,7 @@ from microslip.answer.limits import choose_model
 from microslip.periodic.discretise import Resolution
 from microslip.periodic.run import Settings
 from microslip.periodic.simulate import simulate
-from microslip.periodic.static_limit import at_turning_points, edge_focus
+from microslip.periodic.static_limit import edge_focus
 from microslip.scene.hertz import HERTZ
 
 SWEPT = {"radial": ((96, 1), (192, 1)), "polar": ((64, 12), (96, 24))}
@@ -54,7 +54,7 @@ def reference(problem, tolerance, certified):
     stroke *= kind.cycles
 
     # the run for a loop's static limit computes the edge of the stick zone itself
-    by_itself = problem.velocity == 0.0 and not at_turning_points(problem)
+    by_itself = problem.velocity == 0.0 and not problem.on_a_line
     settings = Settings(focus=None if by_itself else edge_focus(problem, model))
 
     @lru_cache

@@ -188,7 +188,7 @@ def there(tmp_path, monkeypatch):
     for name, text in TABLES.items():
         (tmp_path / name).write_text(text)
     monkeypatch.chdir(tmp_path)
-    for name in ("refine.refine", "request.no_vibration", "request.closed_form"):
+    for name in ("refine.refine", "request.closed_form"):
         monkeypatch.setattr(f"microslip.answer.{name}", None)
     yield tmp_path
     assert {path.name: path.read_text() for path in tmp_path.iterdir()} == TABLES

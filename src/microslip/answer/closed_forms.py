@@ -30,23 +30,15 @@ Exact = dict[str, Estimate]
 motions) or `dissipation`."""
 
 
-def no_vibration(problem: Problem) -> Exact | None:
-    """Return the closed form for amplitude 0.  It applies to any model.  At other amplitudes, the
-    result is None."""
-    if not problem.motion.periodic or problem.amplitude != 0.0:
-        return None
-    work = _work(problem)
-    return _exact(1.0, ROUNDING, work, ROUNDING * abs(work))
-
-
 def closed_form(problem: Problem, tolerance: float) -> Exact | None:
     """Return the estimates of a closed form, or None if no closed form applies.
 
-    Closed forms exist in four cases.  The first case is the steady state of a motion without
-    oscillation.  In the steady state, every point slips in the direction of its rigid velocity.
-    The second case is the limit of vanishing velocity.  The third case is motion along one line at
-    nu = 0.  The fourth case is fast sliding.  In fast sliding, the midpoint of the bounds in
-    theory/exact.py is used if the midpoint is accurate to within the tolerance.
+    Closed forms exist in five cases.  At amplitude 0, the friction is 1 for every model.  The
+    second case is the steady state of a motion without oscillation.  In the steady state, every
+    point slips in the direction of its rigid velocity.  The third case is the limit of vanishing
+    velocity.  The fourth case is motion along one line at nu = 0.  The fifth case is fast sliding.
+    In fast sliding, the midpoint of the bounds in theory/exact.py is used if the midpoint is
+    accurate to within the tolerance.
 
     Parameters
     ----------
@@ -56,6 +48,9 @@ def closed_form(problem: Problem, tolerance: float) -> Exact | None:
         Absolute tolerance of the friction.
     """
     motion, velocity = problem.motion, problem.velocity
+    if problem.amplitude == 0.0:
+        work = _work(problem)
+        return _exact(1.0, ROUNDING, work, ROUNDING * abs(work))
     if problem.drive is not None:
         return _fast_sliding(problem, tolerance) if motion.name in ON_A_SPRING else None
     if not motion.periodic:

@@ -14,7 +14,6 @@ steps increases with the square root of the stroke and with the natural frequenc
 from __future__ import annotations
 
 import math
-from bisect import bisect_left
 from dataclasses import dataclass, replace
 from typing import NamedTuple
 
@@ -24,7 +23,7 @@ from microslip.contact.path import LONG_STROKE
 from microslip.contact.registry import MODELS
 from microslip.foundation.arguments import SMALLEST_TOLERANCE
 from microslip.periodic.discretise import Resolution, contact_of, path_of
-from microslip.periodic.static_limit import SLOW_LOOP, at_turning_points
+from microslip.periodic.static_limit import SLOW_LOOP
 from microslip.scene.problem import Problem
 
 ORDER = 2
@@ -95,7 +94,10 @@ class Ladder:
         """
         if self.imposed:
             return (self.start,)
-        first, last = self._first(tolerance), self._first(SMALLEST_TOLERANCE)
+        decades = np.log10(LOOSEST / np.minimum([tolerance, SMALLEST_TOLERANCE], LOOSEST))
+        # rounding of the power must not skip a level
+        least = (1.0 - 1e-9) * self.start * RATIO**decades
+        first, last = np.minimum(np.searchsorted(LEVELS, least), len(LEVELS) - 1)
         return LEVELS[min(first, last + 1) : last + 2]
 
     @property
@@ -107,12 +109,6 @@ class Ladder:
         """
         coarser = self.start / self.imposed
         return LOOSEST * coarser ** (ORDER if coarser > 1.0 else 1.0 / math.log10(RATIO))
-
-    def _first(self, tolerance: float) -> int:
-        """Return the index in LEVELS of the first level at a tolerance."""
-        least = self.start * RATIO ** math.log10(LOOSEST / min(tolerance, LOOSEST))
-        # rounding of the power must not skip a level
-        return min(bisect_left(LEVELS, (1.0 - 1e-9) * least), len(LEVELS) - 1)
 
 
 class Kind(NamedTuple):
@@ -164,7 +160,8 @@ def ladder_for(
     cells: int | None = None,
     steps: int | None = None,
 ) -> Ladder:
-    """Choose the `Ladder` for a problem.
+    """Choose the `Ladder` for a problem.  Its first level has the imposed resolution, if there is
+    one.
 
     Parameters
     ----------
@@ -179,7 +176,18 @@ def ladder_for(
         Imposed number of cells, and imposed number of steps in a full period; None if not imposed.
     """
     motion, refined = problem.motion, MODELS[model].axes(problem)
-    kind = _kind(problem, model)
+    mirrored = problem.straight and problem.half_period_mirror
+    slow = motion.periodic and problem.drift < SLOW_LOOP
+    if motion.periodic and problem.velocity == 0.0 and problem.on_a_line:
+        kind = STATIC
+    elif motion.loads:
+        kind = LOAD
+    elif model == "cartesian":
+        kind = SQUARES
+    elif motion.rotates:
+        kind = ROTATION if motion.half_disc else WHOLE_DISC
+    else:
+        kind = LOOP if slow and not mirrored else TRANSLATION
     longer = min(max(problem.stroke, 1.0), LONG_STROKE) ** (1 / ORDER) * motion.cycles
     angles = ANGLES_OF_ROTATION if motion.rotates else ANGLES_OF_TRANSLATION
     ladder = Ladder(
@@ -188,36 +196,11 @@ def ladder_for(
         steps=kind.steps * longer if motion.periodic else 0.0,
         cells=1.0 if "cells" in refined else 0.0,
     )
-    return _imposing(ladder, tolerance, cells, steps)
-
-
-def _kind(problem: Problem, model: str) -> Kind:
-    """Return the `Kind` object that describes a problem."""
-    motion = problem.motion
-    on_a_line = at_turning_points(problem)
-    if motion.periodic and problem.velocity == 0.0 and on_a_line:
-        return STATIC
-    if motion.loads:
-        return LOAD
-    if model == "cartesian":
-        return SQUARES
-    if motion.rotates:
-        return ROTATION if motion.half_disc else WHOLE_DISC
-    mirrored = problem.straight and problem.half_period_mirror
-    slow = motion.periodic and problem.drift < SLOW_LOOP
-    return LOOP if slow and not mirrored else TRANSLATION
-
-
-def _imposing(ladder: Ladder, tolerance: float, cells: int | None, steps: int | None) -> Ladder:
-    """Change a ladder so that its first level has the imposed resolution.
-
-    If only the number of steps is imposed, the number of cells follows from the tolerance.  If only
-    the number of cells is imposed, the number of steps is the larger of two values. One value
-    follows from the tolerance, and the other from the number of cells.
-    """
     cells, steps = cells if ladder.cells else None, steps if ladder.steps else None
     if cells is None and steps is None:
         return ladder
+    # if only the number of steps is imposed, the number of cells follows from the tolerance; if
+    # only the number of cells is imposed, the number of steps also follows from this number
     level = max(ladder.levels(tolerance)[0], cells or 0)
     rings = ladder.cells * level if cells is None else cells
     half = ladder.steps * level if steps is None else steps // 2

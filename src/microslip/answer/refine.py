@@ -34,6 +34,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
+from itertools import repeat
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -150,23 +151,21 @@ def refine(
     runs: dict[tuple[int, int], Run] = {}
     goal, answer, order = tolerance, None, math.nan
     guess, effort, periods, reason, largest = None, Effort(), 0.0, "", 0
+    numbers = range(len(problems))
     try:
         for level in ladder.levels(tolerance):
             if level < ladder.levels(goal)[0] or order < 0.0 and (0, level // 2) not in runs:
                 continue
-            places = [(0, level // 4), (0, level // 2), *((k, level) for k in range(len(problems)))]
-            for place in places:
-                if place in runs:
-                    continue
-                number, at = place
-                runs[place] = one = run(problems[number], ladder.resolution(at), guess)
-                effort, periods = effort + one.effort, max(periods, one.periods)
-                reason = reason or one.reason
-                if number == 0 and at > largest:
-                    guess, largest = one, at
-            estimates, order = _estimates(
-                [runs[place] for place in places], ladder, goal, name, energy_unit, drive_work
-            )
+            every = []
+            for number, at in [(0, level // 4), (0, level // 2), *zip(numbers, repeat(level))]:
+                if (number, at) not in runs:
+                    one = run(problems[number], ladder.resolution(at), guess)
+                    effort, periods = effort + one.effort, max(periods, one.periods)
+                    runs[number, at], reason = one, reason or one.reason
+                    if number == 0 and at > largest:
+                        guess, largest = one, at
+                every.append(runs[number, at])
+            estimates, order = _estimates(every, ladder, goal, name, energy_unit, drive_work)
             finest = ladder.resolution(level)
             values = {
                 "finest": runs[0, level],
@@ -210,35 +209,36 @@ def _estimates(
     follow.  `goal` is the largest accepted resolution error of the value `name`.  The other
     arguments have the same meaning as for `refine`.
     """
-    three, others, imposed = runs[:3], runs[3:], ladder.imposed > 0.0
-    common = {"periodicity": 0.0, "solver": 0.0}
+    three, imposed = runs[:3], ladder.imposed > 0.0
+    periodicity, solver = 0.0, 0.0
     for weight, run in zip((0.0, 0.0, 1.0) if imposed else WEIGHTS, three, strict=True):
         # a run that did not converge has a weight of at least 1, since levels can agree by chance
         weight = max(abs(weight), 1.0) if run.reason else abs(weight)
         if weight:  # the errors of the other runs can be infinite
-            common["periodicity"] += float(weight * run.distance)
-            common["solver"] += float(weight * run.residual)
+            periodicity += float(weight * run.distance)
+            solver += float(weight * run.residual)
     accuracy = ladder.accuracy if imposed else min(goal, LOOSEST)
-    names = [name, *(other for other in three[-1].values if other != name)]
-    values = np.array([[one.values.get(other, np.nan) for other in names] for one in three])
-    limits = extrapolate(values)
+    names = [*dict.fromkeys([name, *three[-1].values])]
+    values = np.full((len(runs), len(names)), np.nan)
+    for row, run in zip(values, runs, strict=True):
+        row[:] = [*map(run.values.get, names, repeat(math.nan))]
+    limits, finest = extrapolate(values[:3]), values[2]
+    apart = READING_SAFETY * np.abs(values[3:] - finest).sum(axis=0)
     estimates: dict[str, Estimate] = {}
     for k, one in enumerate(names):
-        extrapolated, finest = float(limits.value[k]), float(values[-1, k])
         least, unit = SMALLEST_SHARE * accuracy, 1.0
         if one == "dissipation":
             # the energy of a small cycle (Mindlin) is proportional to the third power of the force,
             # and its upper bound is proportional to the force: the effect of a force error is
             # estimated by the geometric mean of the energy and this bound
-            unit, dissipated = energy_unit, abs(finest)
+            unit, dissipated = energy_unit, abs(float(finest[k]))
             scale = max(dissipated, (dissipated * energy_unit) ** 0.5)
             # for a velocity above 1, the tolerance is already proportional to the velocity
             least *= max(scale / max(1.0, abs(estimates[name].value)), drive_work)
-        value = finest if imposed else extrapolated
-        error = max(float(limits.error[k]), least) + abs(extrapolated - value)
-        errors = {"resolution": error} | {source: unit * e for source, e in common.items()}
-        if others:
-            apart = sum(abs(run.values.get(one, np.nan) - finest) for run in others)
-            errors["model"] = READING_SAFETY * apart
+        value = float(finest[k] if imposed else limits.value[k])
+        error = max(float(limits.error[k]), least) + abs(float(limits.value[k]) - value)
+        errors = {"resolution": error, "periodicity": unit * periodicity, "solver": unit * solver}
+        if len(runs) > len(three):
+            errors["model"] = float(apart[k])
         estimates[one] = Estimate(value, errors)
     return estimates, float(limits.order[0])

@@ -14,12 +14,11 @@ import math
 import time
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace
-from functools import cache
 from typing import TYPE_CHECKING, Any
 
 from microslip.answer import limits
 from microslip.answer.answer import CLOSED_FORM, Answer, Estimate, Result
-from microslip.answer.closed_forms import closed_form, no_vibration
+from microslip.answer.closed_forms import closed_form
 from microslip.foundation.arguments import is_real, without_array
 from microslip.foundation.errors import InputError
 from microslip.periodic.methods import SHIPPED, method_named
@@ -163,9 +162,10 @@ def answer_of(request: Request) -> Result:
         # under a constant force the length of the spring is constant
         request = request.at(drive=None)
         problem = request.problem
-    exact, tolerance = no_vibration(problem), request.tolerance
-    imposed = problem.velocity > 0.0 and not (request.cells is None and request.steps is None)
-    if not (exact or imposed) and request.chosen and request.method == SHIPPED:
+    exact, tolerance, velocity = None, request.tolerance, problem.velocity
+    imposed = velocity > 0.0 and not (request.cells is None and request.steps is None)
+    by_formula = request.chosen and request.method == SHIPPED and not imposed
+    if by_formula or problem.amplitude == 0.0:
         exact = closed_form(problem, tolerance or 0.0)
     if exact is None:
         return result_of_runs(request, runs(request, request.accuracy), tolerance)
@@ -243,27 +243,27 @@ def runs(
         unit = slope * unit + work
     repeats = drive is None and problem.motion.periodic and problem.velocity > 0.0
     repeats = repeats and request.method == SHIPPED
+    usual: Settings | None = None
 
-    @cache  # the search for the slip front is charged once
-    def settings() -> Settings:
-        place = problem, request.model, request.budget, request.progress
-        focus = edge_focus(*place) if drive is None else None
-        method = method_named(request.method)
-        return Settings(method, budget=request.budget, focus=focus, slope=slope)
-
-    def run(problem: Problem, resolution: Resolution, guess: Run | None) -> Run:
-        usual, place = settings(), (request.model, resolution, share * tolerance)
+    def run(one: Problem, resolution: Resolution, guess: Run | None) -> Run:
+        nonlocal usual
+        if usual is None:  # the search for the slip front is charged once
+            place = problem, request.model, request.budget, request.progress
+            focus = edge_focus(*place) if drive is None else None
+            method = method_named(request.method)
+            usual = Settings(method, budget=request.budget, focus=focus, slope=slope)
+        settings, how = usual, (request.model, resolution, share * tolerance)
         if request.progress is not None:
             request.progress(resolution)
-        first = simulate(problem, *place, guess, usual)
-        if first.converged or not repeats:
+        first = simulate(one, *how, guess, settings)
+        if not first.reason or not repeats:
             return first
-        tighter = replace(usual, tighter=True)
+        tighter = replace(settings, tighter=True)
 
         def run_at(velocity: float, guess: Run | None) -> Run:
-            return simulate(replace(problem, velocity=velocity), *place, guess, tighter)
+            return simulate(replace(one, velocity=velocity), *how, guess, tighter)
 
-        return second_attempt(first, run_at, problem.velocity, FASTEST_START / problem.unit_drift)
+        return second_attempt(first, run_at, one.velocity, FASTEST_START / one.unit_drift)
 
     every = problem, *problem.readings
     answer = refine(run, ladder, every, tolerance, name, energy_unit=unit, drive_work=work)
@@ -339,17 +339,21 @@ def result_of_runs(
         file_error = requested.by_source.get("model", 0.0) if problem.readings else 0.0
         if file_error > 0.5 * error:
             reason += f": the file's own resolution leaves {file_error:.1e} open"
-    names = ("friction", "dissipation" if problem.motion.periodic else "torque")
-    estimates = {name: answer.estimates[name] for name in names if name in answer.estimates} | more
+    estimates = {}
+    for one in ("friction", "dissipation" if problem.motion.periodic else "torque"):
+        if one in answer.estimates:
+            estimates[one] = answer.estimates[one]
     if "friction" not in more:
-        estimates["friction"] = within_friction(problem, estimates["friction"])
-    values = {name: one for name, one in answer.values.items() if name not in ("finest", "imposed")}
+        estimates["friction"] = _within_range(problem, estimates["friction"])
+    values = {**answer.values}
+    for unused in ("finest", "imposed"):
+        values.pop(unused, None)
     if request.budget.exhausted:
         values["effort"] = request.budget.taken
-    return request.result(estimates, reason, model=request.model, **values)
+    return request.result(estimates | more, reason, model=request.model, **values)
 
 
-def within_friction(problem: Problem, friction: Estimate) -> Estimate:
+def _within_range(problem: Problem, friction: Estimate) -> Estimate:
     """Clip the friction to its range. The range is 0 to 1, or -1 to 1 for motions that can propel
     the contact.
 

@@ -75,42 +75,6 @@ def theta_method(theta: float) -> Integrator:
 LONG_STROKE = 16.0
 """Stroke in u_lim above which the number of steps is constant.  For motion along a line, the steps
 of longer strokes are graded towards the turning points."""
-STRONGEST_GRADING = 0.8
-"""Largest grading of the steps."""
-GRADED_DRIFT = 0.02
-"""Drift per radian of phase, in u_lim, at which the grading is half its largest value."""
-GRADED_STROKE = 2.0
-"""Stroke in u_lim at which the grading is half its largest value."""
-
-
-def turning_point_steps(drift: float, stroke: float) -> tuple[float, float]:
-    """Return the grading of the steps towards the turning points, from 0 to 0.8, and half the width
-    of the zone of equal steps at a turning point, as a phase.
-
-    With the grading g, a step at a turning point is (1 - g) times as long as the mean step.  If
-    drift and stroke are small, most forward slip of a half period occurs near the turning points.
-    If the stroke is long, the whole contact slides soon after a turning point.
-
-    Outside the zone of equal steps, steps are proportional to the distance from the turning point.
-    For strokes up to LONG_STROKE, the width is infinite, so that the steps follow the grading
-    alone.  The slip reverses while the velocity of the oscillation is below u_lim per radian, or
-    below the drift.  This reversal takes the phase max(1, drift) / stroke.  Due to the term
-    LONG_STROKE**2 / stroke, the zone shrinks gradually for strokes above LONG_STROKE.  At the
-    stroke LONG_STROKE, the longest step is twice as long as the shortest.
-
-    Parameters
-    ----------
-    drift : float
-        Mean forward displacement per radian of phase, in u_lim.
-    stroke : float
-        Amplitude of the oscillation, in u_lim.
-    """
-    slow = 1.0 / (1.0 + drift / GRADED_DRIFT)
-    short = 1.0 / (1.0 + (stroke / GRADED_STROKE) ** 2)
-    width = math.inf
-    if stroke > LONG_STROKE:
-        width = max(1.0, drift, LONG_STROKE**2 / stroke) / stroke
-    return STRONGEST_GRADING * slow * short, width
 
 
 class Path(NamedTuple):
@@ -196,7 +160,7 @@ def phases_between(
 
     There are `steps` steps between neighbouring turning points.  Therefore, the path has
     (len(turns) - 1) * steps + 1 phases.  The steps are graded towards both turning points.  For
-    `grading` and `width`, see turning_point_steps.
+    `grading` and `width`, see discretise.path_of.
     """
     t = np.arange(steps + 1) * (np.pi / steps) - np.pi / 2
     t[-1] = np.pi / 2  # as in np.linspace, which takes longer

@@ -344,6 +344,7 @@ class Family(Generic[T]):
     ):
         self.argument, self.base, self.create = argument, base, lru_cache(8)(create)
         self.classes = {spec.name_of(one): one for one in classes}
+        self._last: dict[str, T] = {}
 
     def __call__(self, text: str | T) -> T:
         """Return the object for a name such as "power:exponent=1" or "file:measured.csv".  An
@@ -357,6 +358,8 @@ class Family(Generic[T]):
         """
         if isinstance(text, self.base):
             return cast(T, text)
+        if isinstance(text, str) and text in self._last:
+            return self._last[text]
         named, path = parse(text, self.argument), ""
         if named is not None and not named.is_code:
             return read_object(named, self.argument, self.create)
@@ -379,11 +382,14 @@ class Family(Generic[T]):
         parameters = [one.name for one in fields(cls)]
         numbers = spec.numbers_in(words, text, self.argument, name, parameters)
         try:
-            return _shared_object(cls, *sorted(numbers.items()))
+            shared = _shared_object(cls, *sorted(numbers.items()))
         except InputError as error:  # its text omits default values
             raise InputError(self.argument, text, error.allowed) from None
         except (Exception, SystemExit) as error:  # in a user's file
             raise InputError(self.argument, text, f"{path}: {described(error, path)}") from error
+        if named is None:  # files can change
+            self._last = {text: shared}
+        return shared
 
 
 @lru_cache(maxsize=128)

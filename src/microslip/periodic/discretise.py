@@ -15,12 +15,12 @@ import numpy as np
 
 from microslip.contact.contact import Contact, March, project
 from microslip.contact.path import (
+    LONG_STROKE,
     SDIRK2,
     Integrator,
     Path,
     make_path,
     phases_between,
-    turning_point_steps,
 )
 from microslip.contact.registry import MODELS
 from microslip.contact.rings import Focus
@@ -106,11 +106,32 @@ def contact_of(
     return contact if method.dress is None else method.dress(contact, **method.parameters)
 
 
+STRONGEST_GRADING = 0.8
+"""Largest grading of the steps."""
+GRADED_DRIFT = 0.02
+"""Drift per radian of phase, in u_lim, at which the grading is half its largest value."""
+GRADED_STROKE = 2.0
+"""Stroke in u_lim at which the grading is half its largest value."""
+
+
 def path_of(problem: Problem, contact: Any, steps: int, integrator: Integrator = SDIRK2) -> Path:
     """Build the path of a problem.  The path starts at a turning point.
 
     The path covers half a period if the second half is the mirror image of the first, and a whole
     period otherwise.
+
+    Steps are graded towards the turning points.  With the grading g, from 0 to 0.8, a step at a
+    turning point is (1 - g) times as long as the mean step.  If drift and stroke are small, most
+    forward slip of a half period occurs near the turning points.  If the stroke is long, the whole
+    contact slides soon after a turning point.
+
+    For motion along a line with a stroke above LONG_STROKE, there is a zone of equal steps at each
+    turning point, and `width` is half the width of this zone as a phase.  Outside the zone, steps
+    are proportional to the distance from the turning point.  The slip reverses while the velocity
+    of the oscillation is below u_lim per radian, or below the drift.  This reversal takes the phase
+    max(1, drift) / stroke.  Due to the term LONG_STROKE**2 / stroke, the zone shrinks gradually for
+    strokes above LONG_STROKE.  At the stroke LONG_STROKE, the longest step is twice as long as the
+    shortest.
 
     Parameters
     ----------
@@ -124,11 +145,14 @@ def path_of(problem: Problem, contact: Any, steps: int, integrator: Integrator =
     integrator : path.Integrator
         Time integrator; it sets the positions of the stages.
     """
-    grading, width = turning_point_steps(problem.drift, problem.stroke)
-    if contact.grading is not None:
-        grading = contact.grading
-    if not (problem.straight and problem.motion.periodic):
-        width = math.inf  # on a loop the slip can reverse at any phase
+    drift, stroke, grading, width = problem.drift, problem.stroke, contact.grading, math.inf
+    if grading is None:
+        slow = 1.0 / (1.0 + drift / GRADED_DRIFT)
+        short = 1.0 / (1.0 + (stroke / GRADED_STROKE) ** 2)
+        grading = STRONGEST_GRADING * slow * short
+    # on a loop the slip can reverse at any phase
+    if stroke > LONG_STROKE and problem.straight and problem.motion.periodic:
+        width = max(1.0, drift, LONG_STROKE**2 / stroke) / stroke
     phases = phases_between(problem.turns, steps, grading, width)
     return make_path(problem.displacement, phases, integrator, problem.depth)
 

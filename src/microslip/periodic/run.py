@@ -64,6 +64,7 @@ class Spent(SolverError):
     `reason` of the result."""
 
 
+@dataclass
 class Budget:
     """Counter of the effort of a point, with limits.
 
@@ -82,13 +83,15 @@ class Budget:
         Effort of all marches so far.
     exhausted : str
         Name of the exceeded limit, "work" or "time", otherwise empty.
+    began : float or None
+        Time of the first call of `take`.
     """
 
-    def __init__(self, most_work: float = math.inf, time_limit: float = math.inf):
-        self.most_work, self.time_limit = most_work, time_limit
-        self.taken = Effort()
-        self.exhausted = ""
-        self.began: float | None = None
+    most_work: float = math.inf
+    time_limit: float = math.inf
+    taken: Effort = Effort()
+    exhausted: str = ""
+    began: float | None = None
 
     def take(
         self, solves: int = 0, iterations: int = 0, unknowns: int = 0, *, next_work: int = 0
@@ -98,8 +101,14 @@ class Budget:
         Raises Spent if a limit is exceeded, or if the next march would exceed the limit on the
         work.  The next march is checked in advance because a fine mesh takes long to build.
         """
-        if solves:
-            self.taken += Effort.of(solves, iterations, unknowns)
+        taken = self.taken
+        self.taken = Effort(
+            taken.solves + solves,
+            taken.iterations + iterations,
+            taken.work + solves * unknowns,
+            taken.updates + iterations * unknowns,
+            taken.retried,
+        )
         if self.taken.work + next_work > self.most_work:
             self.exhausted = "work"
             raise Spent(f"the work that the point may take, {self.most_work:.3g}, is spent")

@@ -386,9 +386,9 @@ def _from_run(setup: Setup, run: Run, start: Start) -> Start | None:
     Returns None if the tractions of the run are unknown or cannot be interpolated.
     """
     contact, state = setup.contact, run.state
-    if state is None or not run.converged:
+    if state is None or run.reason:
         return None
-    start = start._replace(place=run.place, friction=run.mu)
+    start = start._replace(place=run.place, friction=run.values["friction"])
     if state.shape == (2, *contact.forward_position.shape):
         return start._replace(state=state, static_force=run.static_force, limit=run.limit)
     # the static limit, which has kinks, is computed on each mesh

@@ -126,14 +126,6 @@ class StaticLimit(NamedTuple):
     march: March
 
 
-def at_turning_points(problem: Problem) -> bool:
-    """Return whether the tractions at the turning points determine the static limit.
-
-    The result is true for a motion on a line under a constant load.
-    """
-    return problem.straight and not problem.motion.loads
-
-
 def limit_on_a_line(
     contact: Contact, oscillation: Callable, step_tolerance: float, budget: Budget | None = None
 ) -> StaticLimit:
@@ -319,7 +311,7 @@ def limit_run(
         Mask of the points that stick; None if it is unknown.
     """
     sticks = None
-    if at_turning_points(problem):
+    if problem.on_a_line:
         displacement, inner = problem.displacement, STEP_SHARE * tolerance
         if not contact.sticks:
             energy = loop_energy(contact, displacement)
@@ -424,7 +416,7 @@ def edge_focus(
     motion, drift = problem.motion, problem.drift
     if model not in ("radial", "polar") or not motion.periodic:
         return None
-    if at_turning_points(problem):
+    if problem.on_a_line:
         needed = problem.pressure != HERTZ and motion.half_disc and drift < SLOW_LINE
     else:
         slow = not motion.loads and model == "radial" and drift < SLOW_LOOP
@@ -451,7 +443,7 @@ def _edges_of(limit: Problem, settings: Settings, progress: Callable | None) -> 
     """Find the radii of the edges of the stick zone, for a problem at velocity 0."""
     motion, model = limit.motion, "polar" if limit.motion.rotates else "radial"
     edges = partial(stick_edges, limit, model, settings=settings, progress=progress)
-    if not at_turning_points(limit):
+    if not limit.on_a_line:
         resolution = SWEPT_RESOLUTION if motion.loads else LOOP_RESOLUTION
         resolution = replace(resolution, steps=resolution.steps * motion.cycles)
         return edges(resolution, TOLERANCE)[1]
@@ -470,7 +462,7 @@ def static_run(
 
     For the arguments and the result, see simulate.simulate.  The velocity of the problem is 0.
     """
-    if at_turning_points(problem) or settings.focus is not None:  # the edges are known
+    if problem.on_a_line or settings.focus is not None:  # the edges are known
         contact = contact_of(problem, model, resolution, settings)
         return limit_run(contact, problem, resolution, tolerance, settings)[0]
     runs, _ = stick_edges(problem, model, resolution, tolerance, settings=settings)

@@ -150,6 +150,9 @@ class Problem:
         Whether the second half of a period is the mirror image of the first half; see Motion.
     straight : bool
         Whether the oscillation alone follows a straight line; see Motion.
+    on_a_line : bool
+        Whether the motion is straight and the normal load is constant.  The tractions at the
+        turning points then determine the static limit.
     depth : callable or None
         Function that returns the indentation depth at a phase, divided by the reference depth.
         None if the load is constant.
@@ -173,6 +176,7 @@ class Problem:
     force: float | None = field(init=False, repr=False, compare=False)
     half_period_mirror: bool = field(init=False, repr=False, compare=False)
     straight: bool = field(init=False, repr=False, compare=False)
+    on_a_line: bool = field(init=False, repr=False, compare=False)
     depth: Callable | None = field(init=False, repr=False, compare=False)
 
     def __post_init__(self) -> None:
@@ -191,12 +195,14 @@ class Problem:
         for name, (low, high) in limits.items():
             object.__setattr__(self, name, real(name, getattr(self, name), low, high))
         motion, size = self.motion, 0.0 if self.amplitude is None else self.amplitude
+        straight = motion.straight and not self.follows
         depth = partial(motion.depth, amplitude=size, pressure=self.pressure)
         vars(self).update(  # the class is frozen
             size=size,
             force=None if self.drive is None else self.drive.force,
             half_period_mirror=motion.half_period_mirror and self.pressure.mirrored,
-            straight=motion.straight and not self.follows,
+            straight=straight,
+            on_a_line=straight and not motion.loads,
             depth=depth if motion.loads else None,
         )
 
