@@ -14,7 +14,7 @@ motion_named = Family("motion", Motion, NAMED, create_samples)
 """Function that returns the motion for a string such as "elliptic:forward=0.5,phase=90",
 "file:stroke.csv" or "mine/soft_square.py"."""
 MOTIONS = motion_named.classes
-"""The motions of the package: a mapping from name to subclass of Motion."""
+"""Mapping from the name of each motion of the package to its class."""
 
 
 CLASSES = Hertz, Ellipse, Power, Punch, Ring
@@ -22,4 +22,4 @@ pressure_named = Family("pressure", Pressure, CLASSES, create_pressure)
 """Function that returns the pressure for a string such as "power:exponent=1", "file:measured.csv"
 or "mine/blunt.py"."""
 PRESSURES = pressure_named.classes
-"""The pressures of the package: a mapping from name to subclass of Pressure."""
+"""Mapping from the name of each pressure of the package to its class."""

@@ -3,10 +3,10 @@
 A motion is given by equally spaced samples of one period.  The CSV file has one line for each
 sample.  The header line names one or more of the columns `forward`, `lateral`, `angle`, `load` and
 `indentation`.  A file cannot have both a `load` and an `indentation`.  The file omits the end point
-of the period, because this point equals the first point.  Without units, displacements are in
-u_lim, angles in u_lim / a, and loads and indentations are divided by their reference values.  Files
-with units are used for predictions in SI units; see si/strokes.py.  Options such as
-",decimal=comma" and ",encoding=cp1252" after the path describe the format.
+of the period, because this point equals the first point.  Values without units are dimensionless:
+displacements are divided by u_lim, angles by u_lim / a, and loads and indentations by their
+reference values.  Files with units are used for predictions in SI units; see si/strokes.py.
+Options such as ",decimal=comma" and ",encoding=cp1252" after the path describe the format.
 
 If there is a column `time`, it is used to check that the samples are equally spaced.
 
@@ -48,16 +48,17 @@ UNITS = {"forward": "m", "lateral": "m", "angle": "rad", "load": "N", "indentati
 FORM = UNITS | {"time": "s"}
 """SI unit of each column of a file."""
 EVEN_TIMES = 1e-2
-"""Largest allowed deviation of a time from equal spacing, divided by the spacing.  A deviation of
-this size changes the values of a sine with N samples.  Relative to the amplitude of the sine, the
-change is at most 2 pi EVEN_TIMES / N."""
+"""Largest allowed deviation of a time from equal spacing, divided by the spacing.  Consider a sine
+with N samples.  A deviation of this size changes a sample by at most 2 pi EVEN_TIMES / N times the
+amplitude of the sine."""
 
 
 def columns_of(table: Table, is_record: bool = False) -> dict[str, np.ndarray]:
     """Return the columns of a table of samples as arrays, in the units of the file.
 
     is_record: True for many periods.  Raises ValueError in three cases: a value is not a number or
-    is far outside of the others, there are no samples, or no column is a displacement or a load.
+    is far outside the range of the others, there are no samples, or no column is a displacement or
+    a load.
     """
     columns = {name: np.array(one) for name, one in table.numbers().items()}
     if not columns.keys() & set(COLUMNS):
@@ -134,8 +135,8 @@ LEAST_COORDINATES = 4
 """Evenly spaced values are interpreted as coordinates if there are at least this many values.
 Three pressures can be evenly spaced by chance."""
 EVEN = 0.05
-"""Largest difference between the steps of coordinates that count as evenly spaced, divided by the
-first step.  This value allows for coordinates rounded to 1/40 of the step."""
+"""Coordinates count as evenly spaced if the steps differ by at most this fraction of the first
+step.  This value allows for coordinates rounded to 1/40 of the step."""
 PITCH = re.compile(r"\d+\.?\d*(?:[eE][+-]?\d+)?|\.\d+", re.A)
 ALLOWED_PITCH = "allowed: a length such as 0.5 mm, or forward x lateral as in 0.5 mm x 0.6 mm"
 NETCDF = (".nc", ".nc4", ".cdf")
@@ -148,9 +149,9 @@ of netCDF have up to 16 MB."""
 VARIABLES = "allowed: a variable pressure with the dimensions and coordinates forward and lateral"
 
 Values = tuple[Sequence[np.ndarray], Mapping[str, str | None]]
-"""The result contains the coordinates, the pressures, and the unit of each of the three quantities.
-The coordinates are arrays of shapes (n,) and (m,), and the pressures are an array of shape (n,
-m)."""
+"""The result contains the two arrays of coordinates, the array of pressures, and the unit of each
+array. The coordinates are arrays of shapes (n,) and (m,), and the pressures are an array of shape
+(n, m)."""
 
 
 def create_pressure(file: NamedFile, content: bytes) -> Measured:
@@ -171,8 +172,8 @@ def create_pressure(file: NamedFile, content: bytes) -> Measured:
 
 
 def _factors(units: Mapping[str, str | None]) -> tuple[float, Units]:
-    """Return the ratio of the unit of lateral lengths to the unit of forward lengths.  Also returns
-    the units as `Units`."""
+    """Return the ratio of the unit of lateral lengths to the unit of forward lengths.  The second
+    result contains both units; see `Units`."""
     factors: dict[str, float | None] = {}
     for name, si in SI.items():
         unit = units[name] or ""
@@ -198,7 +199,7 @@ def _refuse_many(count: int) -> None:
 
 
 def _points(file: NamedFile, content: bytes) -> Values:
-    """Read a table with one point of the grid in each line."""
+    """Read a table in which each line contains one point of the grid."""
     form: Any = {"decimal": DECIMALS[file.decimal], "encoding": file.encoding}
     table = read_table(content, SI, complete=HEADING, **form)
     columns = {name: np.array(one) for name, one in table.numbers({"pressure": 0.0}).items()}
@@ -222,15 +223,16 @@ def _points(file: NamedFile, content: bytes) -> Values:
 
 def _distinct(column: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Return two arrays.  The first array contains the distinct coordinates in increasing order,
-    and has the shape (n,).  The second array contains the index of the coordinate of each point."""
+    and has the shape (n,).  For each point, the second array contains the index of its coordinate
+    in the first array."""
     values, which = np.unique(column, return_inverse=True)
     group = np.concatenate([[0], np.cumsum(np.diff(values) > SAME * np.ptp(values))])
     return values[np.unique(group, return_index=True)[1]], group[which.reshape(-1)]
 
 
 def _matrix(file: NamedFile, content: bytes) -> Values:
-    """Read a matrix of pressures.  The numbers are parsed as a table with one cell of the matrix in
-    each line."""
+    """Read a matrix of pressures.  The numbers are parsed as a table in which each line contains
+    one cell of the matrix."""
     forward, lateral, unit = _pitch(file.pitch)
     lines = lines_of(content, file.encoding)
     while lines and lines[-1].strip(";,\t ") in ("", END):
@@ -287,7 +289,7 @@ def _matrix(file: NamedFile, content: bytes) -> Values:
 
 
 def _split(line: str, decimal: str) -> tuple[str | None, list[str]]:
-    """Return the separator and the cells of a line of a matrix."""
+    """Split a line of a matrix, and return the separator and the cells."""
     marks = ";\t," if decimal == "point" or '"' in line else ";\t"
     unquoted = re.sub('"[^"]*"', "", line)
     separator = next(filter(unquoted.__contains__, marks), None)
@@ -296,7 +298,7 @@ def _split(line: str, decimal: str) -> tuple[str | None, list[str]]:
 
 
 def _pitch(text: str) -> tuple[float, float, Mapping[str, str | None]]:
-    """Return the forward and the lateral distance between the cells of a matrix.  Also returns the
+    """Return the forward and the lateral distance between neighbouring cells of a matrix, and the
     unit of each distance.
 
     text: a length such as "0.5 mm" for both distances, or two lengths such as "0.5 mm x 0.6 mm".

@@ -16,9 +16,9 @@ from microslip.foundation.errors import InputError
 
 AXES = ("forward", "lateral")
 READINGS = ("cells", "samples")
-"""Possible meanings of the values on a grid.  With "cells", each value is the mean over the cell
-around its point. A cell is one grid step wide.  The reading "samples" means that the values apply
-at the points and are interpolated bilinearly.  The pressure is 0 outside the grid."""
+"""Possible meanings of the values on a grid.  The reading "cells" means that each value is the mean
+over the cell around its point. A cell is one grid step wide.  The reading "samples" means that the
+values apply at the points and are interpolated bilinearly.  The pressure is 0 outside the grid."""
 FINE = 256
 """To compute u_lim and the torque, the contact is divided into this number of squares along each
 side."""
@@ -161,8 +161,10 @@ class Grid(NamedTuple):
     values: np.ndarray
 
     def loads(self, along: np.ndarray, across: np.ndarray) -> np.ndarray:
-        """Compute the load on each rectangle between n + 1 forward edges and m + 1 lateral
-        edges."""
+        """Compute the load on each rectangle of a grid.
+
+        The grid has n + 1 forward edges and m + 1 lateral edges.
+        """
         return self.forward.integrals(along) @ self.values @ self.lateral.integrals(across).T
 
     def coarsened(self) -> Grid:
@@ -192,9 +194,9 @@ def cropped(points: Sequence[np.ndarray], values: np.ndarray, reading: str) -> G
 
 
 def distances(x: np.ndarray, y: np.ndarray) -> np.ndarray:
-    """Compute the mean distance from the origin over each rectangle of a grid.
+    """For each rectangle of a grid, compute the mean distance of its points from the origin.
 
-    The edges of the rectangles are x and y.
+    x, y: coordinates of the edges of the rectangles.
     """
     areas = np.diff(x)[:, None] * np.diff(y)
     x, y = x[:, None], y[None, :]
@@ -250,7 +252,8 @@ def round_loads(cells: int, ring_loads: Callable, inner: float = 0.0) -> np.ndar
     """Compute the cell loads of a pressure that depends on the radius alone.
 
     The result is an array of shape (cells, cells) with the sum 1.  The pressure is divided into
-    RINGS thin rings.  The load of each thin ring is distributed uniformly along its middle circle.
+    thin rings, whose number is RINGS.  The load of each thin ring is distributed uniformly along
+    its middle circle.
 
     Parameters
     ----------

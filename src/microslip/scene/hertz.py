@@ -118,8 +118,8 @@ class Hertz(Pressure):
     largest = 1.5 / np.pi
 
     def ring_means(self, psi: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Compute the mean friction bound and the lever arm of the rings with the edges r =
-        sin(psi)."""
+        """For each ring between neighbouring edges r = sin(psi), compute the mean friction bound
+        and the lever arm."""
         radii = np.sin(psi)
         # the first moment of the bound is the integral of sin^2 cos^2 over each ring
         moment = np.diff(psi / 8 - np.sin(4 * psi) / 32)
@@ -127,7 +127,7 @@ class Hertz(Pressure):
         return hertz.ring_bounds(np.minimum(radii, 1.0)), moment / load
 
     def bound(self, r: np.ndarray | float, c: float = 1.0) -> np.ndarray:
-        """Return the friction bound at the radius r if the contact radius is c."""
+        """Return the friction bound at the radius r in a contact of radius c."""
         return 1.5 / np.pi * np.sqrt(np.maximum((c - r) * (c + r), 0.0))
 
     def depth(self, c: np.ndarray) -> np.ndarray:
@@ -143,7 +143,7 @@ class Hertz(Pressure):
         return np.cbrt(share) ** 2
 
     def load(self, r: np.ndarray | float, c: np.ndarray | float = 1.0) -> np.ndarray:
-        """Return the load within the radius r if the contact radius is c."""
+        """Return the load within the radius r in a contact of radius c."""
         return c**3 - np.maximum((c - r) * (c + r), 0.0) ** 1.5
 
 
@@ -159,7 +159,7 @@ class Ring(RoundPressure):
     b is `inner`.
 
     The pressure is the Hertz pressure of a line contact that is bent into a circle.  For a slender
-    torus, this pressure is an approximation. For a wide ring, it is an assumption.
+    torus, this pressure is an approximation. For a wide ring, this pressure is an assumption.
 
     Parameters
     ----------
@@ -208,8 +208,8 @@ class Ring(RoundPressure):
         return self._top * np.sqrt(np.maximum((r - self.inner) * (1.0 - r), 0.0))[()]
 
     def _ring_integrals(self, psi: np.ndarray, power: int) -> np.ndarray:
-        """Integrate the friction bound times 2 pi r^power over each ring between neighbouring radii
-        sin(psi)."""
+        """For each ring between neighbouring radii r = sin(psi), integrate (friction bound) * 2 pi
+        r^power over r."""
         at = np.arccos(np.clip((self._middle - np.sin(psi)) / self._half, -1.0, 1.0))
         turn = at[:-1, None] + np.diff(at)[:, None] * 0.5 * (_NODES + 1.0)
         r = self._middle - self._half * np.cos(turn)
@@ -230,8 +230,8 @@ class Ring(RoundPressure):
 
     @cached_property
     def G_star(self) -> float:
-        """G* in working units. This value equals the largest displacement under full slip of a
-        contact with G* = 1.
+        """G* in working units. This value equals the largest displacement in a contact with G* = 1
+        under full slip.
 
         Let m be 1 - ((r - s)/(r + s))^2.  A unit traction on a narrow ring of radius s causes a
         displacement at the radius r.  Per unit width of the ring, this displacement is 4 s/(r + s)

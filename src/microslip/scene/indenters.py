@@ -38,7 +38,7 @@ SMALLEST_CONTACT = 1e-100
 """Smallest contact radius. This limit keeps divisions by the contact radius finite."""
 _GRID = np.linspace(0.0, 1.0, 257)
 _CORRECTIONS = 6
-"""Number of Newton steps, starting from an initial guess from a table."""
+"""Number of Newton steps. The initial guess comes from a table."""
 _HALVINGS = 100
 """Number of bisections. This number is enough for full precision."""
 _STEP = 3e-4
@@ -54,7 +54,8 @@ class Indenter(RoundPressure):
     """Base class of axisymmetric indenters.
 
     A subclass defines `depth(c)`, which returns the indentation depth for the contact radius c.  At
-    the contact radius 1, the depth is 1.  With formulas, `slope` and `radius` are faster.
+    the contact radius 1, the depth is 1.  A subclass can also define `slope` and `radius` by
+    formulas. The numerical methods of this class are slower.
 
     Attributes
     ----------
@@ -74,7 +75,8 @@ class Indenter(RoundPressure):
         return (8.0 * near - far) / (12.0 * step)
 
     def radius(self, depth: np.ndarray) -> np.ndarray:
-        """Compute the contact radius at a depth, the inverse of `depth`, by bisection."""
+        """Compute the contact radius at a depth by bisection. This function is the inverse of
+        `depth`."""
         depth = np.asarray(depth, float)
         low, high = np.full(depth.shape, self.flat), np.ones(depth.shape)
         while np.any(self.depth(high) < depth):
@@ -102,7 +104,7 @@ class Indenter(RoundPressure):
         """Return a quadrature rule for integrals from r to c.
 
         The four arrays are the nodes x, the weights, the radii r, and the roots sqrt(x^2 - r^2).
-        The weights are dx / sqrt(x^2 - r^2).  The nodes are along a new last axis.
+        The weights are dx / sqrt(x^2 - r^2).  An additional last axis runs over the nodes.
         """
         radii, contact = np.broadcast_arrays(np.asarray(r, float), np.asarray(c, float))
         contact = np.maximum(contact, SMALLEST_CONTACT)[..., None]
@@ -117,13 +119,13 @@ class Indenter(RoundPressure):
         return radii * np.cosh(eta), step, radii, radii * np.sinh(eta)
 
     def bound(self, r: np.ndarray, c: float = 1.0) -> np.ndarray:
-        """Return the friction bound at the radius r if the contact radius is c."""
+        """Return the friction bound at the radius r in a contact of radius c."""
         x, weight, _, _ = self._rule(r, c)
         bound = self.G_star / np.pi * np.sum(weight * self.slope(x), axis=-1)
         return np.where(np.asarray(r, float) >= c, 0.0, bound)[()]
 
     def load(self, r: np.ndarray | float, c: np.ndarray | float = 1.0) -> np.ndarray:
-        """Return the load within the radius r if the contact radius is c."""
+        """Return the load within the radius r in a contact of radius c."""
         return (self._outside(0.0, c) - self._outside(r, c))[()]
 
     def _outside(self, r: np.ndarray | float, c: np.ndarray | float) -> np.ndarray:
@@ -283,8 +285,8 @@ class Punch(Indenter):
 
 
 def _above(flat: float, end: np.ndarray | float) -> tuple[np.ndarray, np.ndarray]:
-    """Return the nodes and the weights of a quadrature rule for integrals over the slope from the
-    flat end to `end`."""
+    """Return the nodes and the weights of a quadrature rule for integrals of the slope from the
+    radius of the flat end to the radius `end`."""
     nodes, weights = unit_rule(_NODES)
     # x = flat + (end - flat) s^2 removes the square root of the slope at the edge of a flat end
     return flat + (end - flat) * nodes**2, (end - flat) * 2.0 * nodes * weights

@@ -1,9 +1,9 @@
 """Motions: forward sliding combined with an oscillation (a wave) along one or more directions.
 
 *Forward* is the direction of sliding, and *lateral* is perpendicular to it.  If the angle is
-positive, points whose lateral coordinate is positive move forward.  Displacements are in u_lim,
-angles in u_lim / a, and time is the phase omega t.  For a motion of amplitude A, each wave adds the
-following term to the displacement along its direction:
+positive, points whose lateral coordinate is positive move forward.  The unit of displacements is
+u_lim, and the unit of angles is u_lim / a. The time is expressed as the phase omega t.  For a
+motion of amplitude A, each wave adds the following term to the displacement along its direction:
 
     A * share * sin(cycles * phase + lead)
 
@@ -41,7 +41,8 @@ HALF_PERIOD = (-np.pi / 2, np.pi / 2)
 MOST_CYCLES = 20
 """Largest number of cycles in a period."""
 DEGREES = (-1e6, 1e6)
-"""Range of the phase lead, in degrees.  The phase of a larger lead would be inaccurate."""
+"""Range of the phase lead, in degrees.  For a larger lead, the computed phase would be
+inaccurate."""
 WEAKER = {"rotates": True, "half_disc": False, "half_period_mirror": False}
 WEAKER |= {"straight": False, "propels": True}
 """Value of each attribute that makes the weaker assumption about the symmetry of a motion."""
@@ -89,8 +90,9 @@ class Motion(spec.Named):
     A subclass declares its waves, from which all symmetries are derived.  In a string such as
     "elliptic:forward=0.5,phase=30", the parameters after the name of the motion are the fields of
     the class.  `str` returns this string.  The motion's name is derived from the class name:
-    ContinuousBore has the name "continuous-bore".  A motion that is not a sum of waves overrides
-    `displacement` and the properties of the symmetries that it has.
+    ContinuousBore has the name "continuous-bore".  If a motion is not a sum of waves, its class
+    overrides `displacement`. The class also overrides those Python properties that state which
+    symmetries the motion has.
 
     Attributes
     ----------
@@ -165,8 +167,8 @@ class Motion(spec.Named):
     def components(self) -> dict[str, Wave]:
         """Waves with a nonzero share in the motion.
 
-        If there is a single wave, and no own displacement, its phase lead has no effect and is set
-        to 0.
+        If the motion is a single wave, and the class does not override `displacement`, the phase
+        lead has no effect and is set to 0.
         """
         waves = {name: wave for name, wave in self.waves.items() if wave.share}
         if len(waves) == 1 and type(self).displacement is Motion.displacement:
@@ -204,8 +206,8 @@ class Motion(spec.Named):
         return not self.moving >= {"angle", "lateral"}
 
     def _repeats(self, *signs: float, shift: float = np.pi) -> bool:
-        """Return whether, after a shift in phase, the displacements are multiplied by the three
-        signs, and the load is the same."""
+        """Return whether a shift in phase multiplies the three displacements by the three signs and
+        leaves the load unchanged."""
         phases = (LOOP + shift) % ENDS[1]
         now = np.vstack([self._loop, self._normal(LOOP)])
         later = np.vstack([self.moved(phases, 0.0, 1.0, 0.0), self._normal(phases)])
@@ -215,8 +217,8 @@ class Motion(spec.Named):
 
     @cached_property
     def half_period_mirror(self) -> bool:
-        """Whether the second half of a period is the first half with the lateral displacement and
-        the angle reversed.
+        """Whether the second half of a period equals the first half, except that the lateral
+        displacement and the angle have the opposite signs.
 
         If False, the time integration covers a whole period.
         """
@@ -241,17 +243,17 @@ class Motion(spec.Named):
         negative.
 
         Propulsion is impossible if a shift of the oscillation in time has the same effect as a
-        reversal of its forward component.  The shift is a fraction 1/(2 d) of the period, where d
+        reversal of the forward component.  The shift is a fraction 1/(2 d) of the period, where d
         divides the numbers of cycles of all components.  The oscillation cannot propel the contact
-        if, after this time, the forward component is reversed, the other components have the same
-        or the opposite values, and the load is the same as before.  The signs of the lateral
-        component and of the angle do not matter.  The reason is that, under a symmetric pressure,
-        two images of a solution are solutions as well.  The mirror image reverses the forward
-        component and the angle.  The point reflection q(-forward, -lateral) reverses the angle.
-        This image is a solution, because the influence of one point on another is an even function
-        of the vector between them.  The solution -q reverses all components.  Combinations of these
-        three images give every combination of signs.  In all images, the forward force has the sign
-        of the forward motion.
+        if this shift reverses the forward component, preserves or reverses each of the other
+        components, and preserves the load.  The signs of the lateral component and of the angle do
+        not matter.  The reason is that, under a symmetric pressure, two images of a solution are
+        solutions as well.  The mirror image reverses the forward component and the angle.  The
+        point reflection q(-forward, -lateral) reverses the angle. This image is a solution, because
+        the influence of one point on another is an even function of the vector between them.  The
+        solution -q reverses all components.  Combinations of these three images give every
+        combination of signs.  In each image, the forward force is multiplied by the same sign as
+        the forward motion.
         """
         signs = [(-1.0, a, b) for a in (1.0, -1.0) for b in (1.0, -1.0)]
         shifts = np.pi / np.arange(1, MOST_CYCLES + 1)
@@ -348,14 +350,14 @@ class Motion(spec.Named):
         return float(np.hypot(*self._loop[:2]).max())
 
     def focus(self, velocity: float, amplitude: float, pressure: Pressure) -> float | None:
-        """Return the radius of the kink in the traction towards which the rings are graded, or None
-        if there is no kink.
+        """Return the radius towards which the rings are graded. The traction has a kink at this
+        radius. The result is None if there is no kink.
 
         If the load oscillates, the result is the smallest contact radius divided by the largest.
-        For a translation, the result is the stick radius of a straight oscillation with the same
-        largest distance from the centre (Eq 8).  For a rotation, the result is Lubkin's stick
-        radius (Eq 30).  Lubkin's radius is derived for Hertz pressure, but a mesh graded towards it
-        does no harm under other pressures.
+        For a translation, consider a straight oscillation with the same largest distance from the
+        centre. The result is the stick radius of this oscillation (Eq 8).  For a rotation, the
+        result is Lubkin's stick radius (Eq 30).  Lubkin's radius is derived for Hertz pressure, but
+        a mesh graded towards it does no harm under other pressures.
         """
         if self.loads:
             smallest, largest = map(pressure.radius, self._extremes(amplitude, pressure))
@@ -368,7 +370,7 @@ class Motion(spec.Named):
         return within_rings(float(hertz.lubkin_stick_radius(turn * hertz.bore_unit(0.0))))
 
     def turns(self, velocity: float, amplitude: float) -> tuple[float, ...]:
-        """Return the phases at which the time integration starts, turns and ends.
+        """Return the phases of the start, the turning points and the end of the time integration.
 
         The time integration covers half a period or a whole period.  If the load oscillates, the
         integration begins at the smallest load.  A longitudinal motion v t + A sin t turns where
@@ -411,7 +413,7 @@ class Motion(spec.Named):
         return self._extremes(amplitude, pressure)[1] if self.loads else 1.0
 
     def mean_load(self, amplitude: float, pressure: Pressure) -> float:
-        """Compute the mean normal load, divided by its reference value."""
+        """Compute the mean normal load, divided by the reference load."""
         if not self.loads:
             return 1.0
         size, by_load = amplitude * self._normal.share, "load" in self.components
@@ -430,7 +432,7 @@ class Motion(spec.Named):
         closed form.
 
         The result is None if there is no closed form.  Velocity 0 stands for the static limit.  A
-        motion along the direction of sliding follows Masing's rule under every pressure with a
+        motion along the direction of sliding follows Masing's rules under every pressure with a
         known loading curve.  If only the load oscillates, there is a closed form for axisymmetric
         indenters (theory/oscillating_load.py).
         """

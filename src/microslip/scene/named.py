@@ -73,8 +73,8 @@ class ContinuousBore(Motion):
         return velocity * phase, np.zeros_like(phase), phase + 0.0
 
     def focus(self, velocity: float, amplitude: float, pressure: Pressure) -> float | None:
-        """Return the radius of the instantaneous centre of rotation (Eq 14).  Return None if the
-        centre is outside the contact."""
+        """Return the distance of the instantaneous centre of rotation from the contact centre (Eq
+        14).  Return None if the centre is outside the contact."""
         return within_rings(velocity) if velocity < 1.0 else None
 
 

@@ -44,11 +44,12 @@ from microslip.scene.grid import (
 )
 
 Units = tuple[float | None, float | None]
-"""Unit of the coordinates in m, and unit of the pressure in Pa.  Both units are None for
-dimensionless values."""
+"""Unit of the coordinates, expressed in m, and unit of the pressure, expressed in Pa.  Both units
+are None for dimensionless values."""
 NO_UNITS: Units = None, None
 COMPARED = 64
-"""Number of squares along each side, and of rings, for the comparison of two attributes."""
+"""Two attributes are compared on this number of squares along each side, or on this number of
+rings."""
 
 
 @dataclass(frozen=True)
@@ -120,7 +121,7 @@ class Pressure(spec.Named):
     of_load: ClassVar[Any] = None
     """of_load(share) returns the depth at which the load is `share` times the mean load."""
     load: ClassVar[Any] = None
-    """load(r, c) returns the load within the radius r if the contact radius is c; arrays
+    """load(r, c) returns the load within the radius r in a contact of radius c; arrays
     broadcast."""
 
     loading: ClassVar[Any] = None
@@ -145,9 +146,11 @@ class Pressure(spec.Named):
                     raise InputError("pressure", self.name, problem)
 
     def _pairs(self) -> Iterator[tuple[str, Any, Any, float]]:
-        """Yield quantities that must agree: names, two values, and the largest relative difference.
+        """Yield pairs of values that must agree. For each pair, yield the names, the two values,
+        and the largest allowed relative difference.
 
-        For pressures of the package, the differences are at most a quarter of the largest ones.
+        For the pressures of the package, each difference is at most a quarter of the allowed
+        difference.
         """
         if self.is_indenter:
             depth = np.linspace(0.0, 1.0, 9)
@@ -189,7 +192,7 @@ class Pressure(spec.Named):
     ) -> Measured:
         """Create a pressure from values on a regular grid.
 
-        The unit of length a is half the longer side of the smallest rectangle that contains all
+        The unit of length, a, is half the longer side of the smallest rectangle that contains all
         nonzero pressures.  The error estimate of friction includes the effect of the unknown
         pressure between the points.
 
@@ -243,23 +246,25 @@ class Pressure(spec.Named):
         return 2.0 * self.G_star
 
     def total(self, depth: np.ndarray) -> np.ndarray:
-        """Compute the load of an indenter at an array of depths >= 0, of any shape."""
+        """Compute the load of an indenter at each depth of an array. The depths must not be
+        negative."""
         radius = self.radius(depth)
         return self.load(radius, radius)
 
     def stick_radius(self, displacement: float) -> float | None:
         """Return the stick radius after a displacement in one direction from rest.
 
-        The displacement is in u_lim, and must be >= 0.  The stick radius is the contact radius at
-        the depth 1 - displacement (Ciavarella, Jaeger).  The result is 0.0 at full slip.  If the
-        pressure does not belong to an axisymmetric indenter, the result is None.
+        The displacement is in units of u_lim and must not be negative.  The stick radius is the
+        contact radius at the depth 1 - displacement (Ciavarella, Jaeger).  The result is 0.0 at
+        full slip.  If the pressure does not belong to an axisymmetric indenter, the result is None.
         """
         return float(self.radius(max(1.0 - displacement, 0.0))) if self.is_indenter else None
 
 
 @dataclass(frozen=True)
 class RoundPressure(Pressure):
-    """Base class of pressures that depend on the radius alone, computed from integrals over rings.
+    """Base class of pressures that depend on the radius alone. Their attributes are computed from
+    integrals over rings.
 
     A subclass defines two methods. `ring_loads` returns the integral of the friction bound over
     each ring, and `ring_moments` returns the integral of the bound times the radius.  The rings
@@ -272,8 +277,8 @@ class RoundPressure(Pressure):
     ring_moments: ClassVar[Any] = None
 
     def ring_means(self, psi: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Compute the mean friction bound and the lever arm of the rings with the edges r =
-        sin(psi)."""
+        """For each ring between neighbouring edges r = sin(psi), compute the mean friction bound
+        and the lever arm."""
         loads, moments, radii = self.ring_loads(psi), self.ring_moments(psi), np.sin(psi)
         # a ring without load needs a finite lever arm, too
         lever = np.where(loads > 0.0, moments / np.where(loads > 0.0, loads, 1.0), radii[1:])
@@ -288,8 +293,8 @@ class RoundPressure(Pressure):
 class Measured(spec.NamedByText, Pressure):
     """A pressure given by values on a grid; see `Pressure.from_array`.
 
-    The unit of length a is half the longer side of the smallest rectangle that contains all nonzero
-    pressures.  The contact rotates about the centre of this rectangle.
+    The unit of length, a, is half the longer side of the smallest rectangle that contains all
+    nonzero pressures.  The contact rotates about the centre of this rectangle.
 
     Attributes
     ----------
@@ -326,9 +331,9 @@ class Measured(spec.NamedByText, Pressure):
     ) -> Measured:
         """Create a pressure with the given name.
 
-        The attribute `readings` contains two further pressures.  The first pressure has the same
-        values, but the other meaning in `grid.READINGS`. The second pressure has the values at half
-        the resolution.  An InputError is raised in the same cases as by `grid.checked`.
+        The attribute `readings` contains two further pressures.  The first pressure interprets the
+        same values by the other entry of `grid.READINGS`. The second pressure has the values at
+        half the resolution.  Raises InputError in the same cases as `grid.checked`.
         """
         points, values, step = checked(forward, lateral, values)
         peak = float(values.max())
@@ -395,8 +400,8 @@ class Measured(spec.NamedByText, Pressure):
 
     @property
     def load_N(self) -> float | None:
-        """Integral of the pressure over the contact, in N. The integral is None if the values have
-        no units."""
+        """Integral of the pressure over the contact, in N. The value is None if the coordinates or
+        the pressures have no unit."""
         metre, pascal = self.units
         if metre is None or pascal is None:
             return None

@@ -7,8 +7,8 @@ far end of a spring.  The equations of motion are
     spring     m u'' + c u' + f = k (v t - u)
 
 Here u is the forward displacement of the body without the oscillation of the motion.  The forward
-force of the contact is f.  Units are mu F_z, u_lim and the time 1 / omega, where F_z is the normal
-load without oscillation.
+force of the contact is f.  The units are mu F_z for forces, u_lim for lengths, and 1 / omega for
+times. Here F_z is the normal load without oscillation.
 """
 
 from __future__ import annotations
@@ -28,7 +28,7 @@ from microslip.scene.motion import LOOP, Motion
 from microslip.scene.pressure import Pressure
 
 DRIVEN = {"force": -math.inf, "stiffness": 0.0, "mass": 0.0, "damping": 0.0}
-"""Smallest value of each number of a drive."""
+"""Smallest allowed value of each parameter of a drive."""
 
 
 class Drive(spec.Named):
@@ -106,7 +106,7 @@ class Spring(Drive):
 
 @lru_cache(maxsize=8)
 def _check(motion: Motion, pressure: Pressure) -> None:
-    """Check objects of classes whose `__post_init__` omits the one of the base class."""
+    """Repeat the checks of the base classes, because a subclass can replace `__post_init__`."""
     Motion.__post_init__(motion)
     Pressure.__post_init__(pressure)
 
@@ -207,7 +207,7 @@ class Problem:
         )
 
     def __str__(self) -> str:
-        """Describe the problem in one line, without default values."""
+        """Describe the problem in one line. Arguments with default values are omitted."""
         words = [f"{self.motion.name} velocity={self.velocity:.12g}"]
         if self.amplitude is not None:
             words.append(f"amplitude={self.amplitude:.12g}")
@@ -270,7 +270,7 @@ class Problem:
 
     @cached_property
     def stroke(self) -> float:
-        """Half the peak-to-peak displacement of the edge of the contact, in u_lim."""
+        """Half the peak-to-peak displacement of the contact edge, in units of u_lim."""
         return self.motion.stroke(self.size, self.poisson)
 
     @cached_property
@@ -282,7 +282,7 @@ class Problem:
 
     @cached_property
     def mean_load(self) -> float:
-        """Mean normal load over a period, divided by its reference value."""
+        """Mean normal load over a period, divided by the reference load."""
         if not self.motion.loads:
             return 1.0
         return float(self.motion.mean_load(self.size, self.pressure))

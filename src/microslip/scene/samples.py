@@ -60,8 +60,8 @@ class SampledPath(_Samples):
 
     @classmethod
     def of_columns(cls, columns: Mapping[str, Any]) -> SampledPath:
-        """Create the path from columns with the names in PLANE and NORMAL.  A quantity is constant
-        if its column is None.
+        """Create the path from columns. The allowed names of columns are listed in PLANE and
+        NORMAL.  A quantity is constant if its column is None.
 
         Raises
         ------
@@ -75,7 +75,7 @@ class SampledPath(_Samples):
     name = "path"
 
     def at(self, phase: np.ndarray, values: np.ndarray) -> np.ndarray:
-        """Interpolate values linearly at a phase.  The values are given at the rows."""
+        """Interpolate values linearly at a phase.  There is one value for each row."""
         return np.interp(phase, np.arange(len(values)), values)
 
     def displacement(
@@ -92,9 +92,10 @@ class SampledPath(_Samples):
         return float(self.depth(np.arange(len(self.rows)), amplitude, pressure).max())
 
     def lengths(self, pressure: Pressure) -> np.ndarray:
-        """Compute the largest displacement of a contact point between consecutive rows, in u_lim.
+        """For each pair of consecutive rows, compute the largest displacement of any contact point,
+        in units of u_lim.
 
-        If the indentation changes, the change in the local u_lim counts as a displacement.  The
+        If the indentation changes, the change in the local u_lim is added to the displacement.  The
         result has the shape (rows - 1,).
         """
         forward, lateral, angle = np.abs(np.diff(self.rows, axis=0)).T
@@ -108,8 +109,8 @@ class SampledPath(_Samples):
 class Sampled(spec.NamedByText, _Samples):
     """One period of a motion of any shape, given by equally spaced samples.
 
-    With the amplitude A, the indenter moves by A times the interpolated displacements.  A sample h
-    of the load or the indentation is replaced by 1 + A (h - 1).
+    At the amplitude A, the displacement of the indenter is A times the interpolated displacement.
+    A sample h of the load or the indentation is replaced by 1 + A (h - 1).
 
     Attributes
     ----------
@@ -133,8 +134,8 @@ class Sampled(spec.NamedByText, _Samples):
 
     @classmethod
     def of_columns(cls, columns: Mapping[str, Any]) -> Sampled:
-        """Create the motion from columns with the names in PLANE and NORMAL.  A quantity is
-        constant if its column is None.
+        """Create the motion from columns. The allowed names of columns are listed in PLANE and
+        NORMAL.  A quantity is constant if its column is None.
 
         Raises
         ------
@@ -177,8 +178,8 @@ class Sampled(spec.NamedByText, _Samples):
 
     @cached_property
     def cycles(self) -> int:
-        """Effective number of cycles per period: the root mean square of the numbers of cycles of
-        all harmonics.  The result is the largest value of all columns."""
+        """Effective number of cycles per period: the root mean square of the orders of the
+        harmonics, weighted by their power.  The result is the largest value of all columns."""
         values = self.rows if self.height is None else np.column_stack([self.rows, self.height])
         power = np.abs(np.fft.rfft(values - values.mean(axis=0), axis=0)) ** 2
         power = power[:, power.sum(axis=0) > 0.0]
@@ -227,13 +228,13 @@ class Sampled(spec.NamedByText, _Samples):
 
 
 FEWEST_SAMPLES = 4
-"""Smallest number of rows in a period.  The motion through every second row must also have this
-number of rows."""
+"""Smallest number of rows in a period.  The alternative motion through every second row is used
+only if it has at least this number of rows."""
 ROUGHER = 2.0
-"""If the last row equals the first row, the roughness is compared with and without the last row.
-If the ratio is above this value, the last row is the end of the period.  For waves of 4 to 64 rows
-without an end point, the ratio is below 1.9. Examples are cosines and pulses.  For a sine with its
-end point, the ratio is 3 to 1e6."""
+"""If the last row equals the first row, the roughness is computed with and without the last row. If
+the first roughness, divided by the second, is above this limit, the last row is the end of the
+period.  For waves of 4 to 64 rows without an end point, the ratio is below 1.9. Examples are
+cosines and pulses.  For a sine with its end point, the ratio is 3 to 1e6."""
 FEWEST_LEVELS = 4
 """Smallest number of different values in a column. In a column with fewer different values, no
 value counts as the mark of a missing sample.  Consider n equally spaced values. The first value is
@@ -245,7 +246,7 @@ ABSURD = 100.0
 range of the other values.  In a motion of 1000 rows, the rows next to the top of a sharp pulse can
 have a hundredth of the pulse's height."""
 NINES = re.compile(r"-?99(9+|9*\.9+)")
-"""Pattern of a number of nines, such as -9999 or -99.99."""
+"""Pattern of a number that consists of nines, such as -9999 or -99.99."""
 UNUSUAL = (
     "far outside of all others; allowed are measured values; such a value often marks a missing "
     "sample"
@@ -255,10 +256,10 @@ UNUSUAL = (
 def unusual_rows(values: np.ndarray, is_record: bool = False) -> np.ndarray:
     """Return the rows of values that probably mark missing samples.
 
-    The distance of these values from all others exceeds the range of the others.  In addition,
-    these values consist of nines (with or without noise), or they are equal and occur several times
-    in a record.  A value without a neighbour in time is also returned if it lies at least `ABSURD`
-    times the range away from the other values.
+    The distance of these values from all others exceeds the range of the others.  In addition, one
+    of three conditions is met.  First, the values consist of nines (with or without noise).
+    Second, the values are equal and occur several times in a record.  Third, the values have no
+    neighbours in time, and their distance from the others exceeds `ABSURD` times the range.
     """
     levels = np.unique(values)
     if len(levels) < FEWEST_LEVELS:
@@ -274,9 +275,11 @@ def unusual_rows(values: np.ndarray, is_record: bool = False) -> np.ndarray:
 
 
 def _ends_with_first(values: np.ndarray) -> bool:
-    """Return whether the last row is the end of the period.  If the last row is the end of the
-    period, it equals the first row. The motion is then smoother without the last row.  values:
-    array of shape (rows, columns)."""
+    """Return whether the last row is the end of the period.
+
+    In this case, the last row equals the first row, and the motion is smoother without the last
+    row.  values: array of shape (rows, columns).
+    """
     values = values / np.maximum(np.ptp(values, axis=0), np.finfo(float).tiny)
     longer, shorter = (
         np.sum(np.diff(np.concatenate([rows, rows[:4]]), n=4, axis=0) ** 2)
@@ -298,8 +301,8 @@ def uneven_row(time: np.ndarray, most: float) -> int | None:
 
 
 def _spline(values: np.ndarray) -> CubicSpline:
-    """Return the periodic cubic spline through one period of samples (along the first axis), as a
-    function of the phase."""
+    """Return the periodic cubic spline through one period of samples, as a function of the phase.
+    The samples are along the first axis."""
     from scipy.interpolate import CubicSpline  # imported here, because loading takes a while
 
     phase = np.linspace(0.0, 2.0 * np.pi, len(values) + 1)
@@ -309,7 +312,7 @@ def _spline(values: np.ndarray) -> CubicSpline:
 def checked_columns(
     columns: Mapping[str, Any], units: Mapping[str, str], fewest: int, most: float
 ) -> dict[str, np.ndarray]:
-    """Convert columns to arrays of one length.
+    """Convert columns to arrays of equal length.
 
     units, fewest, most: units of the allowed columns, keyed by name; smallest number of rows;
     largest absolute value.  Every column except the first can be None.  Raises InputError if a
@@ -344,8 +347,8 @@ def checked_columns(
 
 def _rows_of(columns: Mapping[str, Any], fewest: int) -> tuple[np.ndarray, np.ndarray | None, bool]:
     """Convert columns to three values. The first value is an array of the displacements, of shape
-    (rows, 3). The second value is an array of the loads or indentations, of shape (rows,), or None.
-    The third value is True if the second value is a load."""
+    (rows, 3). The second value is None, or an array of the loads or indentations with the shape
+    (rows,). The third value is True if the second value is a load."""
     units = dict.fromkeys(PLANE + NORMAL, "")
     arrays = checked_columns(columns, units, fewest, LARGEST["amplitude"])
     heights = [name for name in NORMAL if name in arrays]

@@ -17,20 +17,21 @@ follow for three motions:
   backward, and d = 0.
 
 For the transverse motion, the dissipated energy per radian equals the work, which is v mu + y
-<F_lateral cos t>. This energy is between v and v (1 - d) + y sqrt(d). The upper limit is at most v
-+ y^2 / (4 v). For the bore motion, consider the dissipated energy per radian, divided by phi.  This
-energy is at least v and at most v + 1 / (20 (v - 1)). Let b be the upper bound on d. Then both
-energies are at most v (1 + b / (4 - 2 b)). Longitudinal motions with v >= x obey the same bound.
+<F_lateral cos t>. This energy is at least v and at most v (1 - d) + y sqrt(d). The upper limit is
+at most v + y^2 / (4 v). For the bore motion, consider the dissipated energy per radian, divided by
+phi.  This energy is at least v and at most v + 1 / (20 (v - 1)). Let b be the upper bound on d.
+Then both energies are at most v (1 + b / (4 - 2 b)). The energy of longitudinal motions with v >= x
+obeys the same bound.
 
-The bounds apply to any nu and any stiffness. The functions take the dimensionless groups of the
-paper as arguments.
+The bounds apply to every Poisson's ratio and every stiffness. The functions take the dimensionless
+groups of the paper as arguments.
 
 Friction never decreases as the forward velocity increases. The reasons are that Coulomb's law at a
 given pressure is monotone, and that the half-space is elastic. For periodic states of the same
 oscillation at the velocities v1 and v2, it follows that (mu1 - mu2)(v1 - v2) >= 0. Assume that,
 after half a period, the forward oscillation is reversed and the load is the same. Then friction is
-an odd function of the velocity. Hence friction is never negative for v > 0. Other motions can
-propel the contact (Motion.propels).
+an odd function of the velocity. Hence friction is never negative for v > 0. Motions without this
+symmetry can propel the contact; see Motion.propels.
 
 For some motions under Hertz pressure, closed forms replace simulations. Stored results depend on
 this file and on the functions that it uses. Stored results do not depend on datasets/catalogue.py,
@@ -55,8 +56,8 @@ from microslip.theory import paper
 
 
 def largest_drop_transverse(velocity: float, amplitude: float) -> float:
-    """Return an upper bound on 1 - mu_macro under transverse oscillation, for velocity and
-    amplitude >= 0."""
+    """Return an upper bound on 1 - mu_macro under transverse oscillation, for a nonnegative
+    velocity and amplitude."""
     if amplitude == 0.0:
         return 0.0
     ratio = velocity / amplitude
@@ -64,7 +65,8 @@ def largest_drop_transverse(velocity: float, amplitude: float) -> float:
 
 
 def largest_drop_bore(velocity: float, amplitude: float) -> float:
-    """Return an upper bound on 1 - mu_macro under bore, for velocity >= 0 and amplitude >= 0."""
+    """Return an upper bound on 1 - mu_macro under bore, for a nonnegative velocity and
+    amplitude."""
     if amplitude == 0.0:
         return 0.0
     excess = velocity - 1.0
@@ -74,7 +76,7 @@ def largest_drop_bore(velocity: float, amplitude: float) -> float:
 
 
 def largest_drop_longitudinal(velocity: float, amplitude: float) -> float:
-    """Return an upper bound on 1 - mu_macro, for velocity >= 0 and amplitude >= 0. The bound is
+    """Return an upper bound on 1 - mu_macro, for a nonnegative velocity and amplitude. The bound is
     either 0 or 1."""
     return 0.0 if velocity >= amplitude else 1.0
 
@@ -113,11 +115,11 @@ which are floats."""
 
 
 LOOP = "elliptic"
-"""Name of the motions that oscillate in two directions. A parameter that is not given in the name
-is 1."""
+"""Name of the motions that oscillate in two directions. Parameters that are absent from the name
+have the value 1."""
 LOAD = "normal"
-"""Name of the motions whose normal load or indentation oscillates. A load that is not given in the
-name is 1."""
+"""Name of the motions whose normal load or indentation oscillates. If the name contains no load,
+the load is 1."""
 
 
 class Kinks(NamedTuple):
@@ -161,7 +163,8 @@ UNDER_ANY = {
     # 1 on.
     "normal:indentation=1": Kinks((1.0,), (0.0, 1.0, 1.0, 1.0, 0.0)),
 }
-"""Kinks under any pressure, in the units of the pressure. The keys are the names of the motions."""
+"""Kinks under every pressure, in the working units of that pressure. The keys are the names of the
+motions."""
 
 
 def kinks_of(motion: str, pressure: str = "hertz") -> Kinks:
@@ -177,9 +180,9 @@ def _of_family(motion: str) -> Kinks:
 
     The kink velocity of a loop is the largest velocity of the forward oscillation. At larger
     velocities, the contact never moves backward. Friction has no kink at this velocity. However, at
-    all amplitudes, this velocity is the scale over which friction changes. If the load oscillates,
-    the kink velocity equals the amplitude of the oscillation. Above a certain amplitude, contact is
-    lost during a part of the period.
+    all amplitudes, friction changes over a range of velocities of about this size. If the load
+    oscillates, the kink velocity equals the amplitude of the oscillation. Above a certain
+    amplitude, contact is lost during a part of the period.
     """
     name, _, rest = motion.partition(":")
     if name not in (LOOP, LOAD):
@@ -193,7 +196,8 @@ def _of_family(motion: str) -> Kinks:
 
 
 def kink_velocity(kinks: Kinks, amplitude: np.ndarray | float) -> np.ndarray:
-    """Return the kink velocity at each amplitude >= 0, as an array with the shape of `amplitude`.
+    """Return the kink velocity at each amplitude, as an array with the shape of `amplitude`. The
+    amplitudes must not be negative.
 
     `kinks.velocity` must not be empty.
     """

@@ -1,9 +1,9 @@
 """Constants and closed forms of a Hertz contact under normal load, tangential load and torsion.
 
-Unless a docstring states otherwise, quantities are in working units: the contact radius a, mu*F_z
-and u_lim are 1. Here u_lim is the displacement at which the whole contact slides. In working units,
-the reduced shear modulus is 3/4. Tractions are in mu*F_z/a^2, torques are in mu*F_z*a, and angles
-are in u_lim/a.
+Unless a docstring states otherwise, quantities are in working units, in which the contact radius a,
+the force mu*F_z and the length u_lim are 1. Here u_lim is the displacement at which the whole
+contact slides. In working units, the reduced shear modulus is 3/4. The unit of tractions is
+mu*F_z/a^2, the unit of torques is mu*F_z*a, and the unit of angles is u_lim/a.
 
 Every function accepts floats or arrays, broadcasts them, and raises ValueError if an argument is
 not finite or is outside its range.
@@ -21,8 +21,9 @@ import scipy
 Numbers = np.ndarray | float
 """A number, or an array of any shape."""
 IndenterPressure = Any
-"""Pressure under an axisymmetric indenter: any object with the attributes and methods G_star,
-stiffness, bound, depth, radius, of_load, load, loading and total of pressure.Pressure."""
+"""Pressure under an axisymmetric indenter. Any object is allowed that has the following attributes
+and methods of pressure.Pressure: G_star, stiffness, bound, depth, radius, of_load, load, loading
+and total."""
 G_STAR = 0.75
 """Reduced shear modulus 4G/(2-nu) in working units. The value follows from u_lim = 3 mu F_z / (4 G*
 a)."""
@@ -50,8 +51,8 @@ def checked(
 ) -> np.ndarray:
     """Check the range of `values`, and return them as a float array.
 
-    Raises ValueError if a value is not finite or is outside [low, high]. If `low_open` is true, the
-    value low is also refused.
+    Raises ValueError if a value is not finite or is outside [low, high]. If `low_open` is true, a
+    value equal to `low` also raises ValueError.
     """
     array = np.asarray(values, dtype=float)
     good = np.isfinite(array) & (array <= high) & ((array > low) if low_open else (array >= low))
@@ -64,20 +65,20 @@ def checked(
 
 
 def friction_bound(r: Numbers) -> Numbers:
-    """Return the friction bound g(r) under Hertz pressure, which is 3/(2 pi) sqrt(1 - r^2).
+    """Return the friction bound g(r) = 3/(2 pi) sqrt(1 - r^2) under Hertz pressure.
 
-    r: distance from the centre, as an array of any shape. Raises ValueError unless r >= 0. The
-    result is dimensionless. The result equals 0 outside the contact.
+    r: distance from the centre, as an array of any shape. Raises ValueError if r is negative or not
+    finite. The result is dimensionless. The result equals 0 outside the contact.
     """
     r = checked("r", r)
     return 1.5 / np.pi * np.sqrt(np.maximum((1 - r) * (1 + r), 0.0))
 
 
 def load_inside(r: Numbers) -> Numbers:
-    """Return the fraction of the Hertz load within the radius r, which is 1 - (1 - r^2)^(3/2).
+    """Return the fraction of the Hertz load within the radius r.
 
-    Raises ValueError unless r >= 0. The argument can have any shape. The result is dimensionless.
-    The result equals 1 for r >= 1.
+    This fraction is 1 - (1 - r^2)^(3/2). Raises ValueError if r is negative or not finite. The
+    argument can have any shape. The result is dimensionless. The result equals 1 for r >= 1.
     """
     return mindlin_force(np.minimum(checked("r", r), 1.0) ** 2)
 
@@ -85,9 +86,9 @@ def load_inside(r: Numbers) -> Numbers:
 def ring_bounds(edges: np.ndarray) -> np.ndarray:
     """Compute the mean friction bound of each ring between consecutive radii.
 
-    edges: n + 1 radii. Raises ValueError unless the radii are strictly increasing between 0 and 1.
-    Returns n dimensionless values. If each value is multiplied by the area of its ring, the sum is
-    the load between the first and the last edge.
+    edges: n + 1 radii. The radii must increase strictly and lie between 0 and 1; other radii raise
+    ValueError. Returns n dimensionless values. If each value is multiplied by the area of its ring,
+    the sum of the products is the load between the first and the last edge.
     """
     edges = checked("edges", edges, high=1.0)
     if edges.ndim != 1 or edges.size < 2 or not np.all(np.diff(edges) > 0):
@@ -103,9 +104,9 @@ def D(c: Numbers) -> Numbers:
     """Return the difference K(k) - E(k) of the elliptic integrals at the modulus k = sqrt(1 - c^2)
     (Eqs 25, 26).
 
-    Raises ValueError unless 0 < c <= 1. The argument can have any shape. The result is
-    dimensionless. For small c, D is about ln(4/c) - 1, so D tends to infinity as c tends to 0. D
-    decreases as c increases, and D(1) is 0.
+    The argument must be above 0 and at most 1; other values raise ValueError. The argument can have
+    any shape. The result is dimensionless. For small c, D is about ln(4/c) - 1, so D tends to
+    infinity as c tends to 0. D decreases as c increases, and D(1) is 0.
     """
     return _D_of_log(np.log(checked("c", c, high=1.0, low_open=True)))[()]
 
@@ -127,19 +128,20 @@ def D_half() -> float:
 def lubkin_angle(stick_radius: Numbers, poisson: float = 0.0) -> Numbers:
     """Return the angle of pure torsion from rest as a function of the stick radius (Eq 24).
 
-    Raises ValueError unless 0 < stick_radius <= 1 and 0 <= poisson <= 0.5. The arguments are
-    broadcast. Returns an angle in u_lim/a.
+    The stick radius must be above 0 and at most 1, and Poisson's ratio must be from 0 to 0.5. Other
+    values raise ValueError. The arguments are broadcast. Returns an angle in u_lim/a.
     """
     stick_radius = checked("stick_radius", stick_radius, high=1.0, low_open=True)
     return _twist_unit(poisson) * D(stick_radius)
 
 
 def lubkin_stick_radius(angle: Numbers, poisson: float = 0.0) -> Numbers:
-    """Return the stick radius after pure torsion from rest by `angle` (inverse of Eq 24).
+    """Return the stick radius after pure torsion by `angle` from rest (inverse of Eq 24).
 
-    Raises ValueError unless angle >= 0 in u_lim/a and 0 <= poisson <= 0.5. The arguments are
-    broadcast. Returns a radius above 0 and at most 1. At the angle 0, the radius is 1. Because the
-    centre never slips, a radius that would underflow is replaced by the smallest normal float.
+    Raises ValueError if the angle is negative or not finite, or if Poisson's ratio is outside 0 to
+    0.5. The arguments are broadcast. Returns a radius above 0 and at most 1. At the angle 0, the
+    radius is 1. Because the centre never slips, a radius that would underflow is replaced by the
+    smallest normal float.
     """
     target = checked("angle", angle) / _twist_unit(poisson)
     # Newton's method in ln c. As a function of ln c, D is concave and has the slope -E(k), between
@@ -158,8 +160,8 @@ def lubkin_stick_radius(angle: Numbers, poisson: float = 0.0) -> Numbers:
 def bore_angle(amplitude: Numbers, poisson: float = 0.0) -> Numbers:
     """Convert a bore amplitude phi~ to the angle phi0 = phi~ phi_lk(1/2) (Eq 27).
 
-    Raises ValueError unless amplitude >= 0 and 0 <= poisson <= 0.5. The arguments are broadcast.
-    Returns an angle in u_lim/a.
+    Raises ValueError if the amplitude is negative or not finite, or if Poisson's ratio is outside 0
+    to 0.5. The arguments are broadcast. Returns an angle in u_lim/a.
     """
     return checked("amplitude", amplitude) * _twist_unit(poisson) * D_half()
 
@@ -173,23 +175,25 @@ def bore_unit(poisson: float) -> float:
 def bore_amplitude(angle: Numbers, poisson: float = 0.0) -> Numbers:
     """Convert an angle to a bore amplitude (Eq 27, the inverse of bore_angle).
 
-    The amplitude is phi~ = phi0 / phi_lk(1/2). Raises ValueError unless angle >= 0 in u_lim/a and 0
-    <= poisson <= 0.5. The arguments are broadcast. Returns a dimensionless array.
+    The amplitude is phi~ = phi0 / phi_lk(1/2). Raises ValueError if the angle is negative or not
+    finite, or if Poisson's ratio is outside 0 to 0.5. The arguments are broadcast. Returns a
+    dimensionless array.
     """
     return checked("angle", angle) / (_twist_unit(poisson) * D_half())
 
 
 def _twist_unit(poisson: Numbers) -> np.ndarray:
     """Return the ratio of the torsion angle to the function D of Eqs 25 and 26. This ratio depends
-    on Poisson's ratio, because torsion depends on G, but u_lim depends on G* = 4G/(2-nu)."""
+    on Poisson's ratio, because torsion depends on G, whereas u_lim depends on G* = 4G/(2-nu)."""
     return 4 / (np.pi * (2 - checked("poisson", poisson, high=0.5)))
 
 
 def mindlin_force(u: Numbers) -> Numbers:
-    """Return the tangential force after the displacement u from rest, which is 1 - (1 - u)^(3/2).
+    """Return the tangential force 1 - (1 - u)^(3/2) after the displacement u from rest.
 
-    This expression is the formula of Cattaneo and Mindlin. The force is divided by mu*F_z, and is 1
-    for u >= 1. Raises ValueError unless u >= 0 in u_lim. The argument can have any shape.
+    This expression is the formula of Cattaneo and Mindlin. The force is divided by mu*F_z. For u >=
+    1, the force is 1. Raises ValueError if u is negative or not finite. The argument can have any
+    shape.
     """
     u = np.minimum(checked("u", u), 1.0)
     with np.errstate(divide="ignore"):  # ln 0 = -inf gives the force 1 of full sliding
@@ -197,10 +201,10 @@ def mindlin_force(u: Numbers) -> Numbers:
 
 
 def mindlin_stick_radius(u: Numbers) -> Numbers:
-    """Return the stick radius after the displacement u from rest, which is sqrt(1 - u) (Eq 8).
+    """Return the stick radius sqrt(1 - u) after the displacement u from rest (Eq 8).
 
-    Raises ValueError unless u >= 0 in u_lim. The argument can have any shape. The radius is in
-    units of a. The radius equals 0 for u >= 1.
+    Raises ValueError if u is negative or not finite. The argument can have any shape. The radius is
+    in units of a. The radius equals 0 for u >= 1.
     """
     return np.sqrt(1 - np.minimum(checked("u", u), 1.0))
 
@@ -210,8 +214,8 @@ def mindlin_traction(r: Numbers, u: Numbers) -> Numbers:
 
     The traction is g - g_c in the stick zone, and the friction bound g in the slip annulus
     (Cattaneo and Mindlin). Here g_c = 3/(2 pi) sqrt(c^2 - r^2) is the friction bound of an inner
-    contact of radius c = sqrt(1 - u). The formula is exact for nu = 0. Raises ValueError unless r
-    >= 0 and u >= 0 in u_lim. The arguments are broadcast. The result is dimensionless.
+    contact of radius c = sqrt(1 - u). The formula is exact for nu = 0. Raises ValueError if r or u
+    is negative or not finite. The arguments are broadcast. The result is dimensionless.
     """
     r, u = np.broadcast_arrays(checked("r", r), np.minimum(checked("u", u), 1.0))
     gap = 1 - u - r * r
@@ -225,11 +229,11 @@ def lubkin_share(r: Numbers, stick_radius: Numbers) -> Numbers:
     """Return the ratio tau/g of traction to friction bound at the radius r in pure torsion from
     rest.
 
-    Raises ValueError unless r >= 0 and 0 <= stick_radius <= 1. The arguments are broadcast. The
-    stick radius is 0 if all points slip. The ratio is between 0 and 1, equals 1 outside the stick
-    radius, and is independent of Poisson's ratio. The formula is the closed form of a superposition
-    of rotating punches (Lubkin 1951). The radii s of the punches range from c to 1, and a punch of
-    radius s rotates by -d phi_lk(s).
+    Raises ValueError if r is negative or not finite, or if the stick radius is outside 0 to 1. The
+    arguments are broadcast. The stick radius is 0 if all points slip. The ratio is between 0 and 1,
+    and equals 1 outside the stick radius. The ratio does not depend on Poisson's ratio. The formula
+    is the closed form of a superposition of rotating punches (Lubkin 1951). The radii s of the
+    punches range from c to 1, and a punch of radius s rotates by -d phi_lk(s).
     """
     r, c = np.broadcast_arrays(checked("r", r), checked("stick_radius", stick_radius, high=1.0))
     sticks = r < c
@@ -249,8 +253,9 @@ def lubkin_share(r: Numbers, stick_radius: Numbers) -> Numbers:
 def lubkin_traction(r: Numbers, stick_radius: Numbers) -> Numbers:
     """Return the circumferential traction at the radius r in pure torsion from rest.
 
-    Raises ValueError unless r >= 0 and 0 <= stick_radius <= 1. The arguments are broadcast. The
-    result is dimensionless and equals the friction bound in the slip annulus. See lubkin_share.
+    Raises ValueError if r is negative or not finite, or if the stick radius is outside 0 to 1. The
+    arguments are broadcast. The result is dimensionless. In the slip annulus, the result equals the
+    friction bound. See lubkin_share.
     """
     return lubkin_share(r, stick_radius) * friction_bound(r)
 
@@ -258,9 +263,9 @@ def lubkin_traction(r: Numbers, stick_radius: Numbers) -> Numbers:
 def lubkin_torque(stick_radius: Numbers) -> Numbers:
     """Return the torque of pure torsion from rest as a function of the stick radius.
 
-    Raises ValueError unless 0 <= stick_radius <= 1. The argument can have any shape. The torque is
-    in mu*F_z*a. For every Poisson's ratio, the torque is 0 at the stick radius 1 and
-    TORQUE_FULL_SLIP at the stick radius 0. The torque is the integral of lubkin_traction. The
+    The stick radius must be from 0 to 1; other values raise ValueError. The argument can have any
+    shape. The torque is in mu*F_z*a. For every Poisson's ratio, the torque is 0 at the stick radius
+    1 and TORQUE_FULL_SLIP at the stick radius 0. The torque is the integral of lubkin_traction. The
     torque also equals the sum of the torques of rotating punches whose radii s range from c to 1
     (Lubkin 1951).  A punch of radius s contributes (16/3) G s^3 (-d phi_lk(s)).
     """

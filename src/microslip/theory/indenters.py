@@ -116,7 +116,8 @@ def torsion_traction(pressure: IndenterPressure, r: np.ndarray, stick_radius: fl
     """Compute the circumferential traction of pure torsion inside the stick circle.
 
     The traction is a superposition of the tractions of rotating punches. Let c be the stick radius,
-    and t^2 = c^2 + (c^2 - r^2) tan^2 theta. Then the result is (2 r/pi) Integral g(t)/t d(theta).
+    and let t^2 be c^2 + (c^2 - r^2) tan^2 theta. Then the result is (2 r/pi) Integral g(t)/t
+    d(theta).
 
     Parameters
     ----------
@@ -147,8 +148,8 @@ def torsion_energy(pressure: IndenterPressure, angle: float, poisson: float = 0.
     By Masing's rules, the energy is 8 W - 4 T phi. Here phi is the amplitude of the angle, and W is
     the work of the first loading. The torque T is a sum over punches of all radii s. A punch of the
     radius s contributes (16/3) G s^3 (-d phi(s)). By integration by parts, the energy is 64 G
-    Integral_c^1 s^2 phi(s) (phi(c) - phi(s)) ds. For a sphere, this result is the formula of Lubkin
-    and Deresiewicz.
+    Integral_c^1 s^2 phi(s) (phi(c) - phi(s)) ds. For a sphere, this result agrees with the formula
+    of Lubkin and Deresiewicz.
 
     Parameters
     ----------
@@ -220,7 +221,7 @@ def _over_the_circle(
 ) -> float:
     """Integrate a function of the radius over a circle.
 
-    The function should behave like a square root at the edge.
+    Near the edge of the circle, the function should behave like a square root.
     """
     total = 0.0
     for start, end in ((0.0, min(kink, radius)), (min(kink, radius), radius)):

@@ -120,8 +120,8 @@ def loop_energy(amplitude: Numbers, curve: Callable = mindlin_force) -> Numbers:
     """Compute the dissipated energy of a force-displacement loop.
 
     The energy is 8 W(A) - 4 A F(A). Here W is the work of the first loading, that is, the integral
-    of the curve F from 0 to the amplitude A. For a sphere, the result is the formula of Mindlin and
-    Deresiewicz.
+    of the curve F from 0 to the amplitude A. For a sphere, the result agrees with the formula of
+    Mindlin and Deresiewicz.
 
     Parameters
     ----------
@@ -148,8 +148,8 @@ def loop_energy(amplitude: Numbers, curve: Callable = mindlin_force) -> Numbers:
 
 
 def _mean(v: np.ndarray, x: np.ndarray, curve: Function) -> np.ndarray:
-    """Return the mean force for 0 < v < x, where the motion turns back, as an array of shape
-    (n,)."""
+    """Return the mean force for velocities v between 0 and the amplitude x, as an array of shape
+    (n,). At these velocities, the motion turns back."""
 
     def travel(phase: np.ndarray) -> np.ndarray:
         return v * phase + x * np.sin(phase)
@@ -192,12 +192,14 @@ def _integral(function: Function, start: np.ndarray, end: np.ndarray) -> np.ndar
 _GRID = 1.0 - np.linspace(0.0, 1.0, 4097)
 """Contact radii in the table that is used to interpolate the ends of the intervals."""
 LOOP_ERRORS = 3.0
-"""Largest error on loops, divided by the largest error e on the first loading. The force on a
-branch of a loop is F(u_max) - 2 F(x) + 2 F(y). The error of each value of F is between 0 and e."""
+"""Largest error on loops, divided by the largest error e on the first loading. Let 2 x be the
+travel between the last two turning points, and let 2 y be the travel since the last one. Then the
+force on a branch of a loop is F(u_max) - 2 F(x) + 2 F(y). The error of each value of F is between 0
+and e."""
 
 
 FACTORS = 1e-100, 1e100
-"""Range of the factor between two units."""
+"""Allowed range of the factor between two units."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -242,8 +244,8 @@ class Iwan:
         """Error of the force on any path, including paths with many nested loops.
 
         The force of a slider is a Lipschitz function of the slip displacement, with the constant 1.
-        Hence the error on any path has an upper bound, which is the total variation of the error
-        along the first loading.
+        Hence the total variation of the error along the first loading is an upper bound on the
+        error on any path.
         """
         return 2.0 * float(self.force_error.sum()) + self.poisson_error
 
@@ -295,9 +297,10 @@ class Iwan:
 def with_elements(pressure: IndenterPressure, count: int) -> Iwan:
     """Create an Iwan model of an axisymmetric indenter at nu = 0 with `count` elements.
 
-    All intervals have nearly equal errors. An interval with the stiffness k and the width w in slip
-    displacement has the error k w / 8. The intervals therefore divide the sum of sqrt(k w) into
-    equal parts. The flat end of a punch is a separate interval.
+    All intervals have nearly equal errors. Let k be the stiffness of an interval, and let w be the
+    range of its slip displacements. The error of the interval is k w / 8. The sum of sqrt(k w) over
+    many narrow intervals is therefore divided into equal parts. The flat end of a punch is a
+    separate interval.
     """
     parts = np.sqrt(np.diff(pressure.depth(_GRID)) * np.diff(_GRID))
     measure = np.concatenate([[0.0], np.cumsum(parts)])
@@ -316,7 +319,7 @@ def with_elements(pressure: IndenterPressure, count: int) -> Iwan:
 
 
 def with_tolerance(pressure: IndenterPressure, tolerance: float) -> Iwan:
-    """Create an Iwan model for nu = 0 whose `error` is at most the tolerance.
+    """Create an Iwan model for nu = 0. The attribute `error` of the model is at most the tolerance.
 
     The number of elements is close to the smallest possible number.
     """

@@ -140,7 +140,7 @@ class _Motion:
     def kinks(
         self, low: float, high: float, later: Sequence[tuple[float, float]]
     ) -> Iterator[float]:
-        """Yield the contact radii at which phi equals one of its later minima.
+        """Yield the contact radii at which phi equals a later minimum of phi.
 
         The intervals `later` begin at these minima.
         """
@@ -156,8 +156,8 @@ class _Motion:
     def lack(
         self, start: np.ndarray, high: float, later: Sequence[tuple[float, float]]
     ) -> np.ndarray:
-        """Integrate phi - min phi over time. Each of the times `start` is the beginning of one
-        integral.
+        """Integrate phi - min phi over time. There is one integral for each time in `start`. The
+        integral begins at this time.
 
         The function phi increases from the time `start` to the time `high`, and also in each of the
         intervals `later`. The result has the shape (n,).

@@ -1,9 +1,10 @@
 """Closed forms of the paper, and exact static limits (v -> 0).
 
 All quantities are dimensionless. Lengths are divided by the contact radius a, forces by mu*F_z.
-Amplitudes are in u_lim for transverse motions (y~0), and in phi_lk(1/2) for bore motions (phi~).
-Velocities are in omega u_lim (transverse), a omega (continuous bore) or Omega phi0 a (oscillating
-bore). Forward is the direction of the macroscopic velocity, and lateral is perpendicular to it.
+The amplitude y~0 of a transverse motion is in units of u_lim. The amplitude phi~ of a bore motion
+is in units of phi_lk(1/2). The unit of velocity is omega u_lim for transverse motions, a omega for
+continuous bore, and Omega phi0 a for oscillating bore. Forward is the direction of the macroscopic
+velocity, and lateral is perpendicular to it.
 
 Every function accepts floats or arrays, broadcasts them, and raises ValueError if an argument is
 not finite or is outside its range.
@@ -29,9 +30,9 @@ def large_amplitude_transverse(velocity: Numbers, amplitude: Numbers) -> Numbers
 
     The rigid slider is the large-amplitude limit of the contact. The friction is (2/pi) K(m), where
     K is the complete elliptic integral of the first kind. The parameter is m =
-    -(amplitude/velocity)^2. The friction is 1 at amplitude 0, and 0 at velocity 0 for every
-    amplitude above 0. Raises ValueError unless velocity >= 0 and amplitude >= 0. The arguments are
-    broadcast.
+    -(amplitude/velocity)^2. At amplitude 0, the friction is 1. At velocity 0 and any amplitude
+    above 0, the friction is 0. Raises ValueError if the velocity or the amplitude is negative or
+    not finite. The arguments are broadcast.
     """
     velocity, amplitude = checked("velocity", velocity), checked("amplitude", amplitude)
     # K(-m) = q K'(q) with q = v/sqrt(v^2 + A^2) is accurate for every ratio v/A.
@@ -45,10 +46,10 @@ def large_amplitude_transverse(velocity: Numbers, amplitude: Numbers) -> Numbers
 
 
 def static_slider(amplitude: Numbers) -> Numbers:
-    """Return the static friction of a slider on a spring, which is sqrt(1 - amplitude^2) (Eq 7).
+    """Return the static friction sqrt(1 - amplitude^2) of a slider on a spring (Eq 7).
 
-    Raises ValueError unless amplitude >= 0. The argument can have any shape. The friction is 0 for
-    amplitude >= 1.
+    Raises ValueError if the amplitude is negative or not finite. The argument can have any shape.
+    The friction is 0 for amplitude >= 1.
     """
     amplitude = np.minimum(checked("amplitude", amplitude), 1.0)
     return np.sqrt((1 - amplitude) * (1 + amplitude))
@@ -57,17 +58,17 @@ def static_slider(amplitude: Numbers) -> Numbers:
 def stick_radius_transverse(amplitude: Numbers) -> Numbers:
     """Return the stick radius under transverse oscillation alone (Eq 8).
 
-    The radius is sqrt(1 - amplitude). Raises ValueError unless amplitude >= 0. The argument can
-    have any shape. The radius is 0 for amplitude >= 1.
+    The radius is sqrt(1 - amplitude). Raises ValueError if the amplitude is negative or not finite.
+    The argument can have any shape. The radius is 0 for amplitude >= 1.
     """
     return hertz.mindlin_stick_radius(checked("amplitude", amplitude))
 
 
 def static_stick_zone(stick_radius: Numbers) -> Numbers:
-    """Return the fraction of the Hertz load inside the stick radius, which is 1 - (1 - c^2)^(3/2)
-    (Eq 10).
+    """Return the fraction of the Hertz load inside the stick radius c (Eq 10).
 
-    Raises ValueError unless 0 <= stick_radius <= 1. The argument can have any shape.
+    This fraction is 1 - (1 - c^2)^(3/2). The stick radius must be from 0 to 1; other values raise
+    ValueError. The argument can have any shape.
     """
     return hertz.load_inside(checked("stick_radius", stick_radius, high=1.0))
 
@@ -75,33 +76,34 @@ def static_stick_zone(stick_radius: Numbers) -> Numbers:
 def static_transverse(amplitude: Numbers) -> Numbers:
     """Return the paper's static friction under transverse oscillation.
 
-    The friction is 1 - amplitude^(3/2) (Eq 11). Raises ValueError unless amplitude >= 0. The
-    argument can have any shape. The friction is 0 for amplitude >= 1. For the exact limit, see
-    static_limit_transverse.
+    The friction is 1 - amplitude^(3/2) (Eq 11). Raises ValueError if the amplitude is negative or
+    not finite. The argument can have any shape. The friction is 0 for amplitude >= 1. For the exact
+    limit, see static_limit_transverse.
     """
     return 1 - np.minimum(checked("amplitude", amplitude), 1.0) ** 1.5
 
 
 # Continuous bore
 def rotation_centre(velocity: Numbers, time: Numbers = 0.0) -> tuple:
-    """Return the instantaneous centre of rotation (lateral, forward) in the frame at rest (Eq 14).
+    """Return the lateral and the forward coordinate of the instantaneous centre of rotation, in the
+    frame at rest (Eq 14).
 
-    The time is dimensionless: t~ = t v0/a. Raises ValueError unless velocity >= 0 and time >= 0.
-    The arguments are broadcast. Returns the pair of arrays (-velocity, time). In Eq 13, the paper
-    writes t/(v0 a). This expression is not dimensionless.
+    The time is dimensionless: t~ = t v0/a. Raises ValueError if the velocity or the time is
+    negative or not finite. The arguments are broadcast. Returns the pair of arrays (-velocity,
+    time). In Eq 13, the paper writes t/(v0 a). This expression is not dimensionless.
     """
     velocity, time = checked("velocity", velocity), checked("time", time)
     return 0 * time - velocity, time + 0 * velocity
 
 
 def steady_bore_traction(lateral: Numbers, forward: Numbers, velocity: Numbers) -> tuple:
-    """Return the traction (lateral, forward) in continuous bore under full slip (Eq 15).
+    """Return the lateral and the forward traction in continuous bore under full slip (Eq 15).
 
     The traction has the magnitude hertz.friction_bound(r) and is opposite to the local velocity
-    (-forward, velocity + lateral). At the centre of rotation, the traction is 0. The sign that is
-    wrong in Eq 15 of the paper is corrected here. The mean lateral force is 0 (Eq 16). The
-    arguments `lateral` and `forward` are the position relative to the contact centre. Raises
-    ValueError unless velocity >= 0. The arguments are broadcast.
+    (-forward, velocity + lateral). At the centre of rotation, the traction is 0. Eq 15 of the paper
+    has a wrong sign, which is corrected here. The mean lateral force is 0 (Eq 16). The arguments
+    `lateral` and `forward` are the position relative to the contact centre. Raises ValueError if
+    the velocity is negative or not finite. The arguments are broadcast.
     """
     lateral = checked("lateral", lateral, low=-np.inf)
     forward = checked("forward", forward, low=-np.inf)
@@ -117,9 +119,10 @@ def forward_kernel(ratio: Numbers) -> Numbers:
     The kernel is the forward friction of a ring, divided by the friction bound. The radius of the
     ring is ratio*velocity.
 
-    Raises ValueError unless ratio >= 0. The argument can have any shape. For ratio <= 1, the kernel
-    is 4 E(k) at the modulus k = ratio. For ratio > 1, the kernel is Q_M(1/ratio). The kernel
-    decreases from 2 pi at ratio 0 to 4 at ratio 1, and approaches pi/ratio at large ratios.
+    Raises ValueError if the ratio is negative or not finite. The argument can have any shape. For
+    ratio <= 1, the kernel is 4 E(k) at the modulus k = ratio. For ratio > 1, the kernel is
+    Q_M(1/ratio). The kernel decreases from 2 pi at ratio 0 to 4 at ratio 1, and approaches pi/ratio
+    at large ratios.
     """
     inside, even, odd = _ring_integrals(ratio)
     return np.where(inside, even, odd)[()]
@@ -131,10 +134,10 @@ def torque_kernel(ratio: Numbers) -> Numbers:
     The kernel is the torque of a ring, divided by the product of the friction bound and the radius.
     The radius of the ring is ratio*velocity.
 
-    Raises ValueError unless ratio >= 0. The argument can have any shape. For ratio <= 1, the kernel
-    is 4 (E - (1 - k^2) K)/k at the modulus k = ratio. For ratio > 1, the kernel is Q_Y(1/ratio).
-    At small ratios, the kernel is about pi times the ratio. The kernel is 4 at ratio 1, and
-    approaches 2 pi at large ratios.
+    Raises ValueError if the ratio is negative or not finite. The argument can have any shape. For
+    ratio <= 1, the kernel is 4 (E - (1 - k^2) K)/k at the modulus k = ratio. For ratio > 1, the
+    kernel is Q_Y(1/ratio). At small ratios, the kernel is about pi times the ratio. The kernel is 4
+    at ratio 1, and approaches 2 pi at large ratios.
     """
     inside, even, odd = _ring_integrals(ratio)
     return np.where(inside, odd, even)[()]
@@ -158,7 +161,7 @@ def bore_forward(velocity: Numbers) -> Numbers:
     The rotation is about the contact normal, and the pressure is that of Hertz.
     The friction is (3 pi/8)(v - v^3/4) for v <= 1. For v > 1, the friction is 2F1(-1/2, 1/2; 5/2;
     1/v^2), where 2F1 is the hypergeometric function. The friction tends to 1 at large velocities.
-    Raises ValueError unless velocity >= 0. The argument can have any shape.
+    Raises ValueError if the velocity is negative or not finite. The argument can have any shape.
     """
     velocity = checked("velocity", velocity)
     slow = np.minimum(velocity, 1.0)
@@ -175,8 +178,8 @@ def bore_torque(velocity: Numbers) -> Numbers:
     """Return the torque of the steady continuous bore under Hertz pressure (Eq 22).
 
     The torque is divided by its value at velocity 0. For v <= 1, the result is 1 - v^2 + (3/8) v^4.
-    For v > 1, the result is 16/(15 pi v) 2F1(1/2, 1/2; 7/2; 1/v^2). Raises ValueError unless
-    velocity >= 0. The argument can have any shape.
+    For v > 1, the result is 16/(15 pi v) 2F1(1/2, 1/2; 7/2; 1/v^2). Raises ValueError if the
+    velocity is negative or not finite. The argument can have any shape.
     """
     velocity = checked("velocity", velocity)
     slow, inverse = np.minimum(velocity, 1.0) ** 2, 1 / np.maximum(velocity, 1.0)
@@ -189,8 +192,8 @@ def bore_torque(velocity: Numbers) -> Numbers:
 def large_amplitude_bore(velocity: Numbers) -> Numbers:
     """Return the quasi-steady forward friction under oscillating bore of large amplitude (Eq 29).
 
-    The friction is the mean of bore_forward(velocity/cos(tau)) over tau. Raises ValueError unless
-    velocity >= 0. The argument can have any shape.
+    The friction is the mean of bore_forward(velocity/cos(tau)) over tau. Raises ValueError if the
+    velocity is negative or not finite. The argument can have any shape.
     """
     velocity = checked("velocity", velocity)
     fast, slow = np.maximum(velocity, 1.0), np.clip(velocity, np.finfo(float).tiny, 1 - 1e-16)
@@ -226,18 +229,19 @@ def _slow_mean(velocity: np.ndarray) -> np.ndarray:
 def bore_amplitude_at(stick_radius: Numbers) -> Numbers:
     """Return the bore amplitude at which the stick radius is c.
 
-    The amplitude is D(c)/D(1/2) (Eqs 30, 31). Raises ValueError unless 0 < stick_radius <= 1. The
-    argument can have any shape.
+    The amplitude is D(c)/D(1/2) (Eqs 30, 31). The stick radius must be above 0 and at most 1; other
+    values raise ValueError. The argument can have any shape.
     """
     stick_radius = checked("stick_radius", stick_radius, high=1.0, low_open=True)
     return hertz.D(stick_radius) / hertz.D_half()
 
 
 def bore_stick_radius(amplitude: Numbers) -> Numbers:
-    """Return the stick radius under oscillating bore alone (Eq 32, inverse of bore_amplitude_at).
+    """Return the stick radius under oscillating bore alone (Eq 32). This function is the inverse of
+    bore_amplitude_at.
 
-    Raises ValueError unless amplitude >= 0. The argument can have any shape. The radius is above 0
-    and at most 1.
+    Raises ValueError if the amplitude is negative or not finite. The argument can have any shape.
+    The radius is above 0 and at most 1.
     """
     return hertz.lubkin_stick_radius(hertz.bore_angle(amplitude))
 
@@ -246,17 +250,18 @@ def static_bore(amplitude: Numbers) -> Numbers:
     """Return the paper's static friction under oscillating bore (Eq 33, corrected).
 
     The friction is 1 - (1 - c^2)^(3/2). This expression is Eq 10. The stick radius c is given by Eq
-    32. For the exact limit, see static_limit_bore. Raises ValueError unless amplitude >= 0. The
-    argument can have any shape.
+    32. For the exact limit, see static_limit_bore. Raises ValueError if the amplitude is negative
+    or not finite. The argument can have any shape.
     """
     return static_stick_zone(bore_stick_radius(amplitude))
 
 
 def static_bore_printed(amplitude: Numbers) -> Numbers:
-    """Return the static friction by Eq 33 as printed, which is 1 - (1 - c)^(3/2).
+    """Return the static friction 1 - (1 - c)^(3/2), which is Eq 33 as printed.
 
     The printed equation contains c in place of the c^2 of Eq 10. This function is for comparison
-    only. Raises ValueError unless amplitude >= 0. The argument can have any shape.
+    only. Raises ValueError if the amplitude is negative or not finite. The argument can have any
+    shape.
     """
     return static_stick_zone(np.sqrt(bore_stick_radius(amplitude)))
 
@@ -267,11 +272,11 @@ def static_bore_printed(amplitude: Numbers) -> Numbers:
 def static_limit_transverse(amplitude: Numbers) -> Numbers:
     """Return the exact static friction under transverse oscillation for Poisson's ratio 0.
 
-    The static friction is the limit v -> 0. Let g_c be the inner bound that the function
-    mindlin_traction uses. The friction is the integral of sqrt(g^2 - (g - g_c)^2) over the stick
-    zone. The friction is 0 for amplitude >= 1. For other Poisson's ratios, Mindlin's traction and
-    this limit are approximations. Raises ValueError unless amplitude >= 0. The argument can have
-    any shape.
+    The static friction is the limit v -> 0. Let g_c be the friction bound of the inner contact; see
+    mindlin_traction. The friction is the integral of sqrt(g^2 - (g - g_c)^2) over the stick zone.
+    The friction is 0 for amplitude >= 1. For other Poisson's ratios, Mindlin's traction and this
+    limit are approximations. Raises ValueError if the amplitude is negative or not finite. The
+    argument can have any shape.
     """
     amplitude = np.minimum(checked("amplitude", amplitude), 1.0)
     step, bound, inner = _stick_zone_rule(np.sqrt(1 - amplitude), np.sqrt(amplitude))
@@ -280,11 +285,12 @@ def static_limit_transverse(amplitude: Numbers) -> Numbers:
 
 
 def static_limit_longitudinal(amplitude: Numbers) -> Numbers:
-    """Return the static friction under longitudinal oscillation, which is (1 - amplitude)^(3/2).
+    """Return the static friction (1 - amplitude)^(3/2) under longitudinal oscillation.
 
-    The friction is the integral of g_c, the inner bound that the function mindlin_traction uses.
-    For amplitude >= 1, the friction is 0. The limit is exact for Poisson's ratio 0. Raises
-    ValueError unless amplitude >= 0 in u_lim. The argument can have any shape.
+    Let g_c be the friction bound of the inner contact; see mindlin_traction. The friction is the
+    integral of g_c over the stick zone. For amplitude >= 1, the friction is 0. The limit is exact
+    for Poisson's ratio 0. Raises ValueError if the amplitude is negative or not finite. The
+    argument can have any shape.
     """
     return (1 - np.minimum(checked("amplitude", amplitude), 1.0)) ** 1.5
 
@@ -293,10 +299,10 @@ def static_limit_bore(amplitude: Numbers) -> Numbers:
     """Return the static friction under oscillating bore, in the limit of zero velocity.
 
     The friction is the integral of (2/pi) g arccos(tau/g) over the stick zone. The integrand is the
-    average over the angle of the largest forward traction. The limit is exact for every Poisson's
+    largest forward traction, averaged over the polar angle. The limit is exact for every Poisson's
     ratio. The reason is that, for a given phi~, neither the stick radius nor the torsional traction
-    tau depends on Poisson's ratio. Raises ValueError unless amplitude >= 0. The argument can have
-    any shape.
+    tau depends on Poisson's ratio. Raises ValueError if the amplitude is negative or not finite.
+    The argument can have any shape.
     """
     c = np.asarray(bore_stick_radius(amplitude))
     step, bound, inner = _stick_zone_rule(c, np.sqrt((1 - c) * (1 + c)))
@@ -308,15 +314,16 @@ def static_limit_bore(amplitude: Numbers) -> Numbers:
 def _stick_zone_rule(
     c: np.ndarray, complement: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Return a quadrature rule over r < c.
+    """Return a quadrature rule for integrals over r from 0 to c.
 
     The three arrays contain, at each node, the weight for d(eta), the root sqrt(1 - r^2), and the
     root sqrt(c^2 - r^2).
 
-    The integration variable is eta, with r dr = -(product of the two roots) d(eta). The roots are
-    complement*cosh(eta) and complement*sinh(eta), where complement is sqrt(1 - c^2). The
-    substitution resolves the thin layer at the edge for small amplitudes. The nodes of eta follow a
-    squared sine, because the integrands contain half-integer powers at both ends.
+    The integration variable is eta, and r dr is minus the product of the two roots times d(eta).
+    The argument `complement` is sqrt(1 - c^2). The roots are complement*cosh(eta) and
+    complement*sinh(eta). The substitution resolves the thin layer at the edge for small amplitudes.
+    The nodes of eta follow a squared sine, because the integrands contain half-integer powers at
+    both ends.
     """
     # Smaller amplitudes change friction by less than the rounding error.
     complement = np.maximum(complement, 1e-8)
