@@ -115,7 +115,13 @@ def test_the_error_covers_a_small_drift_of_the_frequency_and_of_the_amplitude(ch
 
 def test_a_weak_fundamental_is_not_mistaken_for_a_fraction():
     time, lateral = record()
-    lateral += 0.05 * np.sin(np.pi * FREQUENCY * time)
+    slow = np.sin(np.pi * FREQUENCY * time)
+    with pytest.raises(InputError, match=r"after 2 periods; allowed is 103.6\d* Hz"):
+        microslip.fold(time, {"lateral": lateral + 0.2 * slow})
+    lateral += 0.05 * slow
+    size, error = microslip.fold(time, {"lateral": lateral}).peak_to_peak("lateral")
+    phase = np.linspace(0.0, 4.0 * np.pi, 10_001)
+    assert abs(size - np.ptp(motion(phase) + 0.05 * np.sin(0.5 * phase))) <= error < 0.3
     result = microslip.fold(time, {"lateral": lateral}, frequency=0.5 * FREQUENCY)
     assert abs(result.frequency - 0.5 * FREQUENCY) <= 4.0 * result.frequency_error
 

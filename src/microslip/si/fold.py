@@ -69,6 +69,8 @@ value is the standard deviation of u**2 / 2, where u is uniformly distributed fr
 FINER = 32
 """Number of interpolated points per sample for the peak-to-peak value.  With 32 samples, the peak
 of a sine is too small by at most 5e-6 of its amplitude."""
+SUBHARMONICS = 2, 3
+"""Numbers of periods after which the motion may repeat.  A slower component is drift."""
 CONSTANT = 1e-12
 """A column counts as constant if its variation, divided by its largest value, is at most this
 value.  This value allows for rounding errors."""
@@ -92,8 +94,9 @@ class Fold:
     columns : dict of str to np.ndarray, shape (rows,)
         The mean period, without its end point.  Displacements are relative to their mean.
     errors : dict of str to np.ndarray, shape (rows,)
-        Standard error of each sample of `columns`, from the scatter between the periods, plus the
-        loss of amplitude due to a drift of the frequency, and half of a change of the amplitude.
+        Standard error of each sample of `columns`, from the scatter between the periods.  The loss
+        of amplitude due to a drift of the frequency is added, and half of a change of the
+        amplitude, and the largest difference of every second or third period from the mean.
     drift : dict of str to float
         Mean rate of the slow drift of each column, per second.
     """
@@ -217,13 +220,28 @@ def fold(
     alike = np.all(np.abs(harmonics[between]) <= SIGNIFICANT * noise[between])
     problem = f"the motion repeats {order} times in a period; allowed is {order * hz:.6g} Hz"
     _refuse(order > 1 and alike, "frequency", frequency or hz, problem)
+    alternation = np.zeros(mean.shape)
+    for m in (m for m in SUBHARMONICS if whole >= FEWEST_PERIODS * m):
+        groups = parts[: whole // m * m].reshape(-1, m, *parts.shape[1:])
+        middle = groups.mean(axis=0)
+        offset = middle - middle.mean(axis=0)
+        variance_by_chance = np.sum(np.abs(groups - middle) ** 2, axis=(0, 1, 2))
+        variance_by_chance *= (m - 1) / ((whole // m - 1) * whole)
+        found = np.sum(np.abs(offset) ** 2, axis=(0, 1)) > SIGNIFICANT**2 * variance_by_chance
+        offset *= found / (1.0 - np.sinc(1.0 / m))  # the rest counts as drift
+        problem = f"the motion repeats after {m} periods; allowed is {hz / m:.6g} Hz"
+        size = np.linalg.norm(harmonics, axis=0)
+        wrong = np.any(np.linalg.norm(offset, axis=1) > LARGEST_CHANGE * size)
+        _refuse(wrong, "frequency", frequency or hz, problem)
+        alternation += np.abs(np.fft.irfft(offset, rows, axis=1)).max(axis=0) * rows
     loss = 0.5 * (2.0 * np.pi * np.arange(parts.shape[1])) ** 2 * variance
     drifted = math.sqrt(variance) / (PHASE_OF_A_DRIFT * longest)
     most = drifted * math.sqrt(LARGEST_LOSS / max(loss[order], 1e-300))
     problem = f"the frequency changes by about {drifted:.2g} Hz; allowed are {most:.2g} Hz"
     _refuse(loss[order] > LARGEST_LOSS, "time", longest, f"{problem}; {SHORTER}")
     lost = np.fft.irfft(-np.expm1(-loss)[:, None] * harmonics, rows, axis=0) * rows
-    errors = scatter + np.abs(lost) + 0.5 * change * np.abs(mean) + RINGING * omitted
+    errors = scatter + np.abs(lost) + 0.5 * change * np.abs(mean)
+    errors += RINGING * omitted + alternation
     is_normal = np.array([name in NORMAL for name in names])
     mean += (values.mean(axis=0) + drift(times).mean(axis=(0, 1))) * is_normal
     below = np.maximum(-mean, 0.0) * is_normal
