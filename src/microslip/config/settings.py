@@ -427,7 +427,8 @@ class Figure(Settings):
 
     @property
     def run(self) -> dict[str, Any]:
-        """Settings of the single run. The dict is empty if the figure shows no single run."""
+        """Settings of the single run. The dict is empty if the figure does not show an individual
+        run."""
         defaults = KINDS[self.kind].run
         return defaults | self.model_dump(include={*defaults}, exclude_none=True)
 

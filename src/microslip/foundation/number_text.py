@@ -95,8 +95,8 @@ def _rounded(number: float, digits: int, rounding: str | None = None) -> Decimal
 
 
 def interval_text(low: float, high: float, unit: str = "", *, error: float = 0.0) -> str:
-    """Format an interval.  Both bounds are rounded outwards, to two significant digits of the width
-    of the interval.
+    """Format an interval.  Both bounds are rounded outwards, to the decimal place of the second
+    significant digit of the interval's width.
 
     Parameters
     ----------

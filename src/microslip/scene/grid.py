@@ -260,7 +260,7 @@ def round_loads(cells: int, ring_loads: Callable, inner: float = 0.0) -> np.ndar
     cells : int
         Number of cells along a side.
     ring_loads : callable
-        ring_loads(psi) returns the load on each ring between neighbouring radii sin(psi).
+        ring_loads(psi) returns the load on each ring between neighbouring radii r = sin(psi).
     inner : float
         Radius of the hole in the contact.
     """

@@ -6,13 +6,13 @@ the ratio of velocity to amplitude does not depend on u_lim.  The only unknown o
 depends is therefore ln u_lim.  Since the model is linear in mu, the best mu for a given u_lim
 follows by linear least squares.
 
-The confidence region contains the pairs (u_lim, mu) whose sum of squares is at most a threshold.
-The threshold is the smallest sum of squares plus a margin.  If the rows have standard errors, the
-margin is a quantile of the chi-square distribution.  Otherwise, the margin is a quantile of the F
-distribution times the mean square residual.  For each u_lim, the region is an interval of mu,
-because the sum of squares is quadratic in mu.  The interval of a parameter is the range of the
-parameter's values in the confidence region, as in a profile likelihood.  This interval does not
-depend on the parametrisation, and may be infinite on one side.
+The confidence region contains the pairs (u_lim, mu) for which the sum of squared residuals is at
+most a threshold. The threshold is the smallest sum of squares plus a margin.  If the rows have
+standard errors, the margin is a quantile of the chi-square distribution.  Otherwise, the margin is
+a quantile of the F distribution times the mean square residual.  For each u_lim, the region is an
+interval of mu, because the sum of squares is quadratic in mu.  The interval of a parameter is the
+range of the parameter's values in the confidence region, as in a profile likelihood.  This interval
+does not depend on the parametrisation, and may be infinite on one side.
 
 If no map is given, the solver first computes a coarse map.  The coarse map is used only to compute
 how friction changes between two guesses of u_lim.  Then the solver computes the friction of every

@@ -371,9 +371,9 @@ def interpolation_errors(values: xr.DataArray) -> dict[str, float | None]:
     """Return the largest deviation from linear interpolation along each axis.  The deviation is the
     difference between a value and the linear interpolation between the two neighbouring values.
 
-    The deviation is None for an axis with fewer than three values.  If the values are smooth,
-    linear interpolation between neighbouring values has an error of one quarter of the sum of the
-    deviations over all axes.
+    The deviation is None for an axis with fewer than three values.  Consider the sum of the
+    deviations over all axes.  If the values are smooth, linear interpolation between neighbouring
+    values has an error of one quarter of this sum.
     """
     errors: dict[str, float | None] = {}
     for name in map(str, values.dims):

@@ -1,9 +1,9 @@
 """Study of the accuracy and the cost of each model and method.
 
-At each point, every model is run with the shipped method at all levels of its ladder.  Every other
-method is run at the levels of the model that `model="auto"` selects.  For each point, the study
-also computes a reference, and solves at several tolerances.  For two motions, the study computes
-maps, with trials of all models on a grid of points.
+At each point, every model is run with the shipped method, at all levels of the model's ladder.
+Every other method is run at the levels of the model that `model="auto"` selects.  For each point,
+the study also computes a reference, and solves at several tolerances.  For two motions, the study
+computes maps, with trials of all models on a grid of points.
 
 The dataset contains performance profiles (Dolan and More, Math. Program. 91 (2002) 201-213,
 doi:10.1007/s101070100263).  A case is a point and a tolerance.  The cost of a competitor is the CPU
@@ -223,7 +223,7 @@ def largest_from(runs: pd.DataFrame, *series: str) -> pd.Series:
 
 
 def cheapest(runs: pd.DataFrame, exact: str, tolerance: float) -> pd.DataFrame:
-    """Return the cheapest run within the tolerance at each place.
+    """For each place, return the cheapest run whose error is within the tolerance.
 
     All finer runs of the same model must also be within the tolerance.  The finest run of a model
     cannot be confirmed in this way, so it does not count.  The model `exact` is an exception,

@@ -103,8 +103,8 @@ def periods(study: Claims) -> list[list[dict]]:
 def sources(study: Claims) -> Iterator[tuple[str, Callable[..., dict], list[list[dict]]]]:
     """Yield the name, the function and the requests of each table that is read from runs.
 
-    The requests are a list of rows.  The function computes a line of evidence from the results of a
-    row.
+    The requests are a list of rows.  From the results of a row, the function computes one line of
+    the table of evidence.
     """
 
     def point(*place: Any, model: str = "auto", cells: int | None = None) -> dict:
@@ -209,7 +209,7 @@ def friction(row: Row) -> tuple[float, float]:
 
 
 def point_of(row: Row) -> dict:
-    """Return the friction at a point, as a line of evidence."""
+    """Return the friction at a point, as one line of the table of evidence."""
     value, error = friction(row)
     return {"value": value, "error": error}
 
@@ -284,14 +284,15 @@ def both_of(read: Callable[[Row], tuple[float, float]], fine: Row, coarse: Row) 
 
 
 def traction_ratio(row: Row) -> tuple[float, float]:
-    """Return two values: the smallest ratio of traction to friction bound, and the reference 0."""
+    """Return two values: the smallest ratio of traction to friction bound, and its reference value,
+    0."""
     size = np.hypot(row["traction_lateral"], row["traction_forward"])
     return float((size / np.asarray(row["bound"], float)).min()), 0.0
 
 
 def traction_angle(row: Row) -> tuple[float, float]:
     """Return two values: the largest angle in degrees between a traction and the traction of Eq 15,
-    and the reference 0."""
+    and its reference value, 0."""
     across, along, lateral, forward = (
         np.asarray(row[name], float)
         for name in ("lateral_position", "forward_position", "traction_lateral", "traction_forward")
@@ -309,7 +310,8 @@ def least_stick(row: Row) -> tuple[float, float]:
 
 
 def lead(row: Row) -> tuple[float, float]:
-    """Return the difference between the stick areas of the two sides, and the reference 0.
+    """Return two values: the difference between the stick areas of the two sides, and its reference
+    value, 0.
 
     The difference, divided by the total stick area, is computed twice: when the total in the first
     half of the period is smallest, and half a period later.  The smaller absolute value is

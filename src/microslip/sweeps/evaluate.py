@@ -104,7 +104,8 @@ def _patches(**arguments: Any) -> dict:
 
 
 def _run(**arguments: Any) -> dict:
-    """Run at one resolution.  No time is measured, so that equal requests have equal results."""
+    """Run at one resolution.  Results contain no measured times, so identical requests give
+    identical results."""
     return point.run_trial(**arguments)
 
 

@@ -77,8 +77,8 @@ def draw(*datasets: xr.Dataset) -> Figure:
     """Draw the maps of one or several sweeps.
 
     A sweep at several Poisson's ratios has a map at the smallest ratio, and maps of the change of
-    friction at larger ratios.  A certified map has a panel with its error estimates.  For a single
-    sweep of friction that is not certified, cuts along two edges of the map are added.
+    friction at larger ratios.  A certified map has a panel with its error estimates.  If the map
+    comes from a single, uncertified sweep of friction, cuts along two edges of the map are added.
     """
     titles = [one.attrs.get("title", "") if datasets[1:] else own_title(one) for one in datasets]
     rows = list(map(_panels, datasets, map(look.literal, titles)))
