@@ -106,8 +106,8 @@ class Motion(spec.Named):
     periodic : bool
         Whether the motion has an amplitude and the period 2 pi; otherwise it is steady.
     edge_velocity : bool
-        Whether velocities are divided by the largest speed of the contact edge in rotation, instead
-        of omega u_lim, to make them dimensionless.
+        Whether the dimensionless velocity is the velocity divided by the largest speed of the
+        contact edge in rotation.  Otherwise, the velocity is divided by omega u_lim.
     readings : tuple of Motion
         Alternative motions through the same samples.  The differences in friction between these
         motions serve as an error estimate.
@@ -324,7 +324,7 @@ class Motion(spec.Named):
         return values
 
     def drift(self, velocity: float, amplitude: float, poisson: float) -> float:
-        """Compute the mean forward displacement per radian of phase, in u_lim.
+        """Compute the mean forward displacement per radian of phase, in units of u_lim.
 
         The drift is proportional to the velocity.  This function computes the drift at velocity 1
         and multiplies it by the velocity.  At small velocities, the rounding error of the
@@ -463,7 +463,7 @@ def within_rings(radius: float) -> float:
 
 def stick_focus(reach: float, pressure: Pressure) -> float | None:
     """Return the stick radius of an oscillation along a line.  `reach` is the amplitude of the
-    oscillation, in u_lim.
+    oscillation, in units of u_lim.
 
     For a sphere, the stick radius is given by Eq 8.  The result is None at full slip, or if the
     stick zone is not a circle.

@@ -105,9 +105,9 @@ class Pressure(spec.Named):
 
     # Attributes of pressures that depend on the radius alone
     ring_means: ClassVar[Any] = None
-    """ring_means(psi) returns the mean friction bound of the rings with the edges r = sin(psi), and
-    the mean lever arm of a traction proportional to the bound.  psi is an array of shape (n + 1,);
-    each result has the shape (n,)."""
+    """ring_means(psi) returns two arrays for the rings with the edges r = sin(psi): the mean
+    friction bound, and the mean lever arm of a traction proportional to the bound.  psi is an array
+    of shape (n + 1,); each result has the shape (n,)."""
     bound: ClassVar[Any] = None
     """bound(r) returns the friction bound mu p at an array of radii r of any shape.  For an
     indenter, bound(r, c) returns the bound at the contact radius c."""
@@ -119,15 +119,15 @@ class Pressure(spec.Named):
     """radius(depth) returns the contact radius at a depth (the inverse of `depth`), or 0 if there
     is no contact."""
     of_load: ClassVar[Any] = None
-    """of_load(share) returns the depth at which the load is `share` times the mean load."""
+    """of_load(share) returns the depth at which the load, divided by the mean load, is `share`."""
     load: ClassVar[Any] = None
     """load(r, c) returns the load within the radius r in a contact of radius c; arrays
     broadcast."""
 
     loading: ClassVar[Any] = None
-    """loading(u) returns the tangential force divided by mu F_z, after a displacement u >= 0 (in
-    u_lim) in one direction from rest, at nu = 0.  This loading curve is defined for axisymmetric
-    indenters and elliptic Hertz contacts."""
+    """loading(u) returns the tangential force at nu = 0 after a displacement u in one direction
+    from rest. The force is divided by mu F_z, and the nonnegative displacement by u_lim.  This
+    loading curve is defined for axisymmetric indenters and elliptic Hertz contacts."""
 
     def __post_init__(self) -> None:
         spec.refuse_strange(self, "pressure")

@@ -39,8 +39,8 @@ class Drive(spec.Named):
     force : float or None
         Prescribed force P divided by mu times the mean normal load; None for a spring.
     stiffness, mass, damping : float
-        Stiffness k in mu F_z / u_lim, mass m in mu F_z / (u_lim omega^2) and damping c in mu F_z /
-        (u_lim omega).
+        Stiffness k in units of mu F_z / u_lim, mass m in units of mu F_z / (u_lim omega^2), and
+        damping c in units of mu F_z / (u_lim omega).
     """
 
     force: float | None
@@ -62,7 +62,7 @@ class Force(Drive):
     force : float
         Force divided by mu times the mean normal load.
     mass : float
-        Mass of the body in mu F_z / (u_lim omega^2).
+        Mass of the body in units of mu F_z / (u_lim omega^2).
 
     Raises
     ------
@@ -85,11 +85,11 @@ class Spring(Drive):
     Parameters
     ----------
     stiffness : float
-        Stiffness of the spring in mu F_z / u_lim.
+        Stiffness of the spring in units of mu F_z / u_lim.
     mass : float
-        Mass of the body in mu F_z / (u_lim omega^2).
+        Mass of the body in units of mu F_z / (u_lim omega^2).
     damping : float
-        Damping constant of a dashpot parallel to the spring, in mu F_z / (u_lim omega).
+        Damping constant of a dashpot parallel to the spring, in units of mu F_z / (u_lim omega).
 
     Raises
     ------
@@ -265,7 +265,7 @@ class Problem:
 
     @cached_property
     def drift(self) -> float:
-        """Mean forward displacement per radian of phase, in u_lim."""
+        """Mean forward displacement per radian of phase, in units of u_lim."""
         return self.motion.drift(self.velocity, self.size, self.poisson)
 
     @cached_property

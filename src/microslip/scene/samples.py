@@ -33,7 +33,7 @@ class _Samples(Motion):
     Attributes
     ----------
     rows : np.ndarray, shape (rows, 3)
-        Forward and lateral displacement in u_lim, angle in u_lim / a.
+        Forward and lateral displacement in units of u_lim, and angle in units of u_lim / a.
     height : np.ndarray or None, shape (rows,)
         Normal load or indentation divided by its reference value; None if both are constant.
     by_load : bool
@@ -115,8 +115,8 @@ class Sampled(spec.NamedByText, _Samples):
     Attributes
     ----------
     rows : np.ndarray, shape (rows, 3)
-        Forward and lateral displacement in u_lim, and angle in u_lim / a, for A = 1.  The end point
-        of the period is omitted.
+        Forward and lateral displacement in units of u_lim, and angle in units of u_lim / a, for A =
+        1.  The end point of the period is omitted.
     height : np.ndarray or None, shape (rows,)
         Normal load or indentation divided by its reference value; None if both are constant.
     by_load : bool

@@ -130,8 +130,9 @@ class Kinks(NamedTuple):
     amplitudes : tuple of float
         Amplitudes at which friction has a kink if the velocity is below the kink velocity.
     velocity : tuple of float
-        Kink velocity: () if there is none, (v,) if it is v at all amplitudes, and (n0, n1, c0, c1,
-        c2) if it is (n0 + n1 A + A^2) / (c0 + c1 A + c2 A^2) at the amplitude A.
+        Kink velocity.  The tuple is empty if there is no kink velocity. The tuple (v,) stands for
+        the velocity v at all amplitudes. The tuple (n0, n1, c0, c1, c2) stands for the velocity (n0
+        + n1 A + A^2) / (c0 + c1 A + c2 A^2) at the amplitude A.
     """
 
     amplitudes: tuple[float, ...] = ()

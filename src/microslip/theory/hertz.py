@@ -28,7 +28,7 @@ G_STAR = 0.75
 """Reduced shear modulus 4G/(2-nu) in working units. The value follows from u_lim = 3 mu F_z / (4 G*
 a)."""
 TORQUE_FULL_SLIP = 3 * np.pi / 16
-"""Torque of a contact that rotates about its centre and slips everywhere, in mu*F_z*a."""
+"""Torque of a contact that rotates about its centre and slips everywhere, in units of mu*F_z*a."""
 
 
 @cache
@@ -87,8 +87,8 @@ def ring_bounds(edges: np.ndarray) -> np.ndarray:
     """Compute the mean friction bound of each ring between consecutive radii.
 
     edges: n + 1 radii. The radii must increase strictly and lie between 0 and 1; other radii raise
-    ValueError. Returns n dimensionless values. If each value is multiplied by the area of its ring,
-    the sum of the products is the load between the first and the last edge.
+    ValueError. Returns n dimensionless values. The product of each value and the area of its ring
+    is the load on this ring.
     """
     edges = checked("edges", edges, high=1.0)
     if edges.ndim != 1 or edges.size < 2 or not np.all(np.diff(edges) > 0):
@@ -129,7 +129,7 @@ def lubkin_angle(stick_radius: Numbers, poisson: float = 0.0) -> Numbers:
     """Return the angle of pure torsion from rest as a function of the stick radius (Eq 24).
 
     The stick radius must be above 0 and at most 1, and Poisson's ratio must be from 0 to 0.5. Other
-    values raise ValueError. The arguments are broadcast. Returns an angle in u_lim/a.
+    values raise ValueError. The arguments are broadcast. Returns an angle in units of u_lim/a.
     """
     stick_radius = checked("stick_radius", stick_radius, high=1.0, low_open=True)
     return _twist_unit(poisson) * D(stick_radius)
@@ -161,14 +161,15 @@ def bore_angle(amplitude: Numbers, poisson: float = 0.0) -> Numbers:
     """Convert a bore amplitude phi~ to the angle phi0 = phi~ phi_lk(1/2) (Eq 27).
 
     Raises ValueError if the amplitude is negative or not finite, or if Poisson's ratio is outside 0
-    to 0.5. The arguments are broadcast. Returns an angle in u_lim/a.
+    to 0.5. The arguments are broadcast. Returns an angle in units of u_lim/a.
     """
     return checked("amplitude", amplitude) * _twist_unit(poisson) * D_half()
 
 
 @cache
 def bore_unit(poisson: float) -> float:
-    """Return the angle, in u_lim/a, that corresponds to the bore amplitude 1; see bore_angle."""
+    """Return the angle, in units of u_lim/a, that corresponds to the bore amplitude 1; see
+    bore_angle."""
     return float(bore_angle(1.0, poisson))
 
 
@@ -264,10 +265,10 @@ def lubkin_torque(stick_radius: Numbers) -> Numbers:
     """Return the torque of pure torsion from rest as a function of the stick radius.
 
     The stick radius must be from 0 to 1; other values raise ValueError. The argument can have any
-    shape. The torque is in mu*F_z*a. For every Poisson's ratio, the torque is 0 at the stick radius
-    1 and TORQUE_FULL_SLIP at the stick radius 0. The torque is the integral of lubkin_traction. The
-    torque also equals the sum of the torques of rotating punches whose radii s range from c to 1
-    (Lubkin 1951).  A punch of radius s contributes (16/3) G s^3 (-d phi_lk(s)).
+    shape. The unit of the torque is mu*F_z*a. For every Poisson's ratio, the torque is 0 at the
+    stick radius 1 and TORQUE_FULL_SLIP at the stick radius 0. The torque is the integral of
+    lubkin_traction. The torque also equals the sum of the torques of rotating punches whose radii s
+    range from c to 1 (Lubkin 1951).  A punch of radius s contributes (16/3) G s^3 (-d phi_lk(s)).
     """
     c = checked("stick_radius", stick_radius, high=1.0)[..., None]
     # With dD/ds = -E(k)/s, the integrand is s^2 E(k). After the substitution s = t^2, its only

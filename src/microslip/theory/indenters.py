@@ -36,7 +36,7 @@ def static_transverse(pressure: IndenterPressure, amplitude: float) -> float:
     pressure : pressure.Pressure
         Pressure of an axisymmetric indenter.
     amplitude : float
-        Amplitude in u_lim, >= 0.
+        Nonnegative amplitude, in units of u_lim.
 
     Returns
     -------
@@ -73,7 +73,7 @@ def torsion_angle(pressure: IndenterPressure, stick_radius: float, poisson: floa
     Returns
     -------
     float
-        Angle in u_lim / a.
+        Angle in units of u_lim / a.
     """
     end = np.arccosh(1.0 / stick_radius)
     eta = end * np.sin(0.5 * np.pi * _NODES)  # the bound decreases like a square root at the edge
@@ -90,7 +90,7 @@ def torsion_stick_radius(pressure: IndenterPressure, angle: float, poisson: floa
     pressure : pressure.Pressure
         Pressure of an axisymmetric indenter.
     angle : float
-        Angle in u_lim / a, >= 0.
+        Nonnegative angle, in units of u_lim / a.
     poisson : float
         Poisson's ratio, from 0 to 0.5.
 
@@ -156,7 +156,7 @@ def torsion_energy(pressure: IndenterPressure, angle: float, poisson: float = 0.
     pressure : pressure.Pressure
         Pressure of an axisymmetric indenter.
     angle : float
-        Amplitude of the rotation in u_lim / a, >= 0.
+        Nonnegative amplitude of the rotation, in units of u_lim / a.
     poisson : float
         Poisson's ratio, from 0 to 0.5.
 
@@ -187,7 +187,7 @@ def static_bore(pressure: IndenterPressure, angle: float, poisson: float = 0.0) 
     pressure : pressure.Pressure
         Pressure of an axisymmetric indenter.
     angle : float
-        Amplitude of the rotation in u_lim / a, >= 0.
+        Nonnegative amplitude of the rotation, in units of u_lim / a.
     poisson : float
         Poisson's ratio, from 0 to 0.5.
 

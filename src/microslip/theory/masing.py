@@ -73,9 +73,9 @@ def longitudinal(
     Parameters
     ----------
     velocity : array_like
-        Velocity divided by omega u_lim, >= 0. The value 0 gives the static limit.
+        Nonnegative velocity, divided by omega u_lim. The value 0 gives the static limit.
     amplitude : array_like
-        Amplitude in u_lim, >= 0. It is broadcast against the velocity.
+        Nonnegative amplitude, in units of u_lim. The amplitude is broadcast against the velocity.
     curve : callable
         Force divided by mu F_z as a function of the displacement from rest. The default is the
         curve of a sphere.
@@ -126,7 +126,7 @@ def loop_energy(amplitude: Numbers, curve: Callable = mindlin_force) -> Numbers:
     Parameters
     ----------
     amplitude : array_like
-        Half the distance between the turning points, in u_lim, >= 0.
+        Half the distance between the turning points, in units of u_lim.
     curve : callable
         Force divided by mu F_z as a function of the displacement from rest.
 
@@ -219,9 +219,9 @@ class Iwan:
         Largest error of the force on the first loading near the slip displacement of each element,
         due to the finite number of elements.
     poisson_error : float
-        Largest difference in force between the model and the full contact that is due to Poisson's
-        ratio, on an initial loading and on a loop between full slip in both directions. It is 0 for
-        nu = 0.
+        Largest difference in force between the model and the full contact due to Poisson's ratio.
+        The difference is computed on an initial loading, and on a loop between full slip in both
+        directions. The difference is 0 for nu = 0.
     """
 
     stiffness: np.ndarray

@@ -3,8 +3,8 @@
 A contact that moves along a line exerts the same force as independent springs at |x| < c(d) (Popov,
 Popov and Popov, Mater. Res. 4, 2017). Here d is the indentation divided by its mean, and c is the
 contact radius. Let h(x) be the indentation at which the contact radius is x; for a sphere, h(x) =
-x^2. A spring at x slides at the stretch d - h(x) in u_lim. The stretch of a spring that came into
-contact at the time T is
+x^2. A spring at x slides at the stretch d - h(x), in units of u_lim. The stretch of a spring that
+came into contact at the time T is
 
     min over tau from T to t of  v (t - tau) + d(tau) - h(x),
 
@@ -42,7 +42,7 @@ def mean_load(amplitude: float, by_load: bool, pressure: IndenterPressure) -> fl
     Parameters
     ----------
     amplitude : float
-        Amplitude of the load or of the indentation, divided by the mean value, >= 0.
+        Nonnegative amplitude of the load or of the indentation, divided by the mean value.
     by_load : bool
         True if the load oscillates, False if the indentation oscillates.
     pressure : pressure.Pressure
@@ -65,8 +65,8 @@ def friction(velocity: float, amplitude: float, by_load: bool, pressure: Indente
     Parameters
     ----------
     velocity : float
-        Velocity divided by omega u_lim, >= 0, where omega is the angular frequency. The value 0
-        gives the static limit.
+        Nonnegative velocity divided by omega u_lim, where omega is the angular frequency. The value
+        0 gives the static limit.
     amplitude, by_load, pressure
         See mean_load.
     """

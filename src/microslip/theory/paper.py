@@ -348,9 +348,9 @@ def transverse_drift(force: Numbers, amplitude: Numbers) -> Numbers:
     Parameters
     ----------
     force : array_like
-        Force P divided by mu F_z, >= 0.
+        Nonnegative force P, divided by mu F_z.
     amplitude : array_like
-        Amplitude A in u_lim, >= 0. It is broadcast against the force.
+        Nonnegative amplitude A, in units of u_lim. The amplitude is broadcast against the force.
 
     Returns
     -------
