@@ -2,8 +2,8 @@
 
 By the method of dimensionality reduction, an indenter with the profile f(r) is equivalent to a
 plane profile.  The plane profile is D(c) = c Integral_0^c f'(r) / sqrt(c^2 - r^2) dr.  At the
-indentation depth D(c), the contact radius is c.  Let h = D / D(1).  Writing the friction bound as a
-superposition of flat punches gives
+indentation depth D(c), the contact radius is c.  Let h = D / D(1).  If the friction bound is
+written as a superposition of flat punches, the results are
 
     G* = 1 / (2 Integral_0^1 x h'(x) dx)
     bound(r, c) = (G*/pi) Integral_r^c h'(x) / sqrt(x^2 - r^2) dx

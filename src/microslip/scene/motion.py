@@ -45,7 +45,7 @@ DEGREES = (-1e6, 1e6)
 inaccurate."""
 WEAKER = {"rotates": True, "half_disc": False, "half_period_mirror": False}
 WEAKER |= {"straight": False, "propels": True}
-"""Value of each attribute that makes the weaker assumption about the symmetry of a motion."""
+"""For each attribute, the value that makes the weaker assumption about the symmetry of a motion."""
 PLANE = ("forward", "lateral", "angle")
 NORMAL = ("load", "indentation")
 
@@ -68,8 +68,8 @@ class Wave(NamedTuple):
     degrees : float
         Phase lead, in degrees.
     form : callable
-        Waveform as a function of an array of phases.  It must have the symmetries and the turning
-        points of the sine: form(-x) = -form(x), form(pi - x) = form(x), and it rises from -1 at
+        Waveform as a function of an array of phases.  The waveform must have the symmetries of the
+        sine: form(-x) = -form(x) and form(pi - x) = form(x). The waveform must also rise from -1 at
         -pi/2 to 1 at pi/2.
     """
 
@@ -104,7 +104,7 @@ class Motion(spec.Named):
     velocity_label, amplitude_label : str
         Formulas for the dimensionless velocity and amplitude.
     periodic : bool
-        Whether the motion has an amplitude and the period 2 pi; otherwise it is steady.
+        True if the motion has an amplitude and the period 2 pi; False if the motion is steady.
     edge_velocity : bool
         Whether the dimensionless velocity is the velocity divided by the largest speed of the
         contact edge in rotation.  Otherwise, the velocity is divided by omega u_lim.

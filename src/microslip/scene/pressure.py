@@ -73,7 +73,7 @@ class Pressure(spec.Named):
         Largest pressure divided by F_z / a^2.  It equals the largest friction bound, and can be
         infinite.
     mirrored : bool
-        Whether the pressure is symmetric under lateral -> -lateral.
+        Whether the pressure is unchanged if the sign of the lateral coordinate is reversed.
     inner : float
         Radius of the hole at the centre; 0 if there is no hole.
     hertzian : bool

@@ -83,8 +83,9 @@ def longitudinal(
     Returns
     -------
     np.ndarray
-        Friction divided by mu F_z, computed by quadrature with an error of about 1e-10. It is 1 if
-        the motion never turns back (velocity >= amplitude), and 1 - curve(amplitude) at velocity 0.
+        Friction divided by mu F_z, computed by quadrature with an error of about 1e-10. The
+        friction is 1 if the motion never turns back (velocity >= amplitude). At velocity 0, the
+        friction is 1 - curve(amplitude).
 
     Raises
     ------
@@ -216,8 +217,8 @@ class Iwan:
     limit_force : np.ndarray, shape (elements,)
         Force at which each element slips.
     force_error : np.ndarray, shape (elements,)
-        Largest error of the force on the first loading near the slip displacement of each element,
-        due to the finite number of elements.
+        For each element, the largest error of the force on the first loading near the element's
+        slip displacement. The error is due to the finite number of elements.
     poisson_error : float
         Largest difference in force between the model and the full contact due to Poisson's ratio.
         The difference is computed on an initial loading, and on a loop between full slip in both

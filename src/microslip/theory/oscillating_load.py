@@ -8,10 +8,10 @@ came into contact at the time T is
 
     min over tau from T to t of  v (t - tau) + d(tau) - h(x),
 
-because at every time tau, the stretch is at most the stretch at which the spring slides. Let phi(t)
-= d(t) - v t. At any x, the stretch is smaller than this limit by phi(t) - min phi. The mean over
-the springs is an integral over T. The result is exact for Poisson's ratio 0. Quantities are
-dimensionless, in the working units of the indenter (see pressure.Pressure).
+because the stretch never exceeds the value at which the spring slides. Let phi(t) = d(t) - v t. At
+any x, the stretch is below this value by phi(t) - min phi. The mean over the springs is an integral
+over T. The result is exact for Poisson's ratio 0. Quantities are dimensionless, in the working
+units of the indenter (see pressure.Pressure).
 
 Under a sinusoidal indentation, a contact of constant stiffness, for example a flat end, acts as a
 single spring. M. Popov (Front. Mech. Eng. 6:69, 2020) gives two empirical formulas for its
