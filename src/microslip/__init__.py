@@ -76,5 +76,6 @@ def __dir__() -> list[str]:
 
 def __getattr__(name: str) -> _Any:
     if name in _WHERE:
-        return getattr(_import_module(_WHERE[name]), name)
+        value = globals()[name] = getattr(_import_module(_WHERE[name]), name)
+        return value
     raise AttributeError(f"module 'microslip' has no attribute {name!r}")

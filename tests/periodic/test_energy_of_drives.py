@@ -47,7 +47,7 @@ def balance(problem, drive, model, resolution):
         return (path.weights @ values) * 2.0 * np.pi
 
     halves = 2.0 * np.pi / (path.phase[-1] - path.phase[0])
-    swung = np.diff(np.transpose(problem.oscillation(path.phase)), axis=0)
+    swung = np.diff(np.transpose(problem.displacement(path.phase, 0.0)), axis=0)
     vibration = halves * np.vdot(0.5 * (march.forces[1:] + march.forces[:-1]), swung)
     places, rates = march.body.T
     if drive.force is None:

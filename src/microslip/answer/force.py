@@ -24,6 +24,7 @@ from microslip.answer.answer import ERRORS, UNKNOWN, Answer, Estimate, Result, a
 from microslip.answer.closed_forms import closed_form
 from microslip.answer.request import (
     RUN_SHARE,
+    TOLERANCE,
     Request,
     answer_of,
     ladder_of,
@@ -206,7 +207,8 @@ def _moving(request: Request, moving_force: float) -> Result:
     request = request.at(velocity=near)
     scale = SCALE_SHARE * near
     while True:
-        answer = runs(request, request.accuracy * max(1.0, scale), "velocity", slope=slope)
+        accuracy = (request.tolerance or TOLERANCE) * max(1.0, scale)
+        answer = runs(request, accuracy, "velocity", slope=slope)
         velocity = answer.estimates["velocity"]
         if answer.reason or scale <= max(1.0, abs(velocity.value)):
             break
@@ -384,10 +386,10 @@ def shakedown(
     endless = {"displacement": Estimate(math.inf, {"model": math.inf})}
     answer = Answer(problem, {"imposed": False}, endless, away)
     if not away:
-        ladder = ladder_of(request.at(velocity=PLANNED_VELOCITY), request.accuracy)
+        ladder = ladder_of(request.at(velocity=PLANNED_VELOCITY), tolerance)
         # the contact must come to rest in the coarsest run too
         ladder, share = replace(ladder, start=2 * ladder.start), REST_SHARE * RUN_SHARE
-        answer = runs(request, request.accuracy, "displacement", ladder=ladder, share=share)
+        answer = runs(request, tolerance, "displacement", ladder=ladder, share=share)
     still = {"friction": Estimate(force)}
     result = result_of_runs(request, answer, request.tolerance, "displacement", **still)
     displacement = answer.displacement

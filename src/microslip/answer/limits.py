@@ -184,13 +184,13 @@ def _drive_of(
 
 def oscillates_forward(problem: Problem) -> bool:
     """Return whether the oscillation has a forward component."""
-    forward = problem.oscillation(LOOP)[0]
+    forward = problem.displacement(LOOP, 0.0)[0]
     return float(np.ptp(forward)) > RETURNED * max(problem.size, 1.0)
 
 
 def oscillates(problem: Problem) -> bool:
     """Return whether the motion or the normal load oscillates."""
-    parts = problem.oscillation(LOOP)
+    parts = problem.displacement(LOOP, 0.0)
     moves = max(float(np.ptp(part)) for part in parts) > RETURNED * max(problem.size, 1.0)
     return moves or (problem.depth is not None and problem.size > 0.0)
 

@@ -28,7 +28,7 @@ from microslip.scene.problem import Problem
 if TYPE_CHECKING:  # these load compiled code, which a closed form does not need
     from microslip.answer.ladder import Ladder
     from microslip.periodic.discretise import Resolution
-    from microslip.periodic.run import Run
+    from microslip.periodic.run import Run, Settings
 
 TOLERANCE = 1e-3
 """Default tolerance.  If no tolerance is requested, this value is the accuracy of the runs."""
@@ -86,11 +86,6 @@ class Request:
     budget: Budget = field(default_factory=Budget)
     started: float = field(default_factory=time.perf_counter)
 
-    @property
-    def accuracy(self) -> float:
-        """The tolerance to which the runs are refined."""
-        return TOLERANCE if self.tolerance is None else self.tolerance
-
     def at(self, **changes: Any) -> Request:
         """Return a copy of the request in which the given fields of the problem are replaced."""
         return replace(self, problem=replace(self.problem, **changes))
@@ -136,17 +131,19 @@ def request_of(
     """
     for name, value in numbers.items():
         numbers[name] = None if value is None else limits.within(name, value)
-    budget = {"most_work": without_array(most_work), "time_limit": without_array(time_limit)}
-    for name, value in budget.items():
-        if value is not None and not (is_real(value) and value > 0.0):
-            raise InputError(name, value, "allowed is a number above 0")
+    limit = {"most_work": most_work, "time_limit": time_limit}
+    for name, value in limit.items():
+        if value is not None:
+            limit[name] = value = without_array(value)
+            if not (is_real(value) and value > 0.0):
+                raise InputError(name, value, "allowed is a number above 0")
     if progress is not None and (isinstance(progress, type) or not callable(progress)):
         raise InputError("progress", progress, "allowed is a function of one argument")
     own = limits.choose_model(problem, model)
     limits.refuse(problem, own, method)
-    work, seconds = budget.values()
-    work = MOST_WORK.get(own, MOST_WORK_OF_OTHERS) if work is None else work
-    numbers["budget"] = Budget(work, math.inf if seconds is None else seconds)
+    most, seconds = limit.values()
+    most = MOST_WORK.get(own, MOST_WORK_OF_OTHERS) if most is None else most
+    numbers["budget"] = Budget(most, math.inf if seconds is None else seconds)
     how: dict[str, Any] = {"method": method, "progress": progress, "chosen": model == "auto"}
     return Request(problem=problem, model=own, **how, **numbers)
 
@@ -168,7 +165,7 @@ def answer_of(request: Request) -> Result:
     if by_formula or problem.amplitude == 0.0:
         exact = closed_form(problem, tolerance or 0.0)
     if exact is None:
-        return result_of_runs(request, runs(request, request.accuracy), tolerance)
+        return result_of_runs(request, runs(request, tolerance or TOLERANCE), tolerance)
     error = exact["friction"].error
     if tolerance is not None and error > tolerance:
         reason = f"the error is {error:.1e}, above the tolerance of {tolerance:g}"
@@ -318,6 +315,10 @@ def result_of_runs(
 ) -> Result:
     """Create the `Result` of a refinement.
 
+    The friction is clipped to its range, which is 0 to 1, or -1 to 1 for motions that can propel
+    the contact.  If the error exceeds the width of the range, the result is the middle of the
+    range, and its error is half the width.
+
     Parameters
     ----------
     request : Request
@@ -343,28 +344,19 @@ def result_of_runs(
     for one in ("friction", "dissipation" if problem.motion.periodic else "torque"):
         if one in answer.estimates:
             estimates[one] = answer.estimates[one]
-    if "friction" not in more:
-        estimates["friction"] = _within_range(problem, estimates["friction"])
+    friction, least = estimates.get("friction"), -1.0 if problem.propels else 0.0
+    # values outside the range of the friction result from rounding and discretisation errors
+    if friction is not None and not math.isfinite(friction.value):
+        estimates["friction"] = replace(friction, value=math.nan)
+    elif friction is not None and friction.error > 1.0 - least:
+        half = 0.5 * (1.0 - least)
+        estimates["friction"] = Estimate(1.0 - half, {"model": half})
+    elif friction is not None:
+        clipped = min(max(friction.value, least), 1.0)
+        estimates["friction"] = replace(friction, value=clipped)
     values = {**answer.values}
     for unused in ("finest", "imposed"):
         values.pop(unused, None)
     if request.budget.exhausted:
         values["effort"] = request.budget.taken
     return request.result(estimates | more, reason, model=request.model, **values)
-
-
-def _within_range(problem: Problem, friction: Estimate) -> Estimate:
-    """Clip the friction to its range. The range is 0 to 1, or -1 to 1 for motions that can propel
-    the contact.
-
-    Values outside this range result from rounding and discretisation errors.  If the error exceeds
-    the width of the range, the result is the middle of the range.  The error of this result is half
-    the width of the range.
-    """
-    least = -1.0 if problem.propels else 0.0
-    if not math.isfinite(friction.value):
-        return replace(friction, value=math.nan)
-    half = 0.5 * (1.0 - least)
-    if friction.error > 2.0 * half:
-        return Estimate(1.0 - half, {"model": half})
-    return Estimate(min(max(friction.value, least), 1.0), friction.by_source)

@@ -13,7 +13,7 @@ import numpy as np
 from microslip.contact.contact import MIRROR, Body, Contact, March
 from microslip.contact.influence import ring_influence
 from microslip.contact.march import march, strain_energy
-from microslip.contact.operators import multiply, padded
+from microslip.contact.operators import LANES, multiply
 from microslip.contact.path import Path
 from microslip.contact.rings import Focus, Rings, make_rings
 from microslip.contact.splitting import BALANCED_RINGS, PENALTIES
@@ -134,7 +134,7 @@ class RingContact(Contact):
         """
         to_waves, to_points, matrices = self._waves
         cells, columns = len(self.bound), matrices.shape[-1]
-        parts, width = columns // cells, padded(cells)
+        parts, width = columns // cells, -(-cells // LANES) * LANES
         penalty = self.compliance * np.sqrt(cells / BALANCED_RINGS)
         shifts = PENALTIES[:, None, None, None] * np.diag(np.tile(penalty, parts))
         each = np.concatenate([matrices[None], np.linalg.inv(matrices + shifts)])
@@ -155,12 +155,14 @@ class RingContact(Contact):
         """Convert values of shape (..., rows, cells) to fields of shape (..., points) for compiled
         code.
 
-        Each row of a field has operators.padded(cells) points.  The additional points are set to 0.
+        The number of points in each row of a field is a multiple of LANES.  The additional points
+        are set to 0.
         """
         *shape, rows, cells = values.shape
-        out = np.zeros((*shape, rows, padded(cells)))
+        points = len(self.system[1][0])
+        out = np.zeros((*shape, rows, points // rows))
         out[..., :cells] = values
-        return out.reshape(*shape, rows * out.shape[-1])
+        return out.reshape(*shape, points)
 
     def displacement(self, state: np.ndarray) -> np.ndarray:
         """Return the elastic displacement A q of each point under tractions q."""

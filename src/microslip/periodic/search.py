@@ -2,11 +2,11 @@
 
 A march is the time integration over a period or half a period.  A march maps the state at the start
 to the state at the end.  The periodic state is the fixed point of this map.  The transients of
-plain marches last about 1/(2 pi v~) periods.  Anderson acceleration finds the fixed point of the
-map much sooner.  Convergence is judged by three quantities: the residual of the plain map (without
-acceleration), the distance to the next state, and an error computed from the residual and the drift
-rate of the motion.  The last quantity is needed near the static limit, where the state changes so
-slowly that a small residual is no evidence of convergence.
+plain marches last about 1/(2 pi v~) periods.  Anderson acceleration (Walker and Ni 2011) finds the
+fixed point of the map much sooner.  Convergence is judged by three quantities: the residual of the
+plain map (without acceleration), the distance to the next state, and an error computed from the
+residual and the drift rate of the motion.  The last quantity is needed near the static limit, where
+the state changes so slowly that a small residual is no evidence of convergence.
 
 The state of a driven body includes two more numbers: the position x and the rate x' of the body
 (see contact/march.py).  In one period, unbalanced forces hardly change the state of a heavy body or
@@ -20,13 +20,14 @@ displacement.
 from __future__ import annotations
 
 import math
+from operator import sub
 from typing import NamedTuple
 
 import numpy as np
 
 from microslip.contact.contact import Body, Contact, March, StepFailure, energy_norm, project
 from microslip.contact.path import Path
-from microslip.periodic.anderson import DEPTH, accelerated
+from microslip.foundation.compiled import kernel
 from microslip.periodic.run import Budget, Effort
 
 MOST_MARCHES = 200
@@ -51,6 +52,13 @@ FORGETFUL = 0.2
 CAUTION = 0.3
 """Largest ratio of the effective stiffness of a soft spring to that of the contact.  With a larger
 ratio, the search would overshoot."""
+DEPTH = 12
+"""Number of stored differences.  Of the values 5, 8 and 12, this one needs the fewest marches for
+bores and loops."""
+DEPENDENT = 1e-8
+"""Each difference is split into a linear combination of newer differences and an orthogonal part.
+The difference is dropped if the norm of the orthogonal part is below this fraction of the full
+norm.  The value is about the square root of the rounding error."""
 AT_REST = np.zeros(2)
 """Position x and rate x' of a contact without a driven body."""
 
@@ -131,6 +139,61 @@ class PeriodicState(NamedTuple):
     marches: int
     effort: Effort
     converged: bool
+
+
+@kernel
+def accelerated(pairs: np.ndarray, count: int, scale: np.ndarray) -> np.ndarray:
+    """Return the combination of the stored images that has the smallest change.
+
+    The least-squares problem is solved by modified Gram-Schmidt, starting with the newest
+    difference.  `pairs` contains pairs of an image and a change.  The newest pair is the last one.
+    `scale` multiplies the changes in the least-squares norm; its shape and that of the result are
+    (n,).
+    """
+    images, changes = pairs[0], pairs[1]
+    last, n = count - 1, len(scale)
+    out = np.empty(n)
+    basis, triangle = np.empty((count, n)), np.zeros((count, count))
+    projection, source, residual = np.zeros(count), np.zeros(count, np.int64), np.empty(n)
+    for i in range(n):
+        out[i] = images[last, i]
+        residual[i] = changes[last, i] * scale[i]
+    size = 0
+    for j in range(last - 1, -1, -1):
+        column, whole = basis[size], 0.0
+        for i in range(n):
+            column[i] = (changes[j + 1, i] - changes[j, i]) * scale[i]
+            whole += column[i] ** 2
+        for k in range(size):
+            share = 0.0
+            for i in range(n):
+                share += basis[k, i] * column[i]
+            triangle[k, size] = share
+            for i in range(n):
+                column[i] -= share * basis[k, i]
+        rest = 0.0
+        for i in range(n):
+            rest += column[i] ** 2
+        if not rest > DEPENDENT**2 * whole:
+            continue
+        length, share = np.sqrt(rest), 0.0
+        for i in range(n):
+            column[i] /= length
+            share += column[i] * residual[i]
+        for i in range(n):
+            residual[i] -= share * column[i]
+        triangle[size, size], projection[size], source[size] = length, share, j
+        size += 1
+    for k in range(size - 1, -1, -1):
+        factor = projection[k]
+        for p in range(k + 1, size):
+            factor -= triangle[k, p] * projection[p]
+        projection[k] = factor / triangle[k, k]
+    for k in range(size):
+        j, factor = source[k], projection[k]
+        for i in range(n):
+            out[i] -= factor * (images[j + 1, i] - images[j, i])
+    return out
 
 
 def matched(
@@ -226,15 +289,15 @@ def find_periodic_state(
     # the last states by the plain map, and the changes of the state, newest last
     pairs, count = np.empty((2, DEPTH + 1, len(scale))), 0
     state = above = start
-    last, forgets, returns, iterations = math.inf, True, 0, 0
+    last, forgets, returns = math.inf, True, 0
+    budget = budget or Budget()
+    before = budget.taken
     march, best = None, None
     for marches in range(1, goal.most_marches + 1):
         if body is not None:  # RingContact, or another contact that supports drives
             drive = {"body": body, "start": place}
         march = contact.march(path, state, inner, march, **drive)
-        iterations += march.iterations
-        if budget is not None:
-            budget.take(march.solves, march.iterations, state.size)
+        budget.take(march.solves, march.iterations, state.size)
         image = contact.mirrored(march.state) if mirror else march.state
         moved = factors * (march.body[-1] - march.body[0]) if remembers else AT_REST
         if soft and factors[0] > 1.0:
@@ -286,5 +349,5 @@ def find_periodic_state(
         state, place = following, there
     assert best is not None  # there is at least one march
     distance, march, state, residual = best
-    effort = Effort.of(marches * march.solves, iterations, state.size)
+    effort = Effort(*map(sub, budget.taken, before))
     return PeriodicState(march, state, residual, distance, marches, effort, converged)

@@ -15,6 +15,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import replace
+from functools import partial
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -373,7 +374,8 @@ def _at_limit(setup: Setup, start: Start) -> tuple[np.ndarray, Start]:
     limit."""
     problem, contact = setup.problem, setup.contact
     tolerance = STEP_SHARE * max(problem.drift ** (2.0 / 3.0), setup.goal.tolerance)
-    line = limit_on_a_line(contact, problem.oscillation, tolerance, setup.settings.budget)
+    oscillation = partial(problem.displacement, velocity=0.0)
+    line = limit_on_a_line(contact, oscillation, tolerance, setup.settings.budget)
     limit = line.shift + line.oscillating
     if not unsolved(line.march, tolerance):
         start = start._replace(static_force=line.force)

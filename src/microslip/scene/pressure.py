@@ -80,6 +80,10 @@ class Pressure(spec.Named):
         Whether the contact is an elliptic Hertz contact.  The stick zone of such a contact is an
         ellipse of the same shape (Vermeulen and Johnson), so that `loading` is the same as for a
         sphere.
+    is_round : bool
+        Whether the pressure depends on the radius alone.
+    is_indenter : bool
+        Whether the pressure belongs to an axisymmetric indenter.
     readings : tuple of Pressure
         Alternative pressures that agree with the values on a grid.  The differences in friction
         between these pressures are an estimate of the error due to the grid.
@@ -96,6 +100,7 @@ class Pressure(spec.Named):
     area: ClassVar[Any] = np.pi
     """Contact area divided by a^2."""
     inner = 0.0
+    readings = ()
     half_widths: ClassVar[Any] = (1.0, 1.0)
     """Half the forward width and half the lateral width of the rectangle around the contact,
     divided by a."""
@@ -128,6 +133,13 @@ class Pressure(spec.Named):
     """loading(u) returns the tangential force at nu = 0 after a displacement u in one direction
     from rest. The force is divided by mu F_z, and the nonnegative displacement by u_lim.  This
     loading curve is defined for axisymmetric indenters and elliptic Hertz contacts."""
+
+    is_round: ClassVar[bool] = False
+    is_indenter: ClassVar[bool] = False
+
+    def __init_subclass__(cls, **arguments: Any) -> None:
+        super().__init_subclass__(**arguments)
+        cls.is_round, cls.is_indenter = cls.ring_means is not None, cls.depth is not None
 
     def __post_init__(self) -> None:
         spec.refuse_strange(self, "pressure")
@@ -223,20 +235,6 @@ class Pressure(spec.Named):
         return Measured.on_grid(f"array:sha256={digest},grid={grid}", x, y, values, grid)
 
     @property
-    def readings(self) -> tuple[Pressure, ...]:
-        return ()
-
-    @property
-    def is_round(self) -> bool:
-        """Whether the pressure depends on the radius alone."""
-        return self.ring_means is not None
-
-    @property
-    def is_indenter(self) -> bool:
-        """Whether the pressure belongs to an axisymmetric indenter."""
-        return self.depth is not None
-
-    @property
     def stiffness(self) -> float:
         """Tangential force for a uniform displacement u_lim without slip, divided by mu F_z.
 
@@ -314,7 +312,7 @@ class Measured(spec.NamedByText, Pressure):
     step: float = 1.0
     peak: float = 1.0
     units: Units = NO_UNITS
-    readings: tuple[Measured, ...] = ()
+    readings: tuple[Measured, ...] = ()  # type: ignore[assignment]
 
     summary = "a pressure on a grid"
     mirrored = False

@@ -205,6 +205,8 @@ class Problem:
             on_a_line=straight and not motion.loads,
             depth=depth if motion.loads else None,
         )
+        if not motion.loads:
+            vars(self).update(mean_load=1.0)
 
     def __str__(self) -> str:
         """Describe the problem in one line. Arguments with default values are omitted."""
@@ -229,10 +231,6 @@ class Problem:
         if self.follows:
             forward = forward - motion.moved(phase, 0.0, self.size, self.poisson)[0]
         return sign * forward, lateral, sign * angle
-
-    def oscillation(self, phase: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Return the rigid displacement (forward, lateral, angle) at a phase, for velocity 0."""
-        return self.displacement(phase, 0.0)
 
     @cached_property
     def turns(self) -> tuple[float, ...]:
@@ -283,8 +281,6 @@ class Problem:
     @cached_property
     def mean_load(self) -> float:
         """Mean normal load over a period, divided by the reference load."""
-        if not self.motion.loads:
-            return 1.0
         return float(self.motion.mean_load(self.size, self.pressure))
 
     @property
@@ -294,5 +290,5 @@ class Problem:
         if not (self.motion.readings or self.pressure.readings):
             return ()
         motions = (replace(self, motion=other) for other in self.motion.readings)
-        pressures = (replace(self, pressure=other) for other in self.pressure.readings)
-        return (*motions, *pressures)
+        others: tuple[Pressure, ...] = self.pressure.readings
+        return (*motions, *(replace(self, pressure=other) for other in others))
