@@ -21,6 +21,9 @@ def test_what_cannot_be_opened_is_one_line(tmp_path):
         open_map("old", tmp_path)
     path.write_bytes(path.read_bytes()[:-100])
     (tmp_path / "link.nc").symlink_to(path)
+    (tmp_path / "lost.nc").symlink_to("data/lost.nc")
+    with pytest.raises(CacheError, match="lost.nc is a link to .*data/lost.nc, which is not there"):
+        open_map("lost", tmp_path)
     with pytest.raises(CacheError, match=f"link.nc: it is truncated .* delete {path} and run the"):
         open_map("link", tmp_path)
 

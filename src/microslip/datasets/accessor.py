@@ -29,7 +29,9 @@ class Map:
     ----------
     dataset : xarray.Dataset
         Dataset of a sweep, a selection from it, or several such datasets joined, in memory or in
-        dask chunks.  The dataset of a certified map must be whole.
+        dask chunks.  A selection must contain mu_macro, mu_macro_error (for a map over forces,
+        velocity and velocity_error), checksum and all coordinates.  The dataset of a certified map
+        must be whole.
     """
 
     def __init__(self, dataset: xr.Dataset):
@@ -79,6 +81,12 @@ class Map:
             if one not in requests:
                 raise InputError(one, None, f"needed; the map has {low:g} to {high:g}")
         chosen = {one: _coordinate(one, requests[one]) for one in ranges if one in requests}
+        sizes: dict[Any, int] = {}
+        for one, array in chosen.items():
+            if {**sizes, **array.sizes} != {**array.sizes, **sizes}:
+                allowed = f"allowed are the sizes of the other coordinates, {sizes}"
+                raise InputError(one, dict(array.sizes), allowed)
+            sizes |= array.sizes
         value, error = xr.apply_ufunc(
             partial(_block, of_map, {one: ranges[one] for one in chosen}),
             *chosen.values(),

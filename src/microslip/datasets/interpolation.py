@@ -49,8 +49,9 @@ PARTS = (*NUMBERS, "mu_macro", "cell_error", "cell_node", *sum(BORDERS.values(),
 SAME = 1e-12
 """Difference below which two coordinates count as equal."""
 CHANGED = (
-    "in the dataset, so it is not the computed map: open it again with open_map, and select from "
-    "the result of `at` (or delete its file in results/data, and run the sweep again)"
+    "allowed is the computed map, a certified map as a whole: open it again with open_map, and "
+    "apply operations other than a selection to the result of `at` (if the file itself has "
+    "changed, delete it in results/data, and run the sweep again)"
 )
 ANY = "microslip.solve computes any"
 
@@ -340,7 +341,7 @@ def cells_of(dataset: xr.Dataset) -> Cells:
     for name, checksum in (original | checksums).items():
         is_lost = name not in checksums and name not in AXES
         if is_lost or original.get(name) != checksum:
-            raise InputError(name, "is missing" if is_lost else "has changed", CHANGED)
+            raise InputError(name, None if is_lost else "changed", CHANGED)
     coordinates = MapCoordinates.from_json(dataset.attrs[COORDINATES])
     borders = np.array([[parts[n] for n in BORDERS[d]] for d in coordinates.directions], float)
     nodes = parts["mu_macro"].astype(float)[parts["cell_node"].astype(int)]
@@ -368,7 +369,8 @@ def checksums(axes: Iterable[ArrayLike], value: np.ndarray, error: np.ndarray) -
 
 
 def grid_of(dataset: xr.Dataset, name: str) -> Grid:
-    """Read a variable of a regular map as a `Grid`.  Values that did not converge count as unknown.
+    """Read a variable of a regular map as a `Grid`.  Points that did not converge, whose checksum
+    is 0, count as unknown.
 
     Raises InputError with the name of the variable or coordinate that is missing or not allowed, or
     if a known value is not that of a computed point.
@@ -376,24 +378,28 @@ def grid_of(dataset: xr.Dataset, name: str) -> Grid:
     names = [name, f"{name}_error", CHECKSUM]
     nodes = dataset[[one for one in names if one in dataset.variables]]
     dims = [dim for dim in AXES if dim in nodes.dims]
-    for one in (*dims, *names, "poisson"):
+    for one in (*dims, *names, "poisson", "velocity" if name == "mu_macro" else "force"):
         if one not in nodes.variables or not nodes[one].size:
-            raise InputError(one, "is missing", CHANGED)
+            needed = f"needed: select {', '.join(names)} and keep all coordinates of the map"
+            raise InputError(one, None, needed)
         if nodes[one].dtype.kind not in "iuf":
             raise InputError(one, f"of type {nodes[one].dtype}", "allowed are numbers")
     for dim in nodes.dims:
         if dim not in dims:
-            raise InputError(str(dim), nodes.sizes[dim], "entries; allowed is one: select it")
-        if nodes[dim].to_index().has_duplicates:
-            raise InputError(str(dim), "is there twice", CHANGED)
-    if "converged" in dataset:
-        nodes = nodes.where(dataset["converged"] == 1)  # a join fills gaps with NaN
+            allowed = (
+                "allowed is one entry of a dimension that is no coordinate of a map: select it"
+            )
+            raise InputError(str(dim), nodes.sizes[dim], allowed)
+        index = nodes[dim].to_index()
+        for one in index[index.duplicated()]:
+            raise InputError(dim, one, "occurs twice; allowed: once")
     nodes = nodes.compute().sortby(dims).transpose(*dims)
     value, error, original = (nodes[one].values for one in names)
+    value = np.where(original == 0, np.nan, value)
     coordinates = [nodes[one] for one in AXES if one in nodes.coords]
     has_changed = checksums(coordinates, value, error) != original.ravel()
-    if has_changed[~np.isnan(value.ravel())].any():
-        raise InputError(name, "has changed", CHANGED)
+    for one in value.ravel()[has_changed & ~np.isnan(value.ravel())]:
+        raise InputError(name, float(one), f"not computed at its coordinates; {CHANGED}")
     axes = {}
     for dim in dims:
         values = nodes[dim].values.astype(float)

@@ -75,14 +75,15 @@ def open_map(
     try:
         if path.suffix != ".nc":
             path = Path(results, f"{name}.nc")
-            if not path.is_file() and str(name) not in PAPER:
+            if not os.path.lexists(path) and str(name) not in PAPER:
                 names = sorted(file.stem for file in Path(results).glob("*.nc"))
                 there = ", ".join(names) or f"nothing in {results} yet"
                 allowed = f"allowed is {there}, or a path that ends in .nc"
                 raise InputError("name", name, f"{near_miss(name, names)}{allowed}")
         if not path.is_file():
             advice = "run the workflow first, or name its results folder"
-            raise CacheError(f"{path} is not there: {advice}")
+            link = f" is a link to {os.path.realpath(path)}, which" if os.path.islink(path) else ""
+            raise CacheError(f"{path}{link} is not there: {advice}")
         if not is_whole(path):
             raise OSError("it is truncated or not a netCDF-4 file")
         refuse_oversized(path)
