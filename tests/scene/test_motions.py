@@ -62,10 +62,6 @@ def test_a_backward_motion_is_the_image_in_a_mirror_across_the_lateral_axis():
     assert image[1] == pytest.approx(point[1])
 
 
-class OwnWave(Motion):
-    waves = {"lateral": Wave(form=lambda phase: phase)}  # not periodic
-
-
 def own(*parts):
     """A class of motions with these displacements, as functions of phase and velocity."""
 
@@ -89,9 +85,15 @@ def declared(base=Motion, **attributes):
     return type("Own", (base,), attributes)
 
 
+FORMS = {
+    "form\\(-x\\)": lambda phase: phase,  # not periodic
+    "lateral: .* shape \\(3,\\)": lambda phase: np.zeros(3),
+    "lateral: .* not finite": lambda phase: np.full(phase.shape, np.nan),
+}
 STILL, LOOP = own(ahead, aside, lambda p, v: 0.0 * p), own(ahead, aside, lambda p, v: np.cos(p))
 OWN = [
-    OwnWave,
+    Motion,
+    declared(waves=[("lateral", Wave())]),
     *(
         declared(waves={"lateral": Wave(), name: one})
         for name, one in (("sideways", Wave()), ("angle", 1.0))
@@ -136,6 +138,7 @@ def test_an_own_displacement_is_accepted_while_it_is_finite():
         (Force, {"force": 0.5, "mass": -1.0}, "mass"),
         (Spring, {"stiffness": -1.0}, "stiffness"),
         *((one, {}, "motion = ") for one in OWN),
+        *((declared(waves={"lateral": Wave(form=f)}), {}, text) for text, f in FORMS.items()),
         *((Problem, PLACE | {name: one}, name) for name in PLACE for one in (None, [1.0], 10**400)),
         (Pressure, {}, "pressure = .*defines G_star"),
         *((Elliptic, {"phase": value}, "phase") for value in (math.nan, math.inf, "1", None)),

@@ -24,6 +24,7 @@ from microslip.answer.ladder import LOAD, ladder_for
 from microslip.answer.refine import READING_SAFETY, SMALLEST_SHARE, WEIGHTS, extrapolate
 from microslip.contact.contact import Contact, StepFailure, forward_slip, full_slip
 from microslip.contact.path import LONG_STROKE, make_path
+from microslip.foundation.arguments import refuse_progress
 from microslip.foundation.errors import InputError
 from microslip.periodic.discretise import Resolution, contact_of, tractions_at_phases
 from microslip.periodic.run import unsolved
@@ -125,8 +126,8 @@ def history(
     cells: int | None = None,
     steps: int | None = None,
     start: str = "stress-free",
-    periods: int = 3,
-    travel: float = 5.0,
+    periods: int | None = None,
+    travel: float | None = None,
 ) -> History:
     """Compute the force history of an oscillation or a steady motion from an initial state.
 
@@ -142,10 +143,10 @@ def history(
     start : str
         "stress-free" (full stick), "full-slip" (forward slip everywhere) or "full-rotation"
         (rotational slip everywhere).
-    periods : int
-        Number of periods of an oscillation.
-    travel : float
-        Travel of a steady motion, in u_lim.
+    periods : int or None
+        Number of periods of an oscillation.  Defaults to 3.
+    travel : float or None
+        Travel of a steady motion, in u_lim.  Defaults to 5.
 
     Returns
     -------
@@ -166,8 +167,15 @@ def history(
     refuse_start("start", start, problem.motion.rotates)
     cells = CELLS if cells is None else limits.within("cells", cells, low=2, kind="whole")
     steps = STEPS if steps is None else limits.within("steps", steps, low=1, kind="whole")
+    unused, value = ("travel", travel) if periodic else ("periods", periods)
+    if value is not None:
+        kind = "a steady motion" if periodic else "an oscillation"
+        raise InputError(
+            unused, value, f"allowed is none for {problem.motion.name}, only for {kind}"
+        )
+    periods = 3 if periods is None else periods
     periods = limits.within("periods", periods, high=limits.LIMITS["periods"].high // steps)
-    travel = limits.within("travel", travel)
+    travel = 5.0 if travel is None else limits.within("travel", travel)
     if not periodic and travel / velocity > LONGEST_PHASE:
         allowed = f"allowed is at least {LONGEST_PHASE:g} times less than the travel, {travel:g}"
         raise InputError("velocity", velocity, allowed)
@@ -309,8 +317,7 @@ def response(
         path, first, start = _joined(state, path)
     refuse_start("state", start, path.rotates, "a Response or ")
     tolerance = limits.within("tolerance", tolerance, high=1.0)
-    if progress is not None and (isinstance(progress, type) or not callable(progress)):
-        raise InputError("progress", progress, "allowed is a function of two arguments")
+    refuse_progress(progress, 2)
     problem = Problem(path, poisson=poisson, pressure=pressure_named(pressure))
     for name in ("pressure", "poisson"):
         if isinstance(state, Response) and getattr(problem, name) != getattr(state.problem, name):

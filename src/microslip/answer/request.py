@@ -11,6 +11,7 @@ previous run.
 from __future__ import annotations
 
 import math
+import sys
 import time
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace
@@ -19,7 +20,7 @@ from typing import TYPE_CHECKING, Any
 from microslip.answer import limits
 from microslip.answer.answer import CLOSED_FORM, Answer, Estimate, Result
 from microslip.answer.closed_forms import closed_form
-from microslip.foundation.arguments import is_real, without_array
+from microslip.foundation.arguments import is_real, refuse_progress, without_array
 from microslip.foundation.errors import InputError
 from microslip.periodic.methods import SHIPPED, method_named
 from microslip.periodic.run import Budget
@@ -137,8 +138,7 @@ def request_of(
             limit[name] = value = without_array(value)
             if not (is_real(value) and value > 0.0):
                 raise InputError(name, value, "allowed is a number above 0")
-    if progress is not None and (isinstance(progress, type) or not callable(progress)):
-        raise InputError("progress", progress, "allowed is a function of one argument")
+    refuse_progress(progress, 1)
     own = limits.choose_model(problem, model)
     limits.refuse(problem, own, method)
     most, seconds = limit.values()
@@ -165,6 +165,11 @@ def answer_of(request: Request) -> Result:
     if by_formula or problem.amplitude == 0.0:
         exact = closed_form(problem, tolerance or 0.0)
     if exact is None:
+        smallest = sys.float_info.epsilon * (1.0 + problem.stroke) / (2.0 * math.pi)
+        if moves and problem.drift < smallest:  # the drift in a period is a rounding error
+            least = smallest / problem.unit_drift
+            allowed = f"allowed is 0 for the limit of vanishing velocity, or at least {least:.1e}"
+            raise InputError("velocity", velocity, allowed)
         return result_of_runs(request, runs(request, tolerance or TOLERANCE), tolerance)
     error = exact["friction"].error
     if tolerance is not None and error > tolerance:

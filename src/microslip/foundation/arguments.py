@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import sys
+from inspect import signature
 from numbers import Integral
 from typing import Any, TypeGuard
 
@@ -37,6 +38,19 @@ def without_array(value: Any) -> Any:
     if numpy is not None and type(value) is numpy.ndarray and value.size == 1:
         return value.reshape(())[()]
     return value
+
+
+def refuse_progress(value: Any, count: int) -> None:
+    """Raise InputError unless a value is None or a function that accepts `count` arguments."""
+    if value is None:
+        return
+    try:
+        signature(value).bind(*range(count))
+    except ValueError:  # some built-in functions have no signature
+        return
+    except TypeError:
+        allowed = f"allowed is a function of {count} argument{'s' * (count > 1)}"
+        raise InputError("progress", value, allowed) from None
 
 
 def is_real(value: object) -> TypeGuard[float]:

@@ -87,7 +87,8 @@ class Sources:
             if (name := queue.pop()) not in closure:
                 closure.add(name)
                 queue += filter(inside, self._imports(self._parsed(name)[1]))
-        return closure | {n for n in self.names if n[-4:] == ".csv" and f"{n[:-4]}.py" in closure}
+        tables = (f"{name[:-3]}.csv" for name in closure if name.endswith(".py"))
+        return closure | {name for name in tables if (self.folder / name).is_file()}
 
     @property
     def solver(self) -> set[str]:

@@ -80,7 +80,7 @@ class Wave(NamedTuple):
 
     def __call__(self, phase: np.ndarray) -> np.ndarray:
         lead = math.radians(self.degrees % 360.0)
-        return self.share * self.form(self.cycles * phase + lead)
+        return self.share * np.asarray(self.form(self.cycles * phase + lead))
 
 
 @dataclass(frozen=True)
@@ -130,20 +130,23 @@ class Motion(spec.Named):
 
     def __post_init__(self) -> None:
         spec.refuse_strange(self, "motion")
-        for name, wave in self.waves.items():
+        waves = self.waves if isinstance(self.waves, Mapping) else {"waves": self.waves}
+        for name, wave in waves.items():
             if name not in (*PLANE, *NORMAL) or not isinstance(wave, Wave):
-                allowed = f"allowed are a Wave for each of {', '.join(PLANE + NORMAL)}"
-                self._refuse(f"waves: {name!r} is {wave!r}; {allowed}")
+                allowed = f"allowed is a mapping of some of {', '.join(PLANE + NORMAL)} to a Wave"
+                self._refuse(f"waves: {name!r} is {shown(wave)}; {allowed}")
             spec.refuse_outside(self.name, "motion", name, wave.share, (0.0, 1.0, "a share"))
             spec.refuse_outside(self.name, "motion", f"phase of {name}", wave.degrees, DEGREES)
             if not is_real(wave.cycles) or wave.cycles not in range(1, MOST_CYCLES + 1):
                 key = f"{'normal' if name in NORMAL else name}_cycles = {shown(wave.cycles)}"
                 self._refuse(f"{key}: allowed is a whole number from 1 to {MOST_CYCLES}")
-            if not callable(wave.form) or not _is_like_sine(wave.form):
+            if not callable(wave.form) or not self._is_like_sine(f"form of {name}", wave.form):
                 allowed = "with form(-x) = -form(x), form(pi - x) = form(x) and form(pi/2) = 1"
                 self._refuse(f"form of {name}: allowed is a function {allowed}")
-        if self.waves and not self.components:
-            self._refuse(f"allowed is {' or '.join(self.waves)} above 0")
+        is_sum = type(self).displacement is Motion.displacement
+        if not self.components and (self.waves or self.periodic and is_sum):
+            allowed = f"allowed is {' or '.join(self.waves or PLANE + NORMAL)} above 0"
+            self._refuse(f"nothing oscillates; {allowed}")
         if self.components.keys() >= {*NORMAL}:
             self._refuse("waves: allowed is load or indentation, not both")
         if self.components.keys() - NORMAL - self.moving or not self.periodic and self.waves:
@@ -310,18 +313,32 @@ class Motion(spec.Named):
         parts = self.displacement(phase, velocity, amplitude, poisson)
         if self._sines:
             return np.array(parts)
+        return self._checked("displacement", parts, (3, *np.shape(phase)), phase)
+
+    def _checked(
+        self, name: str, values: Any, shape: tuple[int, ...], phase: np.ndarray
+    ) -> np.ndarray:
+        """Return the values of a user's function at a phase as one array."""
         try:
-            values = np.array(parts)
+            array = np.array(values)
         except ValueError:  # arrays of different shapes
-            values = np.array(None)
-        if values.shape != (3, *np.shape(phase)) or values.dtype.kind not in "if":
-            problem = "allowed is three arrays of real numbers, with the shape of the phase"
-            self._refuse(f"displacement: {problem}")
-        if not np.isfinite(values).all():
-            where = np.broadcast_to(phase, values.shape)[~np.isfinite(values)][0]
+            array = np.array(None)
+        if array.shape != shape or array.dtype.kind not in "if":
+            found = f"{array.dtype} of the shape {array.shape}"
+            self._refuse(f"{name}: returns {found}; allowed are real numbers of the shape {shape}")
+        if not np.isfinite(array).all():
+            where = np.broadcast_to(phase, shape)[~np.isfinite(array)][0]
             problem = f"returns a number that is not finite at the phase {where:.6g}"
-            self._refuse(f"displacement: {problem}; allowed are finite numbers")
-        return values
+            self._refuse(f"{name}: {problem}; allowed are finite numbers")
+        return array
+
+    def _is_like_sine(self, name: str, form: Callable[[np.ndarray], np.ndarray]) -> bool:
+        """Return whether a waveform has the symmetries of the sine and equals 1 at pi/2."""
+        phase = np.linspace(-2.0 * np.pi, 2.0 * np.pi, 33)
+        values = self._checked(name, form(phase), phase.shape, phase)
+        images = np.array([np.negative(form(-phase)), form(np.pi - phase)])
+        is_symmetric = np.allclose(images, values, rtol=0.0, atol=ROUNDING)
+        return bool(is_symmetric and abs(values[20] - 1.0) <= ROUNDING)  # phase[20] is pi/2
 
     def drift(self, velocity: float, amplitude: float, poisson: float) -> float:
         """Compute the mean forward displacement per radian of phase, in units of u_lim.
@@ -445,15 +462,6 @@ class Motion(spec.Named):
             mu = oscillating_load.friction(slow, size, by_load, pressure)
             return mu, 2.0 * np.pi * velocity * mu * self.mean_load(amplitude, pressure)
         return None
-
-
-def _is_like_sine(form: Callable[[np.ndarray], np.ndarray]) -> bool:
-    """Return whether a waveform has the symmetries of the sine and equals 1 at pi/2."""
-    phase = np.linspace(-2.0 * np.pi, 2.0 * np.pi, 33)
-    values = form(phase)
-    images = np.stack([-form(-phase), form(np.pi - phase)])
-    same = np.shape(values) == phase.shape and np.allclose(images, values, rtol=0.0, atol=ROUNDING)
-    return bool(same and np.allclose(form(np.array([0.5 * np.pi])), 1.0, rtol=0.0, atol=ROUNDING))
 
 
 def within_rings(radius: float) -> float:
