@@ -91,6 +91,9 @@ class SampledPath(_Samples):
     def deepest(self, amplitude: float, pressure: Pressure) -> float:
         return float(self.depth(np.arange(len(self.rows)), amplitude, pressure).max())
 
+    def focus(self, velocity: float, amplitude: float, pressure: Pressure) -> None:
+        """Return None, because kinks of the traction move along the path."""
+
     def lengths(self, pressure: Pressure) -> np.ndarray:
         """For each pair of consecutive rows, compute the largest displacement of any contact point,
         in units of u_lim.
