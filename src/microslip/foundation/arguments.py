@@ -65,9 +65,10 @@ def is_real(value: object) -> TypeGuard[float]:
 def real(name: str, value: object, low: float, high: float = math.inf) -> float:
     """Return the value as a float if it is a finite number between `low` and `high`.  Otherwise,
     raise InputError."""
-    value = without_array(value)
-    if not is_real(value):
-        raise InputError(name, value, "allowed is a number")
+    if type(value) is not float:
+        value = without_array(value)
+        if not is_real(value):
+            raise InputError(name, value, "allowed is a number")
     try:
         number = float(value)
     except OverflowError:  # a whole number of more than 308 digits

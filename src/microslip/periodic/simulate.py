@@ -29,7 +29,7 @@ from microslip.contact.contact import (
     forward_slip,
     project,
 )
-from microslip.contact.path import EULER, make_path
+from microslip.contact.path import EULER, Path, make_path
 from microslip.periodic.discretise import (
     Resolution,
     contact_of,
@@ -169,20 +169,63 @@ def simulate(
     run.Spent
         If the budget is exceeded.
     """
-    method, drive = settings.method, problem.drive
+    method, rests = settings.method, problem.velocity == 0.0
     try:
         if method.run is not None:
             return method.run(problem, model, resolution, tolerance * problem.mean_load)
         if not problem.motion.periodic:
             contact = contact_of(problem, model, resolution, settings)
             return steady_state(contact, problem, tolerance * problem.mean_load, settings.budget)
-        if problem.velocity == 0.0 and drive is None:
+        if rests and problem.drive is None:
             return static_run(problem, model, resolution, tolerance, settings)
-        if problem.velocity == 0.0 and problem.force is not None:
+        if rests and problem.force is not None:
             return run_to_rest(problem, model, resolution, tolerance, settings)
-        return _periodic_run(problem, model, resolution, tolerance, settings, guess=guess)
+        setup = _discretised(problem, model, resolution, tolerance, settings)
+        find: Any = method.search or find_periodic_state
+        periods, effort = 0.0, Effort()
+        for start in _starts(setup, guess):
+            goal = setup.goal._replace(static_force=start.static_force, least=start.least)
+            if start.near:
+                goal = goal._replace(most_marches=MARCHES_FROM_COARSER, near=True)
+            drive: dict[str, Any] = {}
+            if setup.body is not None:
+                drive = {"body": setup.body, "place": start.place}
+                if problem.force is None:
+                    # 1 - mu decreases at most as fast as 1 / velocity^2, as at large velocities
+                    fall = 2.0 * (1.0 - start.friction) * problem.mean_load
+                    drive["slope"] = fall / (problem.drift * setup.interval)
+            place = setup.contact, setup.path, start.state, goal
+            common = {"mirror": problem.half_period_mirror, "budget": settings.budget}
+            periodic = find(*place, **common, **drive)
+            periods += start.periods + setup.lap * periodic.marches
+            effort += start.effort + periodic.effort
+            if periodic.converged:
+                break
     except StepFailure as failure:
         return failed_run(str(failure))
+    march, reason = periodic.march, unsolved(periodic.march, goal.step_tolerance)
+    if not periodic.converged:
+        reason = f"no periodic state within {periods:g} periods: {periodic.distance:.1e} left"
+    mean = mean_forces(setup.contact, problem, setup.path, march.forces)[FORWARD]
+    values = {
+        "friction": float(mean) / problem.mean_load,
+        "dissipation": dissipated_energy(setup.contact, setup.path, march),
+    }
+    if setup.body is not None:
+        advance = float(march.body[-1, 0] - march.body[0, 0]) / setup.interval
+        values["velocity"] = problem.velocity + advance / problem.unit_drift
+    return Run(
+        values,
+        distance=periodic.distance / setup.unit,
+        residual=march.residual / setup.unit,
+        periods=periods,
+        effort=effort,
+        reason=reason,
+        state=periodic.start,
+        place=march.body[0] if len(march.body) else AT_REST,
+        static_force=start.static_force,
+        limit=start.limit,
+    )
 
 
 class Start(NamedTuple):
@@ -191,9 +234,11 @@ class Start(NamedTuple):
     Attributes
     ----------
     state : np.ndarray
-        Tractions.
+        Tractions, minus those of the static limit if `above_limit` is True.
     place : np.ndarray, shape (2,)
         x and x' of a driven body.
+    above_limit : bool
+        Whether the tractions of the static limit are still to be added.
     near : bool
         Whether the tractions are interpolated from a coarser mesh.
     friction : float
@@ -208,6 +253,7 @@ class Start(NamedTuple):
 
     state: np.ndarray
     place: np.ndarray = AT_REST
+    above_limit: bool = False
     near: bool = False
     friction: float = np.nan
     static_force: float = np.nan
@@ -224,162 +270,122 @@ class Setup(NamedTuple):
     ----------
     problem, model, resolution, settings
         See `simulate`.
+    tolerance : float
+        Tolerance in the unit of the result.
     contact : contact.Contact
         The contact.
+    path : path.Path
+        Path over a period, or half a period.
     body : contact.Body or None
         The driven body and its drive; None if the velocity is prescribed.
     goal : search.Goal
         Goal of the search.
-    relative : float
-        Tolerance in the unit of the result.
+    unit : float
+        Force, divided by mu F_z, that corresponds to an error of 1 in the result.  If the velocity
+        is prescribed or a spring pulls the contact, the result is a force.  For a prescribed force,
+        the result is a velocity, and `unit` is the smaller of two estimates.  The first estimate is
+        the product of two numbers: the stiffness of the contact, and the displacement of the
+        contact in an interval at velocity 1.  The second estimate is the rise of the friction force
+        with the velocity.
+    interval, lap : float
+        Length of the path as a phase, and as a number of periods.
     """
 
     problem: Problem
     model: str
     resolution: Resolution
     settings: Settings
+    tolerance: float
     contact: Contact
+    path: Path
     body: Body | None
     goal: Goal
-    relative: float
+    unit: float
+    interval: float
+    lap: float
 
 
-def _periodic_run(
-    problem: Problem,
-    model: str,
-    resolution: Resolution,
-    relative: float,
-    settings: Settings,
-    *,
-    guess: Run | None,
-) -> Run:
-    """Search for the periodic state of one run, trying several initial states in turn.
-
-    `relative` is the tolerance of the result.  `unit` is the force, divided by mu F_z, that
-    corresponds to an error of 1 in the result.  If the velocity is prescribed or a spring pulls the
-    contact, the result is a force.  For a prescribed force, the result is a velocity, and `unit` is
-    the smaller of two estimates.  The first estimate is the product of two numbers: the stiffness
-    of the contact, and the displacement of the contact in an interval at velocity 1.  The second
-    estimate is the rise of the friction force with the velocity.
-    """
-    method, drive, full = settings.method, problem.drive, problem.mean_load
+def _discretised(
+    problem: Problem, model: str, resolution: Resolution, tolerance: float, settings: Settings
+) -> Setup:
+    """Discretise a problem with a periodic state."""
+    drive, full = problem.drive, problem.mean_load
     contact = contact_of(problem, model, resolution, settings)
-    path = path_of(problem, contact, resolution.steps, method.integrator)
+    path = path_of(problem, contact, resolution.steps, settings.method.integrator)
     interval = float(path.phase[-1] - path.phase[0])
     rate = contact.stiffness * problem.drift
     unit, most, body = full, MOST_MARCHES, None
+    gain = rate * interval
     if drive is not None:
         most, force = DRIVEN_MARCHES, (drive.force or 0.0) * full
         constant = force - drive.damping * problem.drift
         body = Body(drive.stiffness, drive.damping, drive.mass, constant)
-        if drive.force is not None:
+        if drive.force is not None:  # the velocity is not known
             stuck = contact.stiffness * interval * problem.unit_drift
-            unit = min(stuck, settings.slope * full)
+            unit, gain = min(stuck, settings.slope * full), np.inf
     floor = TIGHTER * SLOW_STEP_SHARE if settings.tighter else SLOW_STEP_SHARE
     share = min(max(rate * np.pi * STEP_SHARE, floor), STEP_SHARE)
-    tolerance = relative * unit
-    step_tolerance = min(share, MARCH_SHARE / resolution.steps) * tolerance
-    # if the velocity is not known, the drift gives no error
-    gain = rate * interval if problem.force is None else np.inf
-    goal = Goal(tolerance, step_tolerance, full=full, gain=gain)
-    setup = Setup(problem, model, resolution, settings, contact, body, goal, relative)
-    find: Any = method.search or find_periodic_state
-    common: dict[str, Any] = {"mirror": problem.half_period_mirror, "budget": settings.budget}
-    periods, effort, lap = 0.0, Effort(), 0.5 if problem.half_period_mirror else 1.0
-    for start in _prescribed(setup, guess) if body is None else _driven(setup, guess):
-        if body is not None:
-            common |= {"body": body, "place": start.place}
-            if drive is not None and drive.force is None:
-                # 1 - mu decreases at most as fast as 1 / velocity^2, as at large velocities
-                fall = 2.0 * (1.0 - start.friction) * full
-                common["slope"] = fall / (problem.drift * interval)
-        goal = goal._replace(
-            most_marches=MARCHES_FROM_COARSER if start.near else most,
-            near=start.near,
-            static_force=start.static_force,
-            least=start.least,
-        )
-        periodic = find(contact, path, start.state, goal, **common)
-        periods += start.periods + lap * periodic.marches
-        effort += start.effort + periodic.effort
-        if periodic.converged:
-            break
-    march = periodic.march
-    reason = unsolved(march, step_tolerance)
-    if not periodic.converged:
-        reason = f"no periodic state within {periods:g} periods: {periodic.distance:.1e} left"
-    mean = mean_forces(contact, problem, path, march.forces)[FORWARD]
-    values = {
-        "friction": float(mean) / full,
-        "dissipation": dissipated_energy(contact, path, march),
-    }
-    if body is not None:
-        advance = float(march.body[-1, 0] - march.body[0, 0]) / interval
-        values["velocity"] = problem.velocity + advance / problem.unit_drift
-    return Run(
-        values,
-        distance=periodic.distance / unit,
-        residual=march.residual / unit,
-        periods=periods,
-        effort=effort,
-        reason=reason,
-        state=periodic.start,
-        place=march.body[0] if len(march.body) else AT_REST,
-        static_force=start.static_force,
-        limit=start.limit,
-    )
+    step_tolerance = min(share, MARCH_SHARE / resolution.steps) * (tolerance * unit)
+    goal = Goal(tolerance * unit, step_tolerance, most, full=full, gain=gain)
+    how = problem, model, resolution, settings, tolerance
+    lap = 0.5 if problem.half_period_mirror else 1.0
+    return Setup(*how, contact, path, body, goal, unit, interval, lap)
 
 
-def _prescribed(setup: Setup, guess: Run | None) -> Iterator[Start]:
-    """Yield initial states at a prescribed velocity, best first."""
+def _starts(setup: Setup, guess: Run | None) -> Iterator[Start]:
+    """Yield initial states, best first.  Static limits are added to states that need them."""
     problem, contact, settings = setup.problem, setup.contact, setup.settings
-    slipping, method = forward_slip(contact), settings.method
-    start = Start(slipping)
-    if problem.straight or not contact.sticks:
-        start = start._replace(static_force=0.0)
+    rise, tolerance = problem.drift ** (2.0 / 3.0), setup.goal.tolerance
+    # the accuracy of a static limit is chosen according to the rise of friction above it
+    inner, first = STEP_SHARE * max(rise, tolerance), Start(forward_slip(contact))
+    if setup.body is None and (problem.straight or not contact.sticks):
+        first = first._replace(static_force=0.0)
+    start = first
+    for start in (_prescribed if setup.body is None else _driven)(setup, guess, first):
+        state = start.state
+        if start.above_limit and problem.straight:
+            oscillation = partial(problem.displacement, velocity=0.0)
+            line = limit_on_a_line(contact, oscillation, inner, settings.budget)
+            limit = line.shift + line.oscillating
+            state, start = state + limit, start._replace(limit=limit)
+            if not unsolved(line.march, inner):
+                start = start._replace(static_force=line.force)
+        elif start.above_limit:
+            # the force of this limit only sets `least`
+            rest = replace(problem, velocity=0.0)
+            steps, integrator = setup.resolution.steps, settings.method.integrator
+            path = path_of(rest, contact, steps, integrator)
+            place = contact, rest, path, max(rise, tolerance), inner
+            loop, oscillating = limit_on_a_loop(*place, settings.budget)
+            state = loop.oscillating + loop.shift + state
+            periods, effort = setup.lap * oscillating.marches, oscillating.effort
+            start = start._replace(least=loop.force, periods=periods, effort=effort)
+        if start.above_limit or start.near:
+            state = project(state, contact.bound)
+        yield start._replace(state=state)
+    if setup.body is None:
+        slipping = forward_slip(contact)
+        yield start._replace(state=slipping, near=False, periods=0.0, effort=Effort())
+
+
+def _prescribed(setup: Setup, guess: Run | None, start: Start) -> Iterator[Start]:
+    """Yield initial states at a prescribed velocity, best first; the last one is full slip."""
+    problem, contact = setup.problem, setup.contact
     known = None if guess is None else _from_run(setup, guess, start)
     if known is not None:
         yield known
-        start = known._replace(state=slipping, near=False)
-    # the accuracy of a static limit is chosen according to the rise of friction above it
-    near_limit, rise = method.prepared and contact.sticks, problem.drift ** (2.0 / 3.0)
-    if near_limit and problem.straight:
+        start = start._replace(static_force=known.static_force, limit=known.limit)
+    rise, slow = problem.drift ** (2.0 / 3.0), problem.drift < SLOW_LOOP
+    if problem.straight:
         # if the drift alone adds full friction in an interval, Goal.drift_error is at most the
         # change of the state, whatever the limit
-        if setup.goal.gain < problem.mean_load:
-            limit, start = _at_limit(setup, start)
-            excess = min(SLOW_EXCESS * rise, LARGEST_EXCESS)
-            start = start._replace(state=limit + excess * slipping)
-    elif near_limit and problem.drift < SLOW_LOOP:
-        # the force of this limit only sets `least`
-        rest, tolerance = replace(problem, velocity=0.0), max(rise, setup.goal.tolerance)
-        path = path_of(rest, contact, setup.resolution.steps, method.integrator)
-        loop, oscillation = limit_on_a_loop(
-            contact, rest, path, tolerance, STEP_SHARE * tolerance, settings.budget
-        )
-        start = start._replace(
-            # a factor of SLOW_EXCESS would prevent convergence at the smallest drifts
-            state=loop.oscillating + loop.shift + rise * slipping,
-            least=loop.force,
-            periods=oscillation.marches * (0.5 if problem.half_period_mirror else 1.0),
-            effort=oscillation.effort,
-        )
-    if method.prepared:
-        yield start._replace(state=project(start.state, contact.bound))
-    yield start._replace(state=slipping, periods=0.0, effort=Effort())
-
-
-def _at_limit(setup: Setup, start: Start) -> tuple[np.ndarray, Start]:
-    """Return the tractions of the static limit of a motion on a line, and the start with this
-    limit."""
-    problem, contact = setup.problem, setup.contact
-    tolerance = STEP_SHARE * max(problem.drift ** (2.0 / 3.0), setup.goal.tolerance)
-    oscillation = partial(problem.displacement, velocity=0.0)
-    line = limit_on_a_line(contact, oscillation, tolerance, setup.settings.budget)
-    limit = line.shift + line.oscillating
-    if not unsolved(line.march, tolerance):
-        start = start._replace(static_force=line.force)
-    return limit, start._replace(limit=limit)
+        slow = setup.goal.gain < problem.mean_load
+    if slow and contact.sticks:
+        # for a loop, a factor of SLOW_EXCESS would prevent convergence at the smallest drifts
+        excess = min(SLOW_EXCESS * rise, LARGEST_EXCESS) if problem.straight else rise
+        start = start._replace(state=excess * start.state, above_limit=True)
+    if setup.settings.method.prepared:
+        yield start
 
 
 def _from_run(setup: Setup, run: Run, start: Start) -> Start | None:
@@ -394,42 +400,37 @@ def _from_run(setup: Setup, run: Run, start: Start) -> Start | None:
     if state.shape == (2, *contact.forward_position.shape):
         return start._replace(state=state, static_force=run.static_force, limit=run.limit)
     # the static limit, which has kinks, is computed on each mesh
-    near = contact.prolong(state if run.limit is None else state - run.limit)
-    if near is None:
-        return None
-    if run.limit is not None:
-        limit, start = _at_limit(setup, start)
-        near = near + limit
-    return start._replace(state=project(near, contact.bound), near=True)
+    above = run.limit is not None
+    near = contact.prolong(state - run.limit if above else state)
+    return None if near is None else start._replace(state=near, near=True, above_limit=above)
 
 
-def _driven(setup: Setup, guess: Run | None) -> Iterator[Start]:
+def _driven(setup: Setup, guess: Run | None, start: Start) -> Iterator[Start]:
     """Yield initial states under a prescribed force or on a spring, best first."""
     problem, resolution, contact = setup.problem, setup.resolution, setup.contact
     body, force, full = setup.body, problem.force, problem.mean_load
     assert body is not None
-    start = Start(forward_slip(contact))
     known = None if guess is None else _from_run(setup, guess, start)
     if known is not None:
         yield known
-        start = known
+        start = start._replace(static_force=known.static_force, limit=known.limit)
+    periods, effort = 0.0, Effort()
     if resolution.steps >= PREPARED_FROM:  # a run with fewer steps has a similar state
         fewer = replace(resolution, steps=resolution.steps // COARSENING)
-        run = simulate(problem, setup.model, fewer, setup.relative, settings=setup.settings)
-        start = start._replace(periods=run.periods, effort=run.effort)
+        run = simulate(problem, setup.model, fewer, setup.tolerance, settings=setup.settings)
+        periods, effort = run.periods, run.effort
         known = _from_run(setup, run, start)
         if known is not None:
-            yield known
-            start = known._replace(periods=0.0, effort=Effort())
+            yield known._replace(periods=periods, effort=effort)
+            periods, effort = 0.0, Effort()
     share, free = max(setup.goal.tolerance, LOOSEST_START) / full, replace(problem, drive=None)
     run = simulate(free, setup.model, resolution, share, settings=setup.settings)
     start = start._replace(
-        near=False,
         friction=run.mu,
         static_force=run.static_force,
         limit=run.limit,
-        periods=start.periods + run.periods,
-        effort=start.effort + run.effort,
+        periods=periods + run.periods,
+        effort=effort + run.effort,
     )
     # tractions at a prescribed velocity, and their mean force over a period
     slipping = forward_slip(contact)
