@@ -125,6 +125,9 @@ def test_a_force_on_a_steady_bore_inverts_equation_21():
     # 1 - 0.1 / v^2, the series of Eq 21 for fast sliding
     fast = microslip.solve("continuous-bore", force=1.0 - 1e-6)
     assert fast.velocity == pytest.approx(np.sqrt(0.1e6), rel=1e-5)
+    cone = microslip.solve("continuous-bore", force=0.6, pressure="power:exponent=1")
+    back = microslip.solve("continuous-bore", cone.velocity, pressure="power:exponent=1")
+    assert back.mu_macro == pytest.approx(0.6, abs=1e-9)
     spring = microslip.solve("continuous-bore", 0.3, stiffness=0.1, mass=2.0)
     assert spring.mu_macro == microslip.solve("continuous-bore", 0.3).mu_macro
 

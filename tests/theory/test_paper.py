@@ -59,7 +59,7 @@ def test_kernels_are_eqs_19_and_20(ratio):
     assert theory.torque_kernel(ratio) == pytest.approx(torque, rel=1e-10, abs=1e-12)
 
 
-@pytest.mark.parametrize("velocity", [1e-6, 0.1, 0.8, 0.999, 1.0, 1.001, 1.5, 30.0, 1e6])
+@pytest.mark.parametrize("velocity", [0.0, 1e-6, 0.1, 0.8, 0.999, 1.0, 1.001, 1.5, 30.0, 1e6])
 def test_closed_bore_forms_are_the_integrals_of_the_kernels(velocity):
     forward, torque = indenters.bore_of(hertz_pressure, velocity)
     assert theory.bore_forward(velocity) == pytest.approx(forward, rel=1e-10)

@@ -263,7 +263,7 @@ def bore_of(pressure: Callable[[float], float], velocity: Numbers) -> tuple[Numb
         Function that returns the pressure, in any unit, for a radius divided by the contact radius
         (0 to 1).
     velocity : array_like
-        Velocity divided by omega a, above 0, as an array of any shape.
+        Velocity divided by omega a, at least 0, as an array of any shape.
 
     Returns
     -------
@@ -275,7 +275,7 @@ def bore_of(pressure: Callable[[float], float], velocity: Numbers) -> tuple[Numb
     ValueError
         If a velocity is out of range or the load is not positive.
     """
-    velocity = checked("velocity", velocity, low_open=True)
+    velocity = np.maximum(checked("velocity", velocity), np.finfo(float).tiny)
     forward = _bore_mean(pressure, velocity, paper.forward_kernel, power=1)
     return forward, _bore_mean(pressure, velocity, paper.torque_kernel, power=2)
 
@@ -306,7 +306,8 @@ def _total(pressure: Callable[[float], float], power: int) -> float:
 def _integral(function: Callable[[float], float], start: float, end: float) -> float:
     from scipy.integrate import quad  # the import takes a third of a second
 
-    return quad(function, start, end, epsabs=0.0, epsrel=1e-11, limit=200)[0]
+    # the full output has no warnings, which quad gives near the limit of rounding
+    return quad(function, start, end, epsabs=0.0, epsrel=1e-11, limit=200, full_output=1)[0]
 
 
 def _each(function: Callable[[float], float], values: np.ndarray) -> Numbers:
