@@ -14,7 +14,7 @@ from pathlib import Path
 
 import numpy as np
 
-from microslip.contact import convolution, splitting
+from microslip.contact import convolution, ring_contact
 from microslip.contact.modes import polar_contact
 from microslip.contact.ring_contact import RadialContact
 from microslip.periodic.discretise import Resolution
@@ -77,7 +77,7 @@ def main():
     contacts = [name for name in CONTACTS if "squares" not in name]
 
     def balanced(value):
-        splitting.BALANCED_RINGS = value
+        ring_contact.BALANCED_RINGS = value
 
     table("BALANCED_RINGS", (3, 6, 12, 24, 48), balanced, contacts)
     balanced(12)

@@ -10,8 +10,9 @@ import time
 from statistics import median
 
 from microslip.contact.contact import forward_slip
-from microslip.contact.path import EULER, half_period_phases, make_path
+from microslip.contact.path import EULER, make_path, phases_between
 from microslip.periodic.discretise import Resolution, contact_of
+from microslip.scene.motion import HALF_PERIOD
 from microslip.scene.named import Bore, Transverse
 from microslip.scene.problem import Problem
 
@@ -28,7 +29,7 @@ def cost(model, cells, angles):
     """Return unknowns, iterations per step, and CPU seconds per step (median of three runs)."""
     problem = Problem(Transverse() if model == "radial" else Bore(), 0.1, 1.0)
     contact = contact_of(problem, model, Resolution(cells, angles, STEPS))
-    path = make_path(problem.displacement, half_period_phases(STEPS), EULER)
+    path = make_path(problem.displacement, phases_between(HALF_PERIOD, STEPS), EULER)
     start = forward_slip(contact)
     contact.march(path, start, TOLERANCE)  # compiles
     times = []
