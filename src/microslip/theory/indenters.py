@@ -275,7 +275,8 @@ def bore_of(pressure: Callable[[float], float], velocity: Numbers) -> tuple[Numb
     ValueError
         If a velocity is out of range or the load is not positive.
     """
-    velocity = np.maximum(checked("velocity", velocity), np.finfo(float).tiny)
+    slow = np.finfo(float).tiny
+    velocity = np.asarray(np.maximum(checked("velocity", velocity), slow))
     forward = _bore_mean(pressure, velocity, paper.forward_kernel, power=1)
     return forward, _bore_mean(pressure, velocity, paper.torque_kernel, power=2)
 
