@@ -99,6 +99,8 @@ VALUES = {
 FORCED = {"speed": None, "force": "1 N"}
 SPRUNG = {"drive_stiffness": "1 N/um"}
 STEADY = {"MOTION": "continuous-bore", "amplitude": None}
+OSCILLATING = {"MOTION": "normal", "amplitude": None, "load_amplitude": "3 N"}
+ALL_WRONG = {"load": None, "table": "wrong.csv"}
 SEARCH = {"amplitude": None, "reduction": "50 %"}
 ELASTIC = {"material": None, "young": "210 GPa", "nu": "0.3"}
 PUSHED = {"velocity": None, "force": "0.1"}
@@ -109,6 +111,7 @@ CHANGES = [
     ("predict", {"MOTION": "elliptic", "forward_amplitude": "0 m", "amplitude": "0 m"}),
     ("predict", ELASTIC | {"young": "1 MPa", "radius": "40 mm", "counter_radius": "1 mm"}),
     ("predict", {"counter_radius": "1 m", "radius_across": "1 mm"}),
+    ("predict", OSCILLATING | {"radius_across": "8 mm"}),
     ("predict", {"contact_radius": "1 mm", "radius": "5 mm"}),
     ("predict", {"radius": None, "pressure": "hertz", "contact_radius": None}),
     *(("predict", ELASTIC | {"nu": text}) for text in (None, "0.7")),
@@ -121,7 +124,7 @@ CHANGES = [
     ("predict", {"table": "contacts.csv", "load": "1 N"}),
     ("predict", {"table": "contacts.csv", "amplitude": "0..1 um"}),
     ("predict", {"table": "contacts.csv", "load": None, "output": "contacts.csv"}),
-    ("predict", {"load": None, "table": "wrong.csv"}),
+    ("predict", ALL_WRONG),
     (
         "predict",
         {"amplitude": "0..1 um", "speed": "1..2 m/s", "phase": "0..1 deg", "figure": "a.png"},
@@ -164,7 +167,7 @@ def named(name, value):
 
 SINGLE = [(c, {n: v}) for c, of in VALUES.items() for n, values in of.items() for v in values]
 COMMAND_LINES = [(command_line(c, new), named(*[*new.items()][-1])) for c, new in SINGLE + CHANGES]
-COMMAND_LINES += LINES
+COMMAND_LINES += [*LINES, (command_line("predict", ALL_WRONG), "in line 2 (the first of 2 refused")]
 WHITE = np.random.default_rng(4).normal(size=2000)
 NOISE = "\n".join(f"{t},{x:.4f}" for t, x in enumerate(WHITE))
 TABLES = {
@@ -172,7 +175,7 @@ TABLES = {
     "path.csv": "forward [um]\n0\n1\n",
     "units.csv": "forward [N]\n0\n1\n",
     "contacts.csv": "load [N]\n10\n",
-    "wrong.csv": "load [mm]\n5\n",
+    "wrong.csv": "load [mm]\n5\n6\n",
     "noise.csv": f"time [ms],lateral [um]\n{NOISE}\n",
     "bare.csv": "lateral\n1\n2\n3\n4\n5\n",
     "newton.csv": "lateral [N]\n1\n2\n3\n4\n5\n",

@@ -33,7 +33,7 @@ LENGTHS = [
     ("1/4 inch", "did you mean '0.25 inch'?"),
     (Fraction(1, 8), 0.125),
     ("1,5 mm", "decimals follow a point"),
-    ("1 \u00b1 0.1 um", "in it '1': 1 is a number without a unit"),
+    ("1 \u00b1 0.1 um", "1 is a number without a unit (did you mean '1 um +- 0.1 um'?)"),
     ("5 mm*rad", "the unit is mm*rad"),
     ("5 N", "units of m"),
     ("5", "a number without a unit"),

@@ -8,6 +8,7 @@ from microslip.foundation.csv_table import read_table, table_of
 from microslip.foundation.errors import InputError
 
 NAMES = {"load": "N", "speed": "m/s", "amplitude": "m", "mu": "", "counterbody": None}
+NAMES |= {"load_amplitude": "N", "rotation_amplitude": "rad"}
 
 
 @pytest.mark.parametrize(
@@ -19,6 +20,7 @@ NAMES = {"load": "N", "speed": "m/s", "amplitude": "m", "mu": "", "counterbody":
         ('counterbody,mu\n"70 GPa, 0.22",0.3\n', {"counterbody": ["70 GPa, 0.22"], "mu": ["0.3"]}),
         ("\ufeffLOAD (N)\r\n−10\r\n'20", {"load": ["-10 N", "20 N"]}),
         ("load [N]\r10\r", {"load": ["10 N"]}),
+        ("Load-Amplitude [N]\trotation  amplitude\n1\t2 deg\n", {"load_amplitude": ["1 N"]}),
         # empty columns and rows at the end
         ("load [N],mu,,\n10,0.3,,\n,,,\n,,,\n", {"load": ["10 N"], "mu": ["0.3"]}),
         ('"load\n[N]",label\n10,"one\nof two"\n', {"load": ["10 N"], "label": ["one of two"]}),
@@ -54,6 +56,10 @@ def test_a_decimal_comma_is_read_if_declared():
         "counterbody": ["70 GPa, 0.22", "steel", None],
     }
     assert table.errors[2].startswith("line 4: load is '1.5'; allowed: no points")
+    text = 'load [N],mu\n"<0,1",1\n"1 234,5",1\n1,2,3\n'
+    problems = read_table(text.encode(), NAMES, decimal=",").errors.values()
+    parts = ("load is '<0,1'", "load is '1 234,5'", "give decimal = ','")
+    assert [a in b for a, b in zip(parts, problems, strict=True)] == [True, True, False]
     for text in ('load [N],mu\n"1,5","0,3"\n', "load [N]\n1,5\n"):
         assert read_table(text.encode(), NAMES, decimal=",").columns["load"] == ["1.5 N"]
 
@@ -81,7 +87,9 @@ def test_an_unreadable_row_does_not_refuse_the_others(text, problem):
     ("text", "message"),
     [
         ("", "line 1: the heading is ''"),
-        ("load [N],sped\n1,2\n", "line 1: a column 'sped'; did you mean speed"),
+        ("load [N],sped\n1,2\n", "line 1: the heading has a column 'sped'; did you mean speed"),
+        ("load in N,mu\n1,2\n", "line 1: the heading has a column 'load in N'; "),
+        ("mu;load: N\n1;2\n", "line 1: the heading has a column 'load: N'; "),
         ("load [N],load [kN]\n1,2\n", "line 1: load is there twice"),
         ("LabVIEW Measurement\t\nX_Value\tVoltage\n0\t1\n", "line 1: .*allowed: .* LabVIEW file"),
         ("load,counterbody\nN,steel\n1,steel\n", r"line 2: load is 'N'.*as in load \[N\]"),
@@ -119,7 +127,8 @@ def test_a_heading_may_need_a_unit(unit):
         (pd.DataFrame({0: ["5 N"]}), {}, "^table = 0: names of columns must be texts"),
         ({"load": [1.0], "mu": [1.0, 2.0]}, {}, "^table = .*: columns of 1 and 2 values"),
         ("empty.csv", {}, "^table = 'empty.csv': no line follows"),
-        ("bad.csv", {}, "^table = 'bad.csv': line 2: load is 'x'"),
+        ("bad.csv", {}, "^table = 'bad.csv': line 2: load is 'x'.*all 2 lines are"),
+        (pd.DataFrame({"load [N]": ["5,0"]}), {"decimal": ","}, "^decimal = ',': allowed for a"),
     ],
 )
 def test_other_objects_are_refused(source, form, message, tmp_path, monkeypatch):

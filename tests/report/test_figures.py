@@ -220,7 +220,7 @@ def test_predictions_have_the_values_of_the_dataset():
     assert lower.get_xlabel() == "speed (mm/s)" and lower.get_xscale() == "log"
     assert "friction force (mN)" in lower.get_ylabel() and "dimensionless" in upper.get_ylabel()
     titles = [text.get_text() for text in upper.get_legend().get_texts()]
-    assert titles == ["load 50 mN", "not converged", "load 100 mN"]
+    assert titles == ["load 50 mN", "not converged", "95 % interval", "load 100 mN"]
     for axes, name, factor in ((upper, "mu_apparent", 1.0), (lower, "friction_force_N", 1e3)):
         values = factor * dataset[name].values
         _, second = artists(axes, "computed")
@@ -229,6 +229,9 @@ def test_predictions_have_the_values_of_the_dataset():
         (hollow,) = ordinates(axes, "unconverged")
         assert hollow == pytest.approx(values[0, 1:2])
         bars = artists(axes, "error")[1].get_segments()
+        _, band = artists(axes, "uncertainty")
+        ends = band.get_datalim(axes.transData).intervaly
+        assert ends == pytest.approx([values[1].min() * 0.9, values[1].max() * 1.2])
         error = 0.01 * values[1, :, None]
         assert [np.ptp(bar, axis=0) for bar in bars] == pytest.approx(error * [0.0, 2.0])
 

@@ -221,8 +221,9 @@ def test_a_file_and_its_frame_are_read_alike(closed, tmp_path):
     assert one.mu == other.mu == pytest.approx(MU, rel=1e-3)
     assert one.rows["frequency_Hz"][0] == pytest.approx(1e3) and one.rows["row_load_N"][0] == 10.0
     data = one.to_xarray()
+    assert one.understood["nu"] == "0 (default)"
     units = [data[name].units for name in ("fitted", "mu", "speed_m_s")]
-    assert units == ["N", "1", "m s-1"] and data.label.values.tolist() == list("abcdefgh")
+    assert units == ["N", "1", "m/s"] and data.label.values.tolist() == list("abcdefgh")
 
 
 @pytest.mark.slow
@@ -248,7 +249,7 @@ def test_the_command_fits_by_a_map_and_names_the_lines_that_it_leaves_out(tmp_pa
     reasons = ["14: speed is 'fast'", "15: mu is empty", "16: speed = '-1 m/s'"]
     complaints = [f"microslip fit: line {reason}" for reason in reasons]
     text = answer(f"{line} --output fit.nc", 1, complaints)
-    assert re.search(r"^rows +12, of", text, re.M)
+    assert re.search(r"^nu +0 \(map\)\n(.*\n)*rows +12, of", text, re.M)
     assert re.search(r"^u_lim +200\.0\ nm,\ from", text, re.M)
     rows = xr.load_dataset("fit.nc")
     assert float(rows.mu) == message["mu"] and rows.label.values.tolist() == [*frame.label]

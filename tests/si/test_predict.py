@@ -80,6 +80,7 @@ def test_a_load_amplitude_above_the_load_separates_the_bodies():
     answer = microslip.solve("normal", result.velocity, 1.5, poisson=0.3, tolerance=0.01)
     assert result.mu_macro == answer.mu_macro
     assert result.friction_force_N == pytest.approx(0.3 * mean * result.mu_macro, rel=1e-9)
+    assert result.force_reduction == pytest.approx(1.0 - result.friction_force_N / 3.0)
     assert any(f"{mean:.4g} N" in text for text in result.warnings)
 
 
@@ -167,6 +168,7 @@ def test_a_failure_of_the_solver_has_its_reason(changes, unknown, monkeypatch):
     assert result.outcome is None and math.isnan(result.mu_macro)
     assert result.reason == "lost on the way"
     assert f"NOT CONVERGED: {unknown}: lost on the way" in str(result)
+    assert "nan" not in str(result) and re.search(r" unknown(: lost|$)", str(result), re.MULTILINE)
 
 
 def test_an_unconverged_static_limit_does_not_matter_for_friction_at_a_speed(monkeypatch, capsys):

@@ -42,6 +42,7 @@ WARNED = {
     "slip speed": {"density": "7850 kg/m^3", "speed": "400 m/s"},
     "beta": {"counterbody": "rigid"},
     "mu is 1.2": {"mu": 1.2},
+    "units of forces": {"mu": 0.009},
     "clean smooth surfaces adhere": {"load": "10 mN"},
     "distance between atoms": {"amplitude": "0.1 nm"},
     "every metal, ceramic or glass": {"load": "40 kN"},

@@ -205,6 +205,8 @@ def predictions():
     force = mu * load[:, None]
     variables = {"mu_apparent": mu, "friction_force_N": force, "converged": mu != 0.2}
     variables |= {"mu_apparent_error": 0.01 * mu, "friction_force_error_N": 0.01 * force}
+    for end, factor in (("low", 0.9), ("high", 1.2)):
+        variables |= {f"mu_apparent_{end}": factor * mu, f"friction_force_{end}_N": factor * force}
     variables["force_N"] = np.full(mu.shape, np.nan)
     axes = {"load_N": (load, "N", "load"), "speed_m_s": (speed, "m/s", "speed")}
     return xr.Dataset(

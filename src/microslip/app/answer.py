@@ -72,10 +72,7 @@ class Answer(NamedTuple):
         return self._replace(text="\n".join(lines))
 
     def print(self, as_json: bool) -> None:
-        text = self.text
-        if as_json:
-            text = json.dumps(plain(self.plain))
-        if text:
+        if text := json.dumps(plain(self.plain)) if as_json else self.text:
             print(text)
 
 

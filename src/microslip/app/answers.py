@@ -75,8 +75,8 @@ def predict(motion: str, table: str | None = None, **arguments: Any) -> Answer:
     The command can also predict many contacts: the rows of a table, or the values of a range.
 
     The result has error estimates, and warnings if the theory does not apply.  Every quantity has a
-    unit.  mu_macro is the friction with vibration divided by the friction without vibration.
-    mu_apparent is the coefficient of friction with vibration.  If a quantity has a standard
+    unit.  mu_macro is the mean forward force divided by mu times the mean load.  mu_apparent is the
+    coefficient of friction with vibration.  If a quantity has a standard
     uncertainty, such as '0.15 +- 0.05' or '10 N +- 5 %', the result contains intervals and, under a
     force, the probability of each outcome.  A quantity can be a range: '0..2 um' gives 11 equally
     spaced values, '0..2 um, 21' gives 21, and '0.1..10 mm/s, 21, log' gives 21 logarithmically

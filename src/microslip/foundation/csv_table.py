@@ -5,8 +5,9 @@ load [N],speed [mm/s],counterbody
 20,1,"70 GPa, 0.22"
 
 Commas, semicolons or tabs separate the columns.  A heading is a name, with or without a unit in
-brackets.  Empty lines, lines that begin with #, a first line such as "sep=;" and empty columns at
-the end are ignored.  The heading can also be a comment directly above the first line.
+brackets.  In a name, hyphens and spaces count as underscores.  Empty lines, lines that begin with
+#, a first line such as "sep=;" and empty columns at the end are ignored.  The heading can also be a
+comment directly above the first line.
 
 `pandas.read_csv` accepts invalid lines.  Under the heading "load [N],mu", pandas reads the line "1"
 as a load without a mu, and the line "1,5,0.3" as a load of 5.  If a quote is not closed, pandas
@@ -33,7 +34,7 @@ LABELS = ("label", "name", "id", "sample", "comment")
 """Columns of text that are copied to the output."""
 PURE = ("", "1", "-")
 """Accepted units in the heading of a column of pure numbers."""
-HEADING = re.compile(r"(\w+)\s*(?:\[([^\]]*)\]|\(([^()]*)\))?")
+HEADING = re.compile(r"(\w+(?:[ -]+\w+)*)\s*(?:\[([^\]]*)\]|\(([^()]*)\))?")
 NUMBER = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?|[+-]?(nan|inf|infinity)", re.I | re.A)
 NO_ROW = re.compile(r"[\s,;\"]*|\s*#(?!(N/A|NV|[A-Z/0]+[!?])).*")
 """Pattern of a comment, or of a line without cells.  #N/A and #DIV/0! are cells of spreadsheets,
@@ -47,8 +48,6 @@ DECIMAL_COMMA = re.compile(r"(?<=[0-9]),(?=[0-9])|^([+-]?),(?=[0-9])")
 GROUPED = re.compile(r"[+-]?[1-9]\d{0,2}(\.\d{3})*", re.A)
 """Pattern of a number in which each point can be a thousands separator, such as 1.100.  The pattern
 also matches numbers without a point, such as 900."""
-Heads = list[tuple[str, str | None]]
-"""Name and unit of each column."""
 Rows = Iterator[tuple[int, list[str]]]
 """Line number and cells of each row.  A row has no cells if its quotes are not in pairs."""
 UTF_8 = "allowed: UTF-8, which spreadsheets call CSV UTF-8, or the encoding of the file by name"
@@ -98,7 +97,8 @@ class Table:
         limits = dict.fromkeys(self.cells, -math.inf) | dict(least or {})
         columns = {n: zip(self.lines, cells, strict=True) for n, cells in self.cells.items()}
         return {
-            n: [_number(k, n, c or "", limits[n]) for k, c in one] for n, one in columns.items()
+            n: [_number(f"line {k}: {n}", c or "", limits[n]) for k, c in one]
+            for n, one in columns.items()
         }
 
 
@@ -146,6 +146,7 @@ def table_of(argument: str, source: Any, names: Mapping[str, str | None], **form
             if len(table.errors) < len(table.lines):
                 return table
             problem = [*table.errors.values(), "no line follows the heading; allowed: some"][0]
+            problem += f"; all {len(table.lines)} lines are invalid" * (len(table.lines) > 1)
         except OSError as error:
             problem = f"cannot be read ({error.strerror}); allowed is a file of CSV"
         except ValueError as error:
@@ -153,6 +154,8 @@ def table_of(argument: str, source: Any, names: Mapping[str, str | None], **form
         raise InputError(argument, str(source), problem)
     if not (isinstance(source, Mapping) or hasattr(source, "iloc") and hasattr(source, "columns")):
         raise InputError(argument, source, SOURCES)
+    if form.get("decimal", ".") != ".":
+        raise InputError("decimal", ",", "allowed for a file; pandas.read_csv has the same option")
     table = Table({}, {}, [], {})
     for title, values in source.items():
         if not isinstance(title, str):
@@ -217,13 +220,13 @@ def read_table(
     for k in (first, *comments[-1:]):
         if k in comments:  # a heading behind a comment mark
             lines[k] = lines[k].lstrip("# \t")
-        separator, heads, rows = _heading(lines, k, decimal)
-        problems.append(_heading_problem(lines[k], heads, names, need_units, complete))
+        separator, titles, rows = _heading(lines, k, decimal)
+        problems.append(_heading_problem(lines[k], titles, names, need_units, complete))
         if not problems[-1]:
             break
     else:
         raise ValueError(f"line {first + 1}: {problems[0]}")
-    units = dict(heads)
+    units = dict(filter(None, map(_name_and_unit, titles)))
     quantities = [name for name in units if names.get(name) is not None]
     table = Table({name: [] for name in units}, units, [], {})
     for where, cells in rows:
@@ -237,14 +240,16 @@ def read_table(
                 raise ValueError(f"line {where}: {name} is {row[name]!r}; allowed: {allowed}")
         try:
             if len(cells) != len(units):
-                raise ValueError(_count_problem(where, len(cells), len(units), separator))
+                raise ValueError(_count_problem(where, len(cells), len(units), separator, decimal))
             for name in [one for one in units if row[one] and one not in LABELS]:
+                cell = row[name]
                 if name in quantities:
-                    row[name] = _with_point(where, name, row[name], decimal)
+                    row[name] = _with_point(where, name, cell, decimal)
                 if decimal == ",":
                     row[name] = DECIMAL_COMMA.sub(r"\1.", row[name])
                 if name in quantities and units[name] is not None:
-                    _number(where, name, row[name], unit=units[name])
+                    of = f" in {units[name]}, the unit of the heading" * bool(units[name])
+                    _number(f"line {where}: {name}", row[name], of=of, cell=cell)
         except ValueError as error:
             table.errors[len(table.lines)] = str(error)
             row = {name: cell if name in LABELS else "" for name, cell in row.items()}
@@ -273,18 +278,18 @@ def lines_of(content: bytes, encoding: str) -> list[str]:
     return text.replace("\r\n", "\n").replace("\r", "\n").split("\n")
 
 
-def _heading(lines: list[str], index: int, decimal: str) -> tuple[str, Heads, Rows]:
-    """Read the heading that begins on a given line.  Returns the separator, the heading, and the
-    rows below the heading.  The returned heading is empty if no heading begins on this line."""
+def _heading(lines: list[str], index: int, decimal: str) -> tuple[str, list[str], Rows]:
+    """Read the heading that begins on a given line.  Returns the separator, the cells of the
+    heading, and the rows below the heading.  The separator is the first one for which all cells are
+    headings.  If there is no such separator, it is the one with the most cells."""
+    readings = []
     for separator in sorted(SEPARATORS, key=decimal.__eq__):  # the comma last if it is decimal
         rows = _rows(lines, index, separator)
         titles = next(rows, (0, []))[1]
         while len(titles) > 1 and not titles[-1]:
             titles.pop()
-        heads = [head for head in map(_name_and_unit, titles) if head]
-        if heads and len(heads) == len(titles):
-            return separator, heads, rows
-    return separator, [], rows
+        readings.append((separator, titles, rows))
+    return max(readings, key=lambda one: (all(map(_name_and_unit, one[1])), len(one[1])))
 
 
 def _rows(lines: list[str], index: int, separator: str) -> Rows:
@@ -315,22 +320,23 @@ def _cells(text: str, separator: str) -> list[str]:
 
 
 def _heading_problem(
-    line: str, heads: Heads, names: Mapping[str, str | None], need_units: bool, complete: str
+    line: str, titles: list[str], names: Mapping[str, str | None], need_units: bool, complete: str
 ) -> str:
     """Return a message about an invalid heading of a table, or an empty string if the heading is
     valid."""
+    heads = [_name_and_unit(title) or (title, None) for title in titles]
     columns = [name for name, _ in heads]
     how = "each with its unit" if need_units else "with a unit or without"
     shown = next((f", as in {one}" for one in EXAMPLES if one.split()[0] in names), "")
     allowed = complete or f"some of {', '.join(names)}, {how}{shown}; texts: {', '.join(LABELS)}"
     if line.startswith("LabVIEW Measurement"):
         allowed += "; of a LabVIEW file keep only the table, below a heading with units"
-    if not heads or complete and sorted(columns) != sorted(names):
+    if not titles or complete and sorted(columns) != sorted(names):
         return f"the heading is {line.strip()[:80]!r}; allowed: {allowed}"
-    for name, unit in heads:
+    for title, (name, unit) in zip(titles, heads, strict=True):
         if name not in (*names, *LABELS):
             hint = near_miss(name, names).replace("? ", "?; ")
-            return f"a column {name!r}; {hint}allowed: {allowed}"
+            return f"the heading has a column {title!r}; {hint}allowed: {allowed}"
         if columns.count(name) > 1:
             return f"{name} is there twice; allowed: {allowed}"
         if need_units and names.get(name) and not unit:
@@ -339,25 +345,24 @@ def _heading_problem(
 
 
 def _name_and_unit(title: str) -> tuple[str, str | None] | None:
-    """Return the name (in lower case) and the unit from a heading.  The unit is "" for a pure
-    number, and None if the heading has no brackets.  If the string is not a heading, the result is
-    None."""
+    """Return the name (in lower case, with underscores) and the unit from a heading.  The unit is
+    "" for a pure number, and None if the heading has no brackets.  If the string is not a heading,
+    the result is None."""
     match = HEADING.fullmatch(title)
     if match is None:
         return None
     unit = match[2] if match[3] is None else match[3]
-    return match[1].lower(), None if unit is None else "" if unit.strip() in PURE else unit.strip()
+    name = re.sub("[ -]+", "_", match[1].lower())
+    return name, None if unit is None else "" if unit.strip() in PURE else unit.strip()
 
 
-def _count_problem(where: int, count: int, columns: int, separator: str) -> str:
+def _count_problem(where: int, count: int, columns: int, separator: str, decimal: str) -> str:
     """Return a message about a row with a wrong number of cells.  `count` is the number of cells,
     or 0 if a quote is not closed."""
     what = f"{count} cells" if count else "a double quote is open or inside a cell"
-    hint = "; for decimal commas in quotes give decimal = ','" if count > columns else ""
-    allowed = (
-        f"{columns}, parted by a {SEPARATORS[separator]} as in the heading, one with such a sign"
-    )
-    return f"line {where}: {what}; allowed: {allowed} in a pair of double quotes{hint}"
+    hint = "; for decimal commas, give decimal = ','" if count > columns and decimal == "." else ""
+    allowed = f"{columns}, parted by a {SEPARATORS[separator]} as in the heading, one with such a "
+    return f"line {where}: {what}; allowed: {allowed}sign in a pair of double quotes{hint}"
 
 
 def _with_point(where: int, name: str, cell: str, decimal: str) -> str:
@@ -373,21 +378,19 @@ def _with_point(where: int, name: str, cell: str, decimal: str) -> str:
     return cell
 
 
-def _number(
-    where: int, name: str, word: str, least: float = -math.inf, unit: str | None = None
-) -> float:
+def _number(what: str, word: str, least: float = -math.inf, of: str = "", cell: str = "") -> float:
     """Convert a word to a number.
 
-    unit: unit in the heading, for the message.  Raises ValueError if the word is not a finite
-    number, or if the number is below `least`.  The message contains the line number.
+    what: line and column, for messages.  of: words about the unit in the heading, for messages.
+    cell: the word as written in the file, if it differs.  Raises ValueError if the word is not a
+    finite number, or if the number is below `least`.
     """
     if not NUMBER.fullmatch(word):
-        of = f" in {unit}, the unit of the heading" if unit else ""
-        raise ValueError(f"line {where}: {name} is {word[:40]!r}; allowed: a number{of}")
+        raise ValueError(f"{what} is {(cell or word)[:40]!r}; allowed: a number{of}")
     value = float(word)
     if not math.isfinite(value) or value < least:
         allowed = "a finite number" + (f", {least:g} or above" if math.isfinite(least) else "")
-        raise ValueError(f"line {where}: {name} is {word.lower()}; allowed: {allowed}")
+        raise ValueError(f"{what} is {word.lower()}; allowed: {allowed}")
     return value
 
 

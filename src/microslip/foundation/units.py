@@ -208,7 +208,9 @@ def _from_text(text: str, si: str, units: bool = False) -> Quantity:
         try:
             number, same = _number(part, "" if is_share else si, units)
         except ValueError as error:
-            raise ValueError(f"in it {part!r}: {error}" if rest else str(error)) from None
+            unit = NUMBER.sub("", rest[0], 1).strip() if rest and NUMBER.fullmatch(centre) else ""
+            hint = f" (did you mean '{centre} {unit} +- {rest[0]}'?)" if unit else ""
+            raise ValueError(f"in it {part!r}: {error}{hint}" if rest else str(error)) from None
         numbers.append(abs(numbers[0]) * number if is_share else number)
     number, deviation = (*numbers, 0.0)[:2]
     if rest and not 0.0 < deviation <= abs(number):

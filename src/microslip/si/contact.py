@@ -304,6 +304,8 @@ class Contact:
         allowed = "allowed is a speed above 0 for a longitudinal motion with a spring"
         springs = self.kind.name == "longitudinal" and inputs.drive_stiffness
         refuse("speed", springs and inputs.speed == 0.0, allowed)
+        allowed = "allowed is one radius, a circular contact, if the load oscillates"
+        refuse("radius_across", self.ratio != 1.0 and self._record.loads, allowed)
 
 
 def contact_of(inputs: Inputs) -> Contact:

@@ -106,7 +106,7 @@ REGION = 801
 PIECES = 60
 """Each curve of the figure has this number of linearly spaced points, and the same number of
 logarithmically spaced points."""
-ROW_UNITS = {"_Pa": "Pa", "_m_s": "m s-1", "_Hz": "Hz", "_N": "N", "_m": "m", "_si": "m"}
+ROW_UNITS = {"_Pa": "Pa", "_m_s": "m/s", "_Hz": "Hz", "_N": "N", "_m": "m", "_si": "m"}
 """Units of the variables in a dataset, keyed by the last part of the name."""
 
 
@@ -307,6 +307,10 @@ def fit(
         accuracy = TOLERANCE if tolerance is None else tolerance
         accuracy = read_quantity("tolerance", accuracy, TOLERANCES).si
         friction = _of_solver(about["rows"], motion, bodies.get("nu", 0.0), accuracy)
+    if nu is None:
+        source = "default" if map is None else "map"
+        used = np.ravel(getattr(map, "poisson", 0.0))[0]
+        texts = {"nu": f"{used:g} ({source})"} | texts
     odd = about.pop("odd")
     about |= {"motion": motion, "understood": {"motion": motion} | texts | about["understood"]}
     result = _fitted(about, friction, bodies, level)
@@ -353,7 +357,8 @@ def _read_rows(source: Any, shared: dict[str, Any], **form: str) -> dict[str, An
             problem = f"{error.argument} is {EMPTY}" if empty else error
             errors[k] = f"line {table.lines[k]}: {problem}"
     count, left_out = len(good), tuple(errors[k] for k in sorted(errors))
-    refuse(not good, (*left_out, "no rows; allowed is a row for each measurement")[0])
+    refuse(not (good or errors), "no rows; allowed is a row for each measurement")
+    refuse(not good, f"{(*left_out, '')[0]}; all {len(left_out)} lines are invalid")
     numbers, texts = dict(zip(names, np.array(list(good.values())).T, strict=True)), {}
     for one, value in shared.items():
         if (one in names) == (value is not None):

@@ -24,6 +24,7 @@ REDUCTION = (
     "in place of amplitude, speed or load: requested reduction of friction, such as '50 %'; the "
     "answer is the smallest amplitude, the largest speed or the largest load"
 )
+PHASE = "phase by which forward or spin leads sideways, or motion leads load ('90 deg'; 0)"
 TOLERANCE = (
     "largest accepted error of mu_macro (1e-3), or relative error of the speed under a force (1e-2)"
 )
@@ -88,7 +89,7 @@ INPUTS = {
     "forward_amplitude": _motion("m", "forward half stroke, for elliptic and normal", zero=True),
     "rotation_amplitude": _motion("rad", "half stroke in spin: transverse-bore, normal", zero=True),
     "load_amplitude": _motion("N", "half stroke of the normal load, for normal"),
-    "phase": _motion("rad", "phase between the oscillations ('90 deg'; 0)", -1e3, 1e3, zero=True),
+    "phase": _motion("rad", PHASE, -1e3, 1e3, zero=True),
     "frequency": _motion("Hz", "frequency, such as '20 kHz', '1200 rpm' or '125664 rad/s'"),
     "rotation": _motion("rad/s", "angular speed of continuous-bore, such as '60 rpm'"),
     "reduction": _motion("", REDUCTION, 0.0, 1.0, exact=True),

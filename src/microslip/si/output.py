@@ -42,18 +42,18 @@ OUTPUTS = {
     "u_lim": Output("m", "displacement at which the whole contact slides"),
     "largest_pressure": Output("Pa"),
     "poisson": Output("", "Poisson's ratio of the equivalent half-space"),
-    "amplitude": Output("", "dimensionless amplitude, the largest of several"),
+    "amplitude": Output("", "largest dimensionless amplitude"),
     "velocity": Output("", "dimensionless velocity"),
     "force": Output("", "dimensionless force"),
     "stiffness": Output("", "dimensionless stiffness"),
     "mass": Output("", "dimensionless mass"),
     "damping": Output("", "dimensionless damping"),
     "natural_frequency": Output("Hz", "of the mass on its spring and the sticking contact"),
-    "mu_macro": Output("", "ratio of friction with vibration to friction without", "friction"),
+    "mu_macro": Output("", "mean forward force divided by mu times the mean load", "friction"),
     "mu_apparent": Output("", "coefficient of friction with vibration", "friction mu"),
     "friction_force": Output("N", "with vibration", "friction sliding_friction"),
-    "sliding_friction": Output("N", "friction force without vibration"),
-    "force_reduction": Output("", "1 - mu_macro"),
+    "sliding_friction": Output("N", "mu times the mean load"),
+    "force_reduction": Output("", "relative to friction without vibration, mu times the load"),
     "mu_static": Output("", "mu_macro at vanishing speed", "static"),
     "mu_static_apparent": Output("", "coefficient of friction at vanishing speed", "static mu"),
     "force_threshold": Output(
@@ -153,12 +153,6 @@ def column(name: str, unit: str, kind: str = "value") -> str:
     return "_".join([name, *[kind] * (kind != "value"), *words])
 
 
-@cache
-def _attributes(name: str, unit: str, kind: str) -> dict[str, str]:
-    """Return the attributes of a column in datasets."""
-    return {"units": unit or "1", "long_name": f"{name.replace('_', ' ')}, {kind}"}
-
-
 def input_column(name: str, unit: str, kind: str = "value") -> str:
     """Return the column name of an input, such as speed_m_s."""
     factor = name == "amplitude" and not unit
@@ -241,7 +235,8 @@ class Prediction:
                 if number is not None or kind in always:
                     title = key(name, one.unit, kind)
                     columns.setdefault(title, number)  # the speed is an input or an output
-                    attributes[title] = _attributes(name, one.unit, kind)
+                    about = f"{name.replace('_', ' ')}, {kind}"
+                    attributes[title] = {"units": one.unit or "1", "long_name": about}
         return columns, attributes
 
     def to_dict(self) -> dict[str, Any]:
@@ -278,8 +273,9 @@ class Prediction:
             lines += _lines(name, self.input_values[name], sentence)
         lines.append("")
         for name, one in self.values.items():
-            title = name if name in PLAIN else name.replace("_", " ")
-            lines += _lines(title, one, OUTPUTS[name].sentence)
+            title = name if name.startswith(("mu_", "u_")) else name.replace("_", " ")  # a symbol
+            sentence = self.reason if math.isnan(one.value) else OUTPUTS[name].sentence
+            lines += _lines(title, one, sentence)
         if self.outcome:
             lines.append(line("outcome", OUTCOMES.get(self.outcome, f"it {self.reason}")))
         if self.displacement_reason:
@@ -297,10 +293,6 @@ class Prediction:
         if self.mu_static_reason:
             lines.append(f"NOT CONVERGED: static friction: {self.mu_static_reason}")
         return lines + [f"warning: {text}" for text in self.warnings]
-
-
-PLAIN = {"u_lim", "mu_macro", "mu_apparent", "mu_static", "mu_static_apparent"}
-"""Outputs whose names are symbols.  Their underscores are printed."""
 
 
 def _names() -> set[str]:
@@ -331,6 +323,7 @@ def _lines(title: str, one: Value, sentence: str) -> list[str]:
     size = max(abs(value), error if abs(value) <= error < math.inf else 0.0)
     name, scale = _scaled(size, one.unit)
     text = "infinite" if math.isinf(value) else number_text(value / scale, error / scale, name)
+    text = "unknown" if math.isnan(value) or math.isnan(error) else text
     lines = [line(title, f"{text}: {sentence}" if sentence else text)]
     if one.spread and one.low is not None and one.high is not None:
         size = max(abs(x) for x in (one.low, one.high, 0.0) if math.isfinite(x))

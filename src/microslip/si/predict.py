@@ -163,7 +163,7 @@ def factors_of(contact: Contact, answer: Prediction) -> dict[str, Any]:
     still, period = contact.mu * contact.load * mean_load, 2.0 * math.pi / contact.omega
     speed = Value(inputs.speed) if inputs.force is None else velocity * unit
     factors: dict[str, Any] = contact.drive(mean_load) | known
-    factors |= {"sliding_friction": still, "force_reduction": Value(1.0) + -1.0 * friction}
+    factors |= {"sliding_friction": still, "force_reduction": Value(1.0) + -mean_load * friction}
     factors |= {"millimetre": 1e-3, "per_area": 1.0 / contact.area}
     if contact.kind.unit == "rad" and np.all(inputs.amplitude == 0.0):
         factors["velocity"] = None

@@ -20,6 +20,7 @@ from microslip.foundation.errors import InputError, shown
 from microslip.foundation.number_text import number_text
 from microslip.scene.hertz import HERTZ
 from microslip.scene.motion import PLANE, ROUNDING, Motion
+from microslip.scene.named import Transverse
 from microslip.scene.problem import Problem
 from microslip.scene.samples import Sampled
 from microslip.si.contact import INPUT_OF, Contact, contact_of
@@ -290,6 +291,8 @@ def with_mean_load(problem: Problem) -> Problem:
         motion = replace(motion, height=None, text=f"{motion.text} (mean load)")
     else:
         waves = {name: wave for name, wave in motion.components.items() if name in PLANE}
+        if not waves:
+            return replace(problem, motion=Transverse(), amplitude=0.0)
         motion = type("MeanLoad", (Motion,), {"waves": waves})()
     problem = replace(problem, motion=motion)
     return problem if limits.oscillates(problem) else replace(problem, amplitude=0.0)
@@ -315,8 +318,9 @@ def simplifications(contact: Contact, answer: Prediction) -> list[str]:
     values may differ by at most the error of `answer`.
 
     A contact counts as simpler only if the solver can use a cheaper model, or if the load becomes
-    constant.  The list is empty for a contact under a prescribed force.  The list is also empty for
-    a result from a closed form or a map, and for a result that is not converged.
+    constant.  Poisson's ratio of a named material is not questioned.  The list is empty for a
+    contact under a prescribed force.  The list is also empty for a result from a closed form or a
+    map, and for a result that is not converged.
     """
     friction, tolerance = answer.values["friction"], contact.inputs.tolerance or TOLERANCE
     if contact.inputs.force is not None or not answer.converged or answer.model not in MODELS:
@@ -328,7 +332,8 @@ def simplifications(contact: Contact, answer: Prediction) -> list[str]:
     problem, sentences = problem_of(contact, contact.velocity, **within_range(contact.drive())), []
     for words, simplify in SIMPLER.items():
         simpler = simplify(problem)
-        if cost(simpler) < cost(problem):
+        own = simpler.poisson == problem.poisson or contact.inputs.nu is not None
+        if own and cost(simpler) < cost(problem):
             other = solve(simpler, tolerance=tolerance)
             if other.converged and abs(other.mu_macro - friction.value) <= friction.error:
                 sentences.append(f"{words}, mu_macro differs by less than its error")

@@ -6,7 +6,7 @@ from __future__ import annotations
 import math
 import os
 import re
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from itertools import product, repeat
 from typing import TYPE_CHECKING, Any
@@ -80,10 +80,10 @@ class Cases:
     errors: dict[int, str] = field(default_factory=dict)
     axes: dict[str, tuple[str, str, list[float]]] = field(default_factory=dict)
 
-    def given(self, case: int) -> dict[str, Any]:
-        """Return the inputs of a contact."""
+    def contact(self, case: int) -> Contact:
+        """Return a contact.  Raises InputError."""
         own = {n: values[case] for n, values in self.columns.items() if n not in LABELS}
-        return {**self.shared, **own}
+        return checked_contact(self.motion, **self.shared | own)
 
 
 Answers = Sequence[Prediction | InputError | str]
@@ -162,19 +162,12 @@ def predict_grid(motion: str, **given: Any) -> xr.Dataset:
     return dataset_of(grid, list(predictions(grid)))
 
 
-def read_cases(
-    motion: str,
-    source: Any,
-    shared: Mapping[str, Any],
-    *,
-    decimal: str = ".",
-    encoding: str = "utf-8",
-) -> Cases:
-    """Read the contacts of a table.  Raises InputError."""
-    path = isinstance(source, str | os.PathLike)
+def read_cases(motion: str, source: Any, shared: Mapping[str, Any], **form: Any) -> Cases:
+    """Read the contacts of a table.  The arguments `form` are those of `table_of`.  Raises
+    InputError."""
     units = {name: one.unit for name, one in INPUTS.items() if name != "map"}
-    argument = "table" if path else "cases"
-    table = table_of(argument, source, units, decimal=decimal, encoding=encoding)
+    argument = "table" if isinstance(source, str | os.PathLike) else "cases"
+    table = table_of(argument, source, units, **form)
     if not table.columns:
         raise InputError("cases", {}, f"{SOURCES}, with one column at least")
     for name in table.columns:
@@ -252,30 +245,26 @@ def predictions(cases: Cases, *, need_all: bool = False) -> Iterator[Prediction 
 
     need_all: if True, raise InputError if any contact is invalid.
     """
-    checked: list[Contact | InputError | str] = []
-    for case in range(len(cases.names)):
-        try:
-            given = cases.given(case)
-            checked.append(cases.errors.get(case) or checked_contact(cases.motion, **given))
-        except InputError as error:
-            checked.append(error)
+    cells = range(len(cases.names))
+    checked = [cases.errors.get(case) or _attempt(cases.contact, case) for case in cells]
     errors = [(k, one) for k, one in enumerate(checked) if isinstance(one, InputError)]
     if errors and (need_all or not any(isinstance(one, Contact) for one in checked)):
         first, problem = errors[0]
         if problem.argument not in cases.columns and len(set(map(str, checked))) == 1:
             raise problem
         place = f"{'at' if cases.axes else 'in'} {cases.names[first]}"
+        count = sum(not isinstance(one, Contact) for one in checked)
+        place += f" (the first of {count} refused, of {len(checked)})" * (count > 1)
         raise InputError(problem.argument, problem.value, f"{place}: {problem.allowed}")
-    return map(_prediction, checked)
+    return (_attempt(predict_contact, c) if isinstance(c, Contact) else c for c in checked)
 
 
-def _prediction(contact: Contact | InputError | str) -> Prediction | InputError | str:
-    if not isinstance(contact, Contact):
-        return contact
+def _attempt(function: Callable, argument: Any) -> Any:
+    """Return the result of a function, or the InputError that it raises."""
     try:
-        return predict_contact(contact)
+        return function(argument)
     except NoSolutionError as error:
-        return unsolved(contact, error.allowed)
+        return unsolved(argument, error.allowed)
     except InputError as error:
         return error
 

@@ -37,8 +37,10 @@ atoms."""
 SHORT, LONG = 5.0, 0.1
 """Smallest Tabor number for the JKR theory, and largest Tabor number for the DMT theory (K. L.
 Johnson and J. A. Greenwood, J. Colloid Interface Sci. 192, 1997)."""
-LARGE_MU = 1.0
-"""Coefficient of friction above which Coulomb's law is doubtful."""
+SMALL_MU, LARGE_MU = 0.01, 1.0
+"""SMALL_MU: coefficient of friction below which friction is called superlubricity (M. Z. Baykara et
+al., Appl. Phys. Rev. 5, 2018).  It is rare, and a wrong unit of a force is more likely.  LARGE_MU:
+coefficient of friction above which Coulomb's law is doubtful."""
 SMALL = 0.1
 """Largest ratio that counts as negligible in the theory."""
 STEEP = 0.2
@@ -145,6 +147,8 @@ amplitude > 0; {RANGE} > amplitude: the amplitude is {{amplitude:.2g}} m, {ATOMS
 
 mu > {LARGE_MU}: mu is {{mu:.3g}}: above 1 it is rare except for rubber and clean metals that \
 weld, for which Coulomb's law is a poor approximation
+{SMALL_MU} > mu: mu is {{mu:.3g}}: below {SMALL_MU} it is rare (superlubricity): check the units \
+of forces
 
 rubbers > 0: a Poisson's ratio of {RUBBERY} or more is that of rubber and soft polymers, whose \
 modulus increases with the frequency: give Young's modulus at this frequency; internal losses, \
@@ -155,13 +159,8 @@ that applies gives the warning."""
 PROPERTIES = {"hardness": "whether the bodies stay elastic", "density": "inertia"}
 """Checks that need an optional property of a body, keyed by the name of the property."""
 MISSING = "{what} (the {name} of {whose} is missing)"
-UNKNOWN_PULL_OFF = "adhesion (the pull-off force under this pressure is not known)"
 SIDES = ("the body", "the counterbody")
 """Names of the two bodies in sentences."""
-DISAGREES = (
-    "the {what} is {value}, but {measured} in the pressure file: only the shape of the pressure in "
-    "the file is used"
-)
 
 
 def warnings_of(contact: Contact, speed: float) -> list[str]:
@@ -195,7 +194,8 @@ def unchecked(contact: Contact) -> list[str]:
         whose = [side for side, b in sides if getattr(b, name) is None and not b.rigid]
         if whose and not (name == "hardness" and math.isinf(contact.largest_pressure)):
             texts.append(MISSING.format(what=what, name=name, whose=" and ".join(whose)))
-    return texts + [UNKNOWN_PULL_OFF] * (_pull_off(contact)[1] is None)
+    unknown = "adhesion (the pull-off force under this pressure is not known)"
+    return texts + [unknown] * (_pull_off(contact)[1] is None)
 
 
 def measures(contact: Contact, speed: float) -> dict[str, float | None]:
@@ -287,6 +287,7 @@ def _contradictions(contact: Contact) -> list[str]:
     for what, (value, name, unit) in known.items():
         sizes = [getattr(one, name, None) or value for one in readings] or [value]
         if not (1.0 - AGREES) * min(sizes) <= value <= (1.0 + AGREES) * max(sizes):
-            pair = [prefixed_text(one, unit) for one in (value, sizes[0])]
-            texts.append(DISAGREES.format(what=what, value=pair[0], measured=pair[1]))
+            first, second = (prefixed_text(one, unit) for one in (value, sizes[0]))
+            text = f"the {what} is {first}, but {second} in the pressure file: only the shape of "
+            texts.append(f"{text}the pressure in the file is used")
     return texts

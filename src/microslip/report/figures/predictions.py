@@ -43,14 +43,12 @@ def curve(dataset: xr.Dataset) -> Figure:
     """Draw friction over the longest axis, with one line for each value of the other axis.
 
     For contacts under a force, the speed is drawn instead of the friction. Values that did not
-    converge are hollow.
+    converge are hollow. If inputs are uncertain, a band shows the 95 % interval.
     """
     abscissa, lines = selection.lines(dataset, "converged")
-    attributes = {name: dataset[name].attrs for name in dataset.dims}
-    about = {n: (one["long_name"], one["units"].removeprefix("1")) for n, one in attributes.items()}
+    about = {n: (dataset[n].long_name, dataset[n].units.removeprefix("1")) for n in dataset.dims}
     size, unit = look.prefixed(dataset[abscissa].values, about[abscissa][1])
-    forced = "force_N" in dataset and bool(dataset["force_N"].notnull().any())
-    shown = DRIFT if forced else FRICTION
+    shown = DRIFT if "force_N" in dataset and dataset["force_N"].notnull().any() else FRICTION
     figure = look.new_figure(look.SINGLE, 0.4 + 1.9 * len(shown))
     grid = look.grid(figure, len(shown), 1, sharex=True)
     for axes, (variable, error, label, si) in zip(grid, shown, strict=True):
@@ -61,9 +59,14 @@ def curve(dataset: xr.Dataset) -> Figure:
             ink["label"] = ", ".join(_value(*about[o], at[o]) for o in at)
             x, y, errors, converged = columns(line, abscissa, variable, error, "converged")
             look.computed(axes, x / size, y / factor, errors / factor, converged, **ink)
+            if (name := error.replace("error", "low")) in line:
+                low, high = columns(line, name, error.replace("error", "high"))
+                band: look.Ink = {"label": "_" if k else "95 % interval", "gid": "uncertainty"}
+                band |= {"color": color, "alpha": 0.2, "lw": 0}
+                axes.fill_between(x / size, low / factor, high / factor, **band)
         axes.set_ylabel(f"{label}({prefixed or 'dimensionless'})")
         axes.set_ylim(bottom=0.0)
-        if len(lines) > 1 and axes is grid[0]:
+        if axes.get_legend_handles_labels()[0] and axes is grid[0]:
             look.legend_above(axes)
         elif len(shown) > 1:
             look.heading(axes)
