@@ -313,12 +313,11 @@ class Motion(spec.Named):
         parts = self.displacement(phase, velocity, amplitude, poisson)
         if self._sines:
             return np.array(parts)
-        return self._checked("displacement", parts, (3, *np.shape(phase)), phase)
+        return self._checked("displacement", parts, phase, 3)
 
-    def _checked(
-        self, name: str, values: Any, shape: tuple[int, ...], phase: np.ndarray
-    ) -> np.ndarray:
+    def _checked(self, name: str, values: Any, phase: np.ndarray, *rows: int) -> np.ndarray:
         """Return the values of a user's function at a phase as one array."""
+        shape = (*rows, *np.shape(phase))
         try:
             array = np.array(values)
         except ValueError:  # arrays of different shapes
@@ -335,7 +334,7 @@ class Motion(spec.Named):
     def _is_like_sine(self, name: str, form: Callable[[np.ndarray], np.ndarray]) -> bool:
         """Return whether a waveform has the symmetries of the sine and equals 1 at pi/2."""
         phase = np.linspace(-2.0 * np.pi, 2.0 * np.pi, 33)
-        values = self._checked(name, form(phase), phase.shape, phase)
+        values = self._checked(name, form(phase), phase)
         images = np.array([np.negative(form(-phase)), form(np.pi - phase)])
         is_symmetric = np.allclose(images, values, rtol=0.0, atol=ROUNDING)
         return bool(is_symmetric and abs(values[20] - 1.0) <= ROUNDING)  # phase[20] is pi/2

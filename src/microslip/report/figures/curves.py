@@ -53,6 +53,10 @@ class Line(NamedTuple):
         Text of the legend.
     limit : tuple or None
         Abscissa, ordinate and label of a closed form or of the computed static limit.
+    axes : tuple
+        If the sweep has two other axes: for each of them, the index of the line's value, and its
+        text in the legend.  The first index determines the colour of the line, and the second one
+        its marker and style.
     """
 
     points: xr.Dataset
@@ -60,6 +64,7 @@ class Line(NamedTuple):
     y: str
     title: str
     limit: tuple[np.ndarray, np.ndarray, str] | None = None
+    axes: tuple[tuple[int, str], ...] = ()
 
 
 def draw(*datasets: xr.Dataset) -> Figure:
@@ -108,8 +113,14 @@ def _lines(dataset: xr.Dataset, titled: bool) -> Iterator[Line]:
         if dim == "amplitude" and 0.0 in dataset.indexes.get("velocity", ()):
             still = dataset.sel(velocity=0.0)
         _, parts = selection.lines(moving(dataset).squeeze(), variable, dim)
+    motion, others = dataset.attrs.get("motion", ""), dataset[variable].indexes
+    others = {n: index for n, index in others.items() if n in parts[0][0]}
+    by_axis = len(others) == 2 and max(map(len, others.values())) <= len(look.LINES)
+    by_axis = by_axis and not titled and "mu_torque" not in dataset
     for at, points in parts:
-        where = look.conditions(dataset.attrs.get("motion", ""), at)
+        where = look.conditions(motion, at)
+        places = ((others[n].get_loc(at[n]), look.conditions(motion, {n: at[n]})) for n in at)
+        axes = tuple(places) if by_axis else ()
         certified = "certified map" if "error" in dataset.attrs else "computed"
         text = ", ".join(filter(None, [title, where])) or certified
         if over_force:
@@ -117,12 +128,12 @@ def _lines(dataset: xr.Dataset, titled: bool) -> Iterator[Line]:
             # A contact at rest cannot be shown on a logarithmic axis of velocities.
             if at_rest := points.sizes["force"] - moves.sizes["force"]:
                 text = f"{text} ({at_rest} at rest: not drawn)"
-            yield Line(moves, "velocity", "force", text)
+            yield Line(moves, "velocity", "force", text, axes=axes)
             continue
         rest = still.sel({one: at[one] for one in at if one in still.dims}) if still else None
         words = {"mu_macro": "force, ", "mu_torque": "torque, "}
         for name, word in words.items() if "mu_torque" in dataset else [("mu_macro", "")]:
-            yield Line(points, dim, name, f"{word}{text}", _limit(points, rest, dim, name))
+            yield Line(points, dim, name, f"{word}{text}", _limit(points, rest, dim, name), axes)
 
 
 def _limit(
@@ -154,6 +165,9 @@ def _panel(axes: Axes, lines: Sequence[Line], alone: bool, joined: bool = True) 
         color, marker, ls = look.line(k)
         room = 1.1 if alone else 1.6 if len(lines) <= MANY else 2.4
         label = look.wrapped(line.title, room, 8.0)
+        if line.axes:
+            (first, _), (second, _) = line.axes
+            color, (_, marker, ls), label = look.line(first)[0], look.line(second), ""
         label = f" {label}" if label.startswith("_") else label  # a leading "_" would hide it
         # Later markers are smaller and in front, so that neighbouring lines at one place can be
         # seen.
@@ -174,6 +188,11 @@ def _panel(axes: Axes, lines: Sequence[Line], alone: bool, joined: bool = True) 
         names = line.x, line.y, f"{getattr(line, of)}_error", "converged"
         show = look.certified if "error" in line.points.attrs else look.computed
         show(axes, *columns(line.points, *names), of=of, clip_on=False, **ink | joining)
+    for n in range(2):
+        for index, text in dict.fromkeys(line.axes[n] for line in lines if line.axes):
+            color, marker, ls = look.line(index)
+            key: look.Ink = {"color": look.GREY, "marker": marker, "ls": ls, "lw": JOINING}
+            axes.plot([], [], label=text, **key if n else {"color": color})
     quantities = [look.quantity(one.points, one.x) for one in lines]
     several = len({one.unit for one in quantities}) > 1
     text = f"{quantities[0].text}, in the units of each motion"

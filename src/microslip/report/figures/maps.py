@@ -44,6 +44,7 @@ contour."""
 HATCHED: look.Ink = {"fc": (1.0, 1.0, 1.0, 0.45), "ec": look.BLACK, "lw": 0.0, "hatch": 6 * "/"}
 REST: look.Ink = {"facecolor": look.PALE, "label": "comes to rest", "gid": "rest"}
 THRESHOLD: look.Ink = {"color": look.BLACK, "label": "static limit: threshold", "gid": "mu_static"}
+UNCERTAIN = "contours only where certain"
 RIGID = "rigid contact, same velocities"
 
 COLUMNS = {1: 1, 2: 2, 4: 2}
@@ -126,8 +127,9 @@ def _panels(dataset: xr.Dataset, title: str) -> list[Panel]:
         dataset = dataset.assign(velocity=np.log10(speed.clip(SLOWEST)), rest=speed == 0.0)
         return [Panel(one, "velocity", headed(one, title), one) for one in at_each_poisson(dataset)]
     first, *others = map(moving, at_each_poisson(dataset))
-    less = f"less ${float(first['poisson']):g}$"
-    changes = [Panel(one, "mu_macro_change", f"{look.ratio(one)} {less}", one) for one in others]
+    least = rf"\nu = {float(first['poisson']):g} \to"
+    heads = (f"${least} {float(one['poisson']):g}$" for one in others)
+    changes = [Panel(one, "mu_macro_change", next(heads), one) for one in others]
     return [Panel(first, "mu_macro", headed(first), first), *changes]
 
 
@@ -155,8 +157,7 @@ def _fill(page: Any, drawn: list[Panel], across: int) -> None:
         entries |= dict(zip(labels, handles, strict=True))
     contours = page.findobj(lambda artist: artist.get_gid() == "contours")
     is_there = any(len(path) for one in contours for path in one.get_paths())
-    if not is_there and (uncertain := entries.get("contours only where certain")):
-        uncertain.set(label="no contour is certain", linewidth=0.0)
+    note = "" if is_there or not entries.pop(UNCERTAIN, None) else "no contour is certain"
     if any(panel.variable == "mu_macro_change" for panel in drawn):
         pale = matplotlib.colormaps[DIVERGING](0.5)
         entries["pale"] = Patch(fc=pale, ec=look.GREY, lw=0.5, label="change within the errors")
@@ -165,7 +166,7 @@ def _fill(page: Any, drawn: list[Panel], across: int) -> None:
     if bad := np.count_nonzero(flags == 0):
         entries["unconverged"] = Patch(label=f"not converged ({bad} of {flags.size})", **HATCHED)
     ncols = 1 if len(drawn) == 1 else 3
-    look.legend_of_figure(page, entries.values(), "lower center", ncols=ncols)
+    look.legend_of_figure(page, entries.values(), "lower center", ncols=ncols, title=note)
 
 
 def _label(axes: list[Axes], drawn: list[Panel], across: int, room: float) -> None:
@@ -206,7 +207,7 @@ def fill(axes: Axes, panel: Panel, scale: Scale) -> ContourSet:
         complete = np.ma.count(supported) == np.ma.count(surface.values)
         contours = axes.contour(*grid, supported, scale.lines, **scale.contours())
         if not complete:
-            axes.plot([], [], color=look.BLACK, lw=0.7, label="contours only where certain")
+            axes.plot([], [], color=look.BLACK, lw=0.7, label=UNCERTAIN)
         contours.set_gid("contours")
         number_contours(axes, contours, filled, scale)
     axes.set(ylim=amplitude[[0, -1]], xlim=x[[0, -1]], gid="map")
