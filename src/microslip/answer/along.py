@@ -396,8 +396,8 @@ def _marched(
     """Integrate along a path, and return the values at every row as an array of shape (rows, 6).
 
     The six columns are the forward force, the lateral force, the torque, the dissipated energy, the
-    residual bound, and the stick fraction.  The residual bound limits the sum of all residuals
-    since the start.
+    residual bound, and the stick fraction.  The residual bound is an upper bound on the sum of all
+    residuals since the start.
     """
     path = problem.motion
     assert isinstance(path, SampledPath)
@@ -462,8 +462,8 @@ BEYOND_FULL_SLIP = 1.2
 in u_lim.  At nu = 0.5, the force at this displacement is within 2e-4 of full friction."""
 ROWS = 13
 """Number of rows in the initial loading of the comparison.  There is one row for every 0.1 u_lim.
-A branch of the loop has twice as many intervals as the initial loading.  With 49 rows, the computed
-difference is up to 7 % larger."""
+A branch of the loop has twice as many intervals as the initial loading.  With 49 rows instead, the
+computed difference is up to 7 % larger."""
 
 
 def iwan(

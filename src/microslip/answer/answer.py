@@ -22,7 +22,8 @@ QUANTITIES = {
     "mu_torque": "torque",
     "dissipated_energy": "dissipation",
 }
-"""A dict that maps names of values in JSON and datasets to names of the estimates of a Result."""
+"""Dictionary.  The keys are names of values in JSON and datasets.  The values are names of the
+estimates in a Result."""
 ERRORS = {source: f"error_{source}" for source in SOURCES}
 """Names of the error sources in JSON and datasets."""
 EFFORT = {"iterations": "iterations", "work": "work", "updates": "effort", "retried": "retried"}

@@ -17,8 +17,8 @@ kinks."""
 WHOLE_ROUNDING = 1e-9
 OF_RECORD = 1e-8
 """Errors of the closed forms that are evaluated by quadrature.  The first value is for a sphere,
-where only the motion is integrated numerically.  The second value is for other indenters, where the
-pressure is integrated numerically as well."""
+where only the motion is integrated numerically.  The second value is for other indenters.  For
+these indenters, the pressure is also integrated numerically."""
 ROUNDING = 1e-12
 """Error of closed forms that need no quadrature."""
 ON_A_SPRING = ("transverse", "bore")
@@ -130,5 +130,5 @@ def _exact(mu: float, mu_error: float, energy: float, energy_error: float) -> Ex
 
 
 def _work(problem: Problem) -> float:
-    """Return the work that full friction does over the drift of one period."""
+    """Return the work of full friction along the distance drifted in one period."""
     return 2.0 * math.pi * problem.mean_load * problem.drift

@@ -45,8 +45,8 @@ SLOWEST, FASTEST = 1e-6, 1e6
 """Parameters of the search for the velocity.  FIRST_DRIFT: first drift per radian of phase.
 FACTOR: ratio of the drifts of two successive runs.  SLOWEST, FASTEST: bounds on the drift."""
 FLATTEST = 1e-6
-"""Smallest slope of the friction in the search: the rise between two runs, divided by the relative
-increase in velocity."""
+"""Smallest slope of the friction in the search.  The slope is the rise between two runs, divided by
+the relative increase in velocity."""
 HALVINGS = 2
 """Number of bisections of the last velocity interval.  The bisections are on a logarithmic
 scale."""
@@ -58,20 +58,20 @@ COARSE_TOLERANCE = 1e-2
 FIRST_VELOCITY = 0.1
 """Velocity at which the resolution of the coarse runs is chosen."""
 SLOWEST_SHARE = 0.3
-"""Smallest accepted ratio of two velocities.  The first velocity is that of the coarse run under
-the force.  The second velocity is the estimate from coarse runs at prescribed velocities.  If the
-ratio is smaller, the coarse run under the force is not resolved, and is not used."""
+"""Smallest accepted ratio of two velocities.  The first velocity is the velocity of the coarse run
+under the force.  The second velocity is the estimate from coarse runs at prescribed velocities.  If
+the ratio is smaller, the coarse run under the force is not resolved, and is not used."""
 SCALE_SHARE = 0.9
 """The relative tolerance refers to this fraction of the velocity in the coarse run."""
 ROUGH_TOLERANCE = 3e-2
 """First tolerance of the static limit.  The tolerance is divided by 10 until the error of the
 static limit is smaller than the difference between the force and the limit."""
 STATIC_TOLERANCE = 1e-3
-"""Largest accepted error of the static limit when the force is close to it.  The SI layer uses the
-same value.  Therefore, both layers agree on the forces that are below the threshold."""
+"""Largest accepted error of the static limit when the force is close to the limit.  The SI layer
+uses the same value.  Therefore, both layers agree on the forces that are below the threshold."""
 GAP_MARGIN = 2.0
-"""A force certainly moves the contact if it exceeds the static limit by this factor times the error
-of the limit."""
+"""A force certainly moves the contact if the force exceeds the static limit by this factor times
+the error of the limit."""
 AT_REST, UNBOUNDED = Estimate(0.0, {"model": 0.0}), Estimate(math.nan, {"model": math.inf})
 """AT_REST: velocity of a contact at rest.  UNBOUNDED: velocity of a contact that has no mean
 velocity."""
@@ -230,8 +230,9 @@ def _moving(request: Request, moving_force: float) -> Result:
 def _velocity_near(request: Request) -> tuple[float, float]:
     """Estimate the velocity under the force, and the rise of the friction with the velocity.
 
-    Coarse runs at prescribed velocities bracket the velocity.  A further run, at the prescribed
-    force, then improves the estimate, unless the velocity of this run is too low to be resolved.
+    Coarse runs at prescribed velocities bracket the unknown velocity.  A further run, at the
+    prescribed force, then improves the estimate, unless the velocity of this run is too low to be
+    resolved.
     """
     # imported here because they load compiled code
     from microslip.periodic.run import Settings

@@ -29,9 +29,9 @@ from microslip.scene.problem import Problem
 ORDER = 2
 """Order of convergence in the numbers of rings, angles and time steps."""
 RATIO = 2
-"""Ratio of successive levels in an extrapolation.  The first level is multiplied by this ratio per
-decade of the tolerance, since extrapolated errors decrease with about the third power of the
-level."""
+"""Ratio of successive levels in an extrapolation.  Extrapolated errors decrease with about the
+third power of the level.  Therefore, the first level is multiplied by this ratio whenever the
+tolerance is divided by 10."""
 LEVELS = tuple(sorted(base * RATIO**k for k in range(9) for base in (RATIO, 3)))
 """Levels 2, 3, 4, 6, 8, 12, ..., 512, 768."""
 LOOSEST = 1e-2
@@ -44,8 +44,8 @@ number of steps takes a few seconds."""
 FREQUENCY_ERROR = (3.0 * np.sqrt(2.0) - 4.0) / 6.0
 """Coefficient of the frequency error of the integrator path.SDIRK2.  For an undamped oscillation
 and a step of s radians, the relative error of the frequency is this coefficient times s^2.  A step
-multiplies the amplitude by R(i s).  Here R(z) is (1 + (1 - 2 g) z) / (1 - g z)^2 with g = 1 -
-sqrt(1/2).  R(z) differs from exp(z) by (3 g^2 - 2 g^3 - 1/6) z^3."""
+multiplies the amplitude by R(i s).  Here R(z) is (1 + (1 - 2 g) z) / (1 - g z)^2.  The constant g
+is 1 - sqrt(1/2).  R(z) differs from exp(z) by (3 g^2 - 2 g^3 - 1/6) z^3."""
 COARSEST = Resolution(cells=8, angles=4, steps=4)
 """Resolution at which the stiffness of the contact is computed for a body with mass."""
 
@@ -147,10 +147,10 @@ STATIC = Kind(start=32, steps=0)
 """Static limits, computed at turning points.  In static limits, slip fronts cut through the
 cells."""
 ANGLES_OF_ROTATION, ANGLES_OF_TRANSLATION = 0.5, 0.125
-"""Ratio of the number of angles on half the disc to the level, for rotations and for translations.
-A rotation needs more angles, because the centre of rotation is in the contact.  In a translation,
-the tractions depend on the angle only weakly, and only at nu > 0.  Both values are calibrated by
-`benchmarks/angles.py`."""
+"""Number of angles on half the disc, divided by the level.  The first value is for rotations, and
+the second value is for translations.  A rotation needs more angles, because the centre of rotation
+is in the contact.  In a translation, the tractions depend on the angle only weakly, and only at nu
+> 0.  Both values are calibrated by `benchmarks/angles.py`."""
 
 
 def ladder_for(

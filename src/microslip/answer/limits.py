@@ -85,7 +85,8 @@ def within(name: str, value: object, **changes: Any) -> Any:
     """Return an argument as a number. Raise InputError unless the argument is a number within its
     limits.
 
-    The keyword arguments `changes` replace fields of the argument's entry in LIMITS.
+    LIMITS has an entry for each argument.  The keyword arguments `changes` replace fields of this
+    entry.
     """
     low, high, kind = LIMITS[name]._replace(**changes)
     if kind == "real":
@@ -253,8 +254,8 @@ def choose_model(problem: Problem, model: str = "auto") -> str:
     modes are chosen for other motions of a round contact, and squares in all other cases.  Squares
     are also chosen for the static limit of a contact without symmetry, because the stick zone of
     such a contact is not round.  The slider and the rigid contact are never chosen.  For these two
-    models, the model error could only be bounded with a run on rings, and such a run already gives
-    the result.
+    models, the model error could only be bounded with a run on rings.  Such a run already gives the
+    result.
 
     Parameters
     ----------

@@ -14,16 +14,16 @@ The error estimate has four sources:
 The methods are of second order, so that f(n) is approximately f + C / n^2.  The difference D of the
 last two levels therefore gives the correction D / 3.  Assume that the differences decrease with
 another order p.  The differences beyond the last level then add up to D / (2^p - 1).  Therefore,
-the extrapolated value is wrong by D (1 / (2^p - 1) - 1 / 3).  The error estimate is this error at
-the observed order, multiplied by a safety factor.  The estimate is between the correction and D,
-both multiplied by the safety factor.
+the error of the extrapolated value is D (1 / (2^p - 1) - 1 / 3).  The error estimate is this error
+at the observed order, multiplied by a safety factor.  The safety factor multiplies both the
+correction and D.  The estimate lies between these two products.
 
 Two levels can agree by chance.  Therefore D is at least a quarter of the difference of the first
 two levels.  At second order, D is expected to equal a quarter of this difference.  This is the grid
 convergence index of Roache (J. Fluids Eng. 116, 1994), applied to both pairs of levels.  In two
 cases, the last two levels are taken to agree by chance: the differences change sign, or the
-observed order is far above 2.  The last level then need not be better than the second-to-last
-level.  Therefore, D is the difference of the first two levels.
+observed order is far above 2.  In these two cases, the last level need not be better than the
+second-to-last level.  Therefore, D is the difference of the first two levels.
 
 If the differences increase, n/4 is too coarse for the leading term to dominate.  A slightly finer
 level is probably too coarse as well.  The next level n is therefore chosen such that runs at the
@@ -61,10 +61,10 @@ between the results are multiplied by this safety factor.  No interpolation reso
 edge between the points."""
 SMALLEST_SHARE = 0.8
 """The error estimate for the resolution is at least this fraction of the tolerance.  At an imposed
-resolution, `Ladder.accuracy` takes the place of the tolerance.  The fraction is above 0 because
-three levels can agree by chance.  The calibration by benchmarks/error_estimates.py gave 0.7.  The
-value was then increased, because benchmarks/attacks.py found errors of up to 0.75 times the
-tolerance at points where the levels agree."""
+resolution, the attribute `accuracy` of the ladder replaces the tolerance.  The fraction is above 0
+because three levels can agree by chance.  The calibration by benchmarks/error_estimates.py gave
+0.7.  The value was then increased, because benchmarks/attacks.py found errors of up to 0.75 times
+the tolerance at points where the levels agree."""
 LARGEST_REST = 0.5
 """Finer runs reduce only the error due to the resolution.  Finer runs are started only if the sum
 of all other errors is at most this fraction of the tolerance."""
@@ -206,8 +206,8 @@ def _estimates(
     """Return estimates of all values, and the observed order of convergence of the requested value.
 
     `runs` contains the runs at n/4, n/2 and n. Further runs at n, with other interpolations,
-    follow.  `goal` is the largest accepted resolution error of the value `name`.  The other
-    arguments have the same meaning as for `refine`.
+    follow.  `goal` is the largest accepted resolution error of one value, and `name` is the name of
+    this value.  The other arguments have the same meaning as for `refine`.
     """
     three, imposed = runs[:3], ladder.imposed > 0.0
     periodicity, solver = 0.0, 0.0

@@ -1,7 +1,7 @@
 """Requests for results, and the runs that compute these results.
 
 A run that does not converge is repeated.  The slower the forward motion, the longer its transients.
-In long transients, even small errors of the steps accumulate until the state is wrong.  The search
+In long transients, even small errors in the steps accumulate until the state is wrong.  The search
 then needs a better initial guess.  So the second attempt solves the steps to a tighter tolerance.
 The second attempt first finds the periodic state at a higher velocity, where the search is easier.
 Then the second attempt lowers the velocity step by step. Each run starts from the state of the
@@ -39,9 +39,9 @@ MOST_WORK_OF_OTHERS = 2e8
 unknowns.  The limits are more than ten times the work of the slowest points in the paper's range at
 a tolerance of 1e-4."""
 RUN_SHARE = 0.05
-"""Largest distance of a run from its periodic state, divided by the tolerance.  The extrapolation
-multiplies these distances by the weights of the runs.  Together, the distances contribute at most a
-twelfth of the tolerance."""
+"""Largest distance of a run from its periodic state, divided by the tolerance.  In the
+extrapolation, the distance of each run is multiplied by the weight of the run.  The weighted
+distances of the runs add up to at most a twelfth of the tolerance."""
 FACTOR, SMALLEST_FACTOR = 4.0, 1.15
 """Ratio of successive velocities in a second attempt.  After a failure, the ratio is replaced by
 its square root.  The smallest ratio is `SMALLEST_FACTOR`."""
@@ -92,8 +92,8 @@ class Request:
         return replace(self, problem=replace(self.problem, **changes))
 
     def result(self, estimates: dict[str, Estimate], reason: str = "", **values: Any) -> Result:
-        """Create the `Result`.  Values that are not passed are set to the values of a result that
-        is computed without a run."""
+        """Create the `Result`.  Values that are not passed have the defaults for a result without a
+        run."""
         own: dict[str, Any] = {
             "model": CLOSED_FORM if self.chosen else self.model,
             "tolerance": self.tolerance,
@@ -322,7 +322,7 @@ def result_of_runs(
 
     The friction is clipped to its range, which is 0 to 1, or -1 to 1 for motions that can propel
     the contact.  If the error exceeds the width of the range, the result is the middle of the
-    range, and its error is half the width.
+    range.  In this case, the error is half the width.
 
     Parameters
     ----------

@@ -30,7 +30,7 @@ from microslip.foundation.errors import SolverError
 def project(q: np.ndarray, bound: np.ndarray) -> np.ndarray:
     """Project tractions, an array q of shape (2, ...), onto |q| <= bound.
 
-    The bound broadcasts to the shape of q[0].
+    The bound is broadcast to the shape of q[0].
     """
     return q * np.minimum(1.0, bound / np.maximum(np.hypot(q[0], q[1]), 1e-300))
 
@@ -58,8 +58,8 @@ FORWARD, LATERAL, TORQUE = range(3)
 """Column indices of March.forces."""
 
 MIRROR = np.array([1.0, -1.0])[:, None, None]
-"""Factors by which the reflection lateral -> -lateral multiplies forward and lateral tractions.
-The array has the shape (2, 1, 1)."""
+"""A reflection reverses the lateral direction.  The reflection multiplies the forward and the
+lateral tractions by these factors.  The array has the shape (2, 1, 1)."""
 
 
 class March(NamedTuple):
@@ -238,8 +238,8 @@ def energy_norm(contact: Contact, change: np.ndarray) -> float:
 
 
 def full_slip(contact: Contact, forward: np.ndarray, lateral: np.ndarray) -> np.ndarray:
-    """Return tractions whose magnitude is the friction bound.  Their direction is the direction of
-    a vector field.
+    """Return tractions whose magnitude is the friction bound.  The tractions have the direction of
+    the vector field (`forward`, `lateral`).
 
     The tractions are 0 where the field is 0.
     """
@@ -270,8 +270,8 @@ def forward_slip(contact: Contact) -> np.ndarray:
 def forces(contact: Contact, state: np.ndarray) -> np.ndarray:
     """Return the forces and the torque due to tractions, as an array of shape (3,).
 
-    The components are the forward force and the lateral force in mu F_z, and the torque in mu F_z
-    a.
+    The components are the forward force, the lateral force and the torque.  The forces are divided
+    by mu F_z.  The torque is divided by mu F_z a, where a is the unit of length.
     """
     forward, lateral = loads = contact.weight * state
     torque = np.vdot(contact.lateral_position, forward) - np.vdot(contact.forward_position, lateral)

@@ -89,7 +89,8 @@ def square_convolution(
     symmetry: str = TURN,
     half_widths: tuple[float, float] = (1.0, 1.0),
 ) -> tuple[Convolution, float, float]:
-    """Create the convolution on `cells` x `cells` equal cells of a rectangle.
+    """Create the convolution on a rectangle of equal cells.  The number of cells along each side is
+    `cells`.
 
     Parameters
     ----------
@@ -170,8 +171,8 @@ def influence(
     The result is two arrays of shape (P, P), where P is `padded`.  Their unit is u_lim per unit of
     traction.  The first axis of both arrays is the forward offset between two cells, and the second
     axis is the lateral offset.  Negative offsets are wrapped around.  The complex traction is
-    lateral + i forward.  The kernels of influence.py are integrated over a cell in closed form, and
-    evaluated at the centres of cells.
+    lateral + i forward.  The kernels of influence.py are integrated over a cell in closed form.
+    The integrals are evaluated at the centres of cells.
     """
     forward, lateral = (2.0 * half_width / cells for half_width in half_widths)
     offsets = np.fft.fftfreq(padded, 1.0 / padded)

@@ -142,10 +142,10 @@ def toroidal_kernels(
 
 @kernel
 def modes_for(r: float, s: float, n: int) -> int:
-    """Return the number of values G_m(r, s) that are needed to compute `n` values C_m.
+    """Return the number of values G_m(r, s) that are needed to compute C_1, ..., C_n.
 
-    If the upward recurrence is stable, the number is n + 2.  Otherwise, the number of modes is
-    larger, but at most n + 2 multiplied by `MOST_MODES`.
+    If the upward recurrence is stable, the number is n + 2.  Otherwise, the number is larger, but
+    at most `MOST_MODES * (n + 2)`.
     """
     growth = np.log(s / r)
     return n + 2 if (n + 1) * growth < 2.0 else n + 3 + int(DECAY / growth)
@@ -223,10 +223,10 @@ def _add_pair(
 ) -> None:
     """Average the kernels over ring i (outer rule) and ring j (inner rule).
 
-    Ring i must be the narrower one, because only the points of the inner rule are clustered where
-    the rings are closest.  The averages of G_m are added to near[:, i, j], and the averages of
-    C_{m+1} to far[:, i, j] and far[:, j, i].  `points` is a scratch array for the quadrature
-    points.
+    Only the points of the inner rule are clustered where the rings are closest.  Therefore, ring i
+    must be the narrower one.  The averages of G_m are added to near[:, i, j].  The averages of
+    C_{m+1} are added to far[:, i, j] and to far[:, j, i].  `points` is a scratch array for the
+    quadrature points.
     """
     count = _points_of_pair(averaging, i, j, points)
     radii, others, weights = points[0, :count], points[1, :count], points[2, :count]

@@ -75,8 +75,8 @@ def combine(out: np.ndarray, first: np.ndarray, factor: float, second: np.ndarra
 def pack(
     field: np.ndarray, kept: float, first: np.ndarray, factor: float, second: np.ndarray
 ) -> None:
-    """Multiply `field` by `kept`, and add the sum of `first` and `factor` times `second`.  The
-    arguments `first` and `second` are states."""
+    """Set `field` to `kept * field + first + factor * second`.  The arguments `first` and `second`
+    are states."""
     rows, cells = first.shape[1], first.shape[2]
     width = field.shape[1] // rows
     for c in range(2):

@@ -33,8 +33,8 @@ FEWEST_PROLONGED = 16
 """In rotations with at least this number of rings, tractions from a coarser mesh are a better
 initial guess than the static limit."""
 SHARED_MODES = (9, 17, 33)
-"""Possible numbers of modes for which averages of the kernels are computed.  Because few numbers
-are possible, runs with 4, 6 and 8 angles share the same averages."""
+"""Possible numbers of modes for which averages of the kernels are computed.  Only few numbers of
+modes are possible.  Therefore, runs with 4, 6 and 8 angles share the same averages."""
 Wave = tuple[int, int]
 """Number m of a wave, and its part (0 or 1); see `_pairs`."""
 
@@ -46,13 +46,13 @@ half.  WHOLE means that there is no such symmetry."""
 def _single_waves(
     theta: np.ndarray, angles: int, symmetry: str, near: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Return the waves at nu = 0: their values at the points and their ring matrices.
+    """Return the waves at nu = 0: the values of the waves at the points, and the ring matrices.
 
     The values have the shape (2, points, waves), with forward components first.
 
     For a rotation, the forward tractions are sums of cosines of multiples of the polar angle, and
-    the lateral tractions are sums of sines.  For a translation, the tractions in both directions
-    are cosines and sines with even numbers m.
+    the lateral tractions are sums of sines.  For a translation, the forward and the lateral
+    tractions are sums of cosines and sines whose numbers m are even.
     """
     numbers = np.arange(angles + 1)
     cosines, sines = np.cos(np.outer(theta, numbers)), np.sin(np.outer(theta, numbers))
@@ -90,10 +90,11 @@ def _pairs(angles: int, symmetry: str) -> tuple[list[tuple[Wave, Wave]], list[tu
 def _coupled_waves(
     theta: np.ndarray, angles: int, symmetry: str, influence: tuple, area: np.ndarray, kappa: float
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Return the waves at nu > 0: their values at the points, of shape (1, 2 points, 2 pairs), and
-    the matrices of all pairs, of shape (pairs, 2 n, 2 n).
+    """Return the waves at nu > 0: the values of the waves at the points, and the matrices of all
+    pairs.
 
-    The coupled pairs come first, followed by the pairs without coupling.
+    The coupled pairs come first, followed by the pairs without coupling.  The values have the shape
+    (1, 2 points, 2 pairs).  The matrices have the shape (pairs, 2 n, 2 n).
     """
     pairs, single = _pairs(angles, symmetry)
     (near, far), n = influence, len(area)

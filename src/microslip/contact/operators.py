@@ -4,11 +4,11 @@ A field is an array of shape (2, points) with the forward and lateral components
 contact.  The points are ordered by angle, then by ring.  Each angle has `width` points. The points
 beyond the last ring are padding, with area 0 and friction bound 0.
 
-An operator acts in three steps: it transforms the values at the angles to amplitudes of angular
-waves, multiplies the ring values of each wave by a matrix, and transforms back.  At nu = 0, forward
-and lateral tractions are decoupled, and form two sectors with the same matrices.  At nu > 0, there
-is one sector, in which each matrix couples two neighbouring waves.  A contact of rings without
-angular points has one angle and one wave.
+An operator acts in three steps.  First, the values at the angles are transformed to amplitudes of
+angular waves.  Then the ring values of each wave are multiplied by a matrix.  Finally, the result
+is transformed back.  At nu = 0, forward and lateral tractions are decoupled, and form two sectors
+with the same matrices.  At nu > 0, there is one sector, in which each matrix couples two
+neighbouring waves.  A contact of rings without angular points has one angle and one wave.
 
 The compiler turns operations on tuples of four numbers into vector instructions if indices are
 unsigned.  Kernels are compiled without fastmath.  With fastmath, the compiler could reorder and
@@ -100,9 +100,9 @@ def transform(
 ) -> None:
     """Multiply rows of `source` by a matrix, and store the results in rows of `target`.
 
-    Row k of the argument is row taken[0] + taken[1] k of `source`.  Row k of the result is row
-    filled[0] + filled[1] k of `target`.  Rows are computed in groups of four. The last group can
-    overlap the previous one.
+    Row k of the argument is row `taken[0] + taken[1] * k` of `source`.  Row k of the result is row
+    `filled[0] + filled[1] * k` of `target`.  Rows are computed in groups of four. The last group
+    can overlap the previous one.
     """
     (begin, stride), (at, step) = taken, filled
     rows, columns = matrix.shape
@@ -165,7 +165,7 @@ def multiply_one(matrix: np.ndarray, x: np.ndarray, image: np.ndarray) -> None:
 def multiply(
     operators: tuple, number: int, field: np.ndarray, image: np.ndarray, waves: np.ndarray
 ) -> None:
-    """Fill `image` with an operator applied to `field`.
+    """Apply an operator to `field`, and store the result in `image`.
 
     Parameters
     ----------

@@ -1,17 +1,18 @@
 """Paths in time: phases, stages of the integrator, and the rigid displacement at each stage.
 
-Let A q be the elastic displacement, w the rigid displacement, and z = A q - w.  The contact obeys
-dz = -(slip), and Coulomb's law relates the slip to the traction.  This equation is a
-rate-independent differential inclusion.  It is integrated by stiffly accurate diagonally implicit
-Runge-Kutta methods, in which every stage is one Coulomb step,
+Let A q be the elastic displacement, and let w be the rigid displacement.  Let z = A q - w be the
+difference of these displacements.  In the contact, the change dz equals minus the slip.  Coulomb's
+law relates the slip to the traction.  Together, the two laws form a rate-independent differential
+inclusion.  The inclusion is integrated by stiffly accurate diagonally implicit Runge-Kutta methods,
+in which every stage is one Coulomb step,
 
     A q_i + r_i = b_i,
 
 where b_i = z + w(t + c_i h) - Sum_{j<i} (a_ij / gamma) r_j, and r_i is gamma h times the slip rate.
 The last stage is at the end of the step.  Therefore, the tractions at the end of a step are within
 the friction bound.  Backward Euler has a single stage.  A theta method also has a single stage, but
-this stage is before the end of the step.  The state is extrapolated to the end of the step, where
-tractions can exceed the bound.
+this stage is before the end of the step.  A theta method extrapolates the state to the end of the
+step.  There, tractions can exceed the bound.
 """
 
 from __future__ import annotations
@@ -158,7 +159,7 @@ def phases_between(
 ) -> np.ndarray:
     """Return phases from the first turning point to the last one.
 
-    There are `steps` steps between neighbouring turning points.  Therefore, the path has
+    The number of steps between neighbouring turning points is `steps`.  Therefore, the path has
     (len(turns) - 1) * steps + 1 phases.  The steps are graded towards both turning points.  For
     `grading` and `width`, see discretise.path_of.
     """

@@ -26,8 +26,8 @@ direction (Cattaneo and Mindlin).  For slip in two directions, the model is an a
 because the springs do not interact.  Springs at -a < x < a have the stiffness G* and the friction
 bound G* (1 - h(x)) per unit length.  Here h(x) is the depth at which the contact radius is x,
 divided by the reference depth.  The spring at x therefore begins to slide at the displacement (1 -
-h) u_lim.  For a sphere, this displacement is (1 - x^2) u_lim.  If the depth is d times the
-reference depth and d > h, the spring begins to slide at the displacement (d - h) u_lim.
+h) u_lim.  For a sphere, this displacement is (1 - x^2) u_lim.  Now let the depth be d times the
+reference depth.  If d exceeds h, the spring begins to slide at the displacement (d - h) u_lim.
 """
 
 from __future__ import annotations
@@ -146,7 +146,8 @@ def load_on_springs(pressure: Pressure, edges: np.ndarray, depth: np.ndarray) ->
 
     The load is computed at each of k depths d.  At the depth d, the spring at x carries
     G* (d - h(x)) per unit length.  Here h(x) is the depth at which the contact radius is x.  The
-    integral of x h' is the load of a contact of this radius.  The result has the shape (k, n + 1).
+    integral of x h' from 0 to a radius gives the load of a contact with this radius.  The result
+    has the shape (k, n + 1).
     """
     inside = np.minimum(edges, pressure.radius(depth)[:, None])
     compression = depth[:, None] - pressure.depth(inside)
@@ -158,9 +159,9 @@ def mdr_contact(
 ) -> RadialContact:
     """Create a contact of springs that are graded towards `focus`.
 
-    There are `cells` springs on 0 < x < 1.  Each spring has a mirror image.  The attribute `bound`
-    of the contact is a force per unit length.  The weight of a spring is the total length of the
-    spring and its mirror image.
+    The number of springs on 0 < x < 1 is `cells`.  Each spring has a mirror image.  The attribute
+    `bound` of the contact is a force per unit length.  The weight of a spring is the total length
+    of the spring and its mirror image.
     """
     edges = np.sin(make_rings(cells, focus).psi)
     length = np.diff(edges)

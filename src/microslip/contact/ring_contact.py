@@ -130,7 +130,7 @@ class RingContact(Contact):
     def system(self) -> tuple[tuple, tuple, np.ndarray]:
         """The arguments `operators` and `points` of march.march, and the friction bounds.
 
-        The operators are A and its resolvents.
+        The operators are A and the resolvents of A.
         """
         to_waves, to_points, matrices = self._waves
         cells, columns = len(self.bound), matrices.shape[-1]
@@ -271,9 +271,9 @@ class RingContact(Contact):
     def _effective_radii(self) -> np.ndarray:
         """Effective radii, as an array of shape (cells + 1,).
 
-        Without slip, a contact whose radius is entry k of the array has the same stiffness as the
-        first k rings.  The radius in entry k is slightly smaller than the outer radius of the first
-        k rings.  A ring joins the contact when the contact radius reaches the mean of two effective
+        Entry k is the radius of a contact that has, without slip, the same stiffness as the first k
+        rings.  The radius in entry k is slightly smaller than the outer radius of the first k
+        rings.  A ring joins the contact when the contact radius reaches the mean of two effective
         radii. One of these radii is computed without this ring, and the other one with this ring.
         The stiffness of a growing contact is then correct on average.  Suppose that the ring joined
         as soon as the contact reached the ring's inner edge.  The ring would then stick too early,
@@ -304,10 +304,10 @@ class RingContact(Contact):
         The result has the shape (1 + steps * stages, cells).
 
         Rings join or leave the contact only at the last stage of a step. The integrator would carry
-        over a jump at an earlier stage to the later stages.  If a ring joins at the last stage, the
-        integrator strains the ring only for a part of the step, namely the fraction
-        `1 / (1 + carried)`.  On average, the ring should be strained during half of the step.  To
-        make up for the difference, the contact radius is evaluated at an earlier time.
+        over a jump at an earlier stage to the later stages.  A ring that joins at the last stage is
+        strained only during a part of the step, namely the fraction `1 / (1 + carried)`.  On
+        average, the ring should be strained during half of the step.  To make up for the
+        difference, the contact radius is evaluated at an earlier time.
         """
         assert path.depth is not None  # otherwise the bounds are constant
         stages = len(path.carry)
@@ -367,7 +367,8 @@ class RadialContact(RingContact):
     def resolved(
         cells: int, focus: Focus | float | None = None, pressure: Pressure = HERTZ
     ) -> RadialContact:
-        """Return the contact of an elastic half-space with `cells` rings graded towards `focus`.
+        """Return the contact of an elastic half-space, with rings graded towards `focus`.  The
+        number of rings is `cells`.
 
         Calls with equal arguments return the same object, which must not be modified.
         """

@@ -105,12 +105,12 @@ def make_rings(count: int, focus: Focus | float | None = None, pressure: Pressur
 
 
 def _focused(count: int, places: np.ndarray, strength: float) -> np.ndarray:
-    """Return count + 1 edges as angles psi.
+    """Return the edges of the rings as angles psi.  The number of edges is count + 1.
 
-    The edges are graded towards `places`.  Each of the `places` is an edge between two rings.
-    Between two successive places, the rings are widest in the middle.  The number of rings in each
-    piece between a place and a middle is approximately proportional to its angle, with at least a
-    few rings.
+    The edges are graded towards `places`.  At each of the `places`, there is an edge between two
+    rings.  Between two successive places, the rings are widest in the middle.  Each piece between a
+    place and a middle has at least a few rings.  The number of rings in a piece is approximately
+    proportional to the angle of the piece.
     """
     edge = np.pi / 2
     if len(places) == 1 and places[0] in (0.0, edge):

@@ -52,8 +52,8 @@ number of rings.  The value is calibrated by benchmarks/splitting.py."""
 LEVELS = 4
 """Number of penalties for which a resolvent is computed."""
 PENALTIES = 2.0 ** (np.arange(LEVELS) - 0.5 * (LEVELS - 1))
-"""Possible penalties of a step, from 1/sqrt(8) to sqrt(8) times the best penalty if half of the
-points stick."""
+"""Possible penalties of a step.  The penalties range from 1/sqrt(8) to sqrt(8) times the penalty
+that is best if half of the points stick."""
 BETWEEN_LOOKS = 2e5
 """Approximate number of point updates between two calls of `interrupted`.  These updates take a few
 hundredths of a second.  A call waits for the other threads of the interpreter, so calls should be
@@ -158,11 +158,10 @@ def imbalance(
     stiffness: float,
     advance: float,
 ) -> float:
-    """Return the residual of the body's equation after the displacement of the body has grown by
-    `advance`.
+    """Return the residual of the body's equation if the body is displaced further by `advance`.
 
-    The advance is added to the slip of the points that slip.  `excess` is the residual for an
-    advance of 0, without the forward force.
+    The advance is added to the slip of the points that slip.  For an advance of 0, `excess` is the
+    part of the residual that does not include the forward force.
     """
     weight, penalty, _, _, _ = points
     force = excess + stiffness * advance

@@ -125,13 +125,13 @@ def path_of(problem: Problem, contact: Any, steps: int, integrator: Integrator =
     forward slip of a half period occurs near the turning points.  If the stroke is long, the whole
     contact slides soon after a turning point.
 
-    For motion along a line with a stroke above LONG_STROKE, there is a zone of equal steps at each
-    turning point, and `width` is half the width of this zone as a phase.  Outside the zone, steps
-    are proportional to the distance from the turning point.  The slip reverses while the velocity
-    of the oscillation is below u_lim per radian, or below the drift.  This reversal takes the phase
-    max(1, drift) / stroke.  Due to the term LONG_STROKE**2 / stroke, the zone shrinks gradually for
-    strokes above LONG_STROKE.  At the stroke LONG_STROKE, the longest step is twice as long as the
-    shortest.
+    A motion along a line with a stroke above LONG_STROKE has a zone of equal steps at each turning
+    point.  `width` is half the width of this zone, expressed as a phase.  Outside the zone, the
+    length of a step is proportional to the distance from the turning point.  The slip reverses
+    while the velocity of the oscillation is below the larger of two values: u_lim per radian, and
+    the drift.  This reversal takes the phase max(1, drift) / stroke.  Above LONG_STROKE, the zone
+    shrinks gradually as the stroke grows, because of the term LONG_STROKE**2 / stroke.  At the
+    stroke LONG_STROKE, the longest step is twice as long as the shortest.
 
     Parameters
     ----------

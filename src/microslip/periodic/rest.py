@@ -31,15 +31,16 @@ STEP_SHARE = 1e-4
 """Ratio of two tolerances.  The first value is the tolerance of a step, as a force divided by mu
 F_z.  The second value is the tolerance of the displacement, in u_lim."""
 SLOWEST_RATIO = 0.9
-"""Each doubling of the number of periods adds a displacement.  Let r be the ratio of the
-displacements in two successive doublings.  The remaining displacement is extrapolated only if r is
-at most this value."""
+"""Each time the number of periods doubles, the contact moves by a further displacement.  Let r be
+the ratio of the displacements in two successive doublings.  The remaining displacement is
+extrapolated only if r is at most this value."""
 LONG, DRIFTING = 200, 1.8
-"""If the ratio r is above DRIFTING after LONG (half) periods, the contact keeps drifting.  In a
-steady drift, r is 2.  A contact on a coarse mesh can drift under a force that is below the exact
-threshold."""
+"""LONG is a number of (half) periods.  If the ratio r is above DRIFTING after this number, the
+contact keeps drifting.  In a steady drift, r is 2.  A contact on a coarse mesh can drift under a
+force that is below the exact threshold."""
 MOST_SHARE = 0.9
-"""After `most_after` periods, the oscillation has caused this fraction of the displacement."""
+"""`most_after` is the number of periods in which the contact covers this fraction of the
+displacement caused by the oscillation."""
 
 
 def run_to_rest(
@@ -164,9 +165,9 @@ def _remaining(ways: list[float], rounding: float) -> tuple[float, bool]:
     """Return two values: an upper bound on the remaining displacement, and True if the contact
     keeps drifting.
 
-    Each doubling of the number of intervals adds a displacement.  These displacements are
-    extrapolated as a geometric series.  The bound is infinite if the ratio of the last two
-    displacements is above SLOWEST_RATIO.
+    Each time the number of intervals doubles, the contact moves by a further displacement.  These
+    displacements are extrapolated as a geometric series.  The bound is infinite if the ratio of the
+    last two displacements is above SLOWEST_RATIO.
 
     Parameters
     ----------

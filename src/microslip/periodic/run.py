@@ -2,10 +2,10 @@
 
 A run is one simulation at one resolution. A march is one time integration over a period or half a
 period.  The budget limits the work and the wall-clock time of a point.  Both limits are checked
-after every march, so that they also end long searches.  With a limit on the work, the result is the
-same on every machine.  The time limit depends on the machine, so a result that reached the time
-limit is not stored.  The time that Numba needs to compile or load kernels does not count, because
-only the first points of a process need it.
+after every march.  Therefore, the limits can also end a single long search.  With a limit on the
+work, the result is the same on every machine.  The time limit depends on the machine, so a result
+that reached the time limit is not stored.  The time limit does not include the time that Numba
+needs to compile or load kernels.  Only the first points of a process need this time.
 """
 
 from __future__ import annotations
@@ -126,7 +126,7 @@ STEP_SHARE = 1e-2
 """Largest ratio of the step tolerance to the tolerance of the periodic state."""
 SLOW_STEP_SHARE = 3e-4
 """Smallest ratio of the step tolerance to the tolerance of the periodic state.  Slow motions have
-long transients, in which the errors of the steps accumulate."""
+long transients, in which the errors in the steps accumulate."""
 TIGHTER = 0.1
 """The step tolerance in a second attempt is at least this fraction of the step tolerance in the
 first attempt."""
@@ -211,7 +211,7 @@ class Run:
 
     @property
     def converged(self) -> bool:
-        """Whether the state is periodic (or steady) and every step was solved."""
+        """True if the state is periodic (or steady) and every step was solved."""
         return not self.reason
 
     @property

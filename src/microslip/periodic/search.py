@@ -5,8 +5,8 @@ to the state at the end.  The periodic state is the fixed point of this map.  Th
 plain marches last about 1/(2 pi v~) periods.  Anderson acceleration (Walker and Ni 2011) finds the
 fixed point of the map much sooner.  Convergence is judged by three quantities: the residual of the
 plain map (without acceleration), the distance to the next state, and an error computed from the
-residual and the drift rate of the motion.  The last quantity is needed near the static limit, where
-the state changes so slowly that a small residual is no evidence of convergence.
+residual and the drift rate of the motion.  The error is needed near the static limit.  There, the
+state changes so slowly that a small residual is no evidence of convergence.
 
 The state of a driven body includes two more numbers: the position x and the rate x' of the body
 (see contact/march.py).  In one period, unbalanced forces hardly change the state of a heavy body or
@@ -42,11 +42,11 @@ NOISE = 1e-2
 march.  The rate at which an error of the state decays is at most the rate at which the state
 drifts."""
 DRIFTING, MOST_RETURNS = 0.5, 3
-"""DRIFTING: in a march, the drift adds a certain force.  A state below the static limit is stuck if
-its residual exceeds this fraction of the added force.  Such a state drifts without slip, so its
-change does not measure the distance to the periodic state.  The search then goes halfway back to
-the last state that was not stuck.  MOST_RETURNS: largest number of times that the search goes
-halfway back in succession."""
+"""DRIFTING: a fraction of the force that the drift adds in a march.  A state below the static limit
+is stuck if the residual of the state exceeds this fraction.  Such a state drifts without slip, so
+the change of the state does not measure the distance to the periodic state.  The search then goes
+halfway back to the last state that was not stuck.  MOST_RETURNS: largest number of times that the
+search goes halfway back in succession."""
 FORGETFUL = 0.2
 """The plain map is not accelerated if its contraction factor is below this value."""
 CAUTION = 0.3
@@ -64,13 +64,13 @@ AT_REST = np.zeros(2)
 
 
 class Goal(NamedTuple):
-    """Goal of a search for the periodic state, and what is known about the drift.
+    """Goal of a search for the periodic state, and known properties of the drift.
 
-    Slow motions change the state little in a period.  Let r be the force by which the plain map
-    still changes the state.  The velocity of the state then has a relative error of r / `gain`.
-    Only the difference between the force and the static limit depends on the velocity.  Therefore,
-    the error of the force is at most r / `gain` times the difference between the force and the
-    static limit.
+    Slow motions change the state little in a period.  Let r be the remaining change of the state in
+    the plain map, expressed as a force.  The relative error of the velocity of the state is then r
+    / `gain`.  Only the difference between the force and the static limit depends on the velocity.
+    Therefore, the error of the force is at most r / `gain` times the difference between the force
+    and the static limit.
 
     Attributes
     ----------
@@ -147,8 +147,8 @@ def accelerated(pairs: np.ndarray, count: int, scale: np.ndarray) -> np.ndarray:
 
     The least-squares problem is solved by modified Gram-Schmidt, starting with the newest
     difference.  `pairs` contains pairs of an image and a change.  The newest pair is the last one.
-    `scale` multiplies the changes in the least-squares norm; its shape and that of the result are
-    (n,).
+    `scale` multiplies the changes in the least-squares norm.  Both `scale` and the result have the
+    shape (n,).
     """
     images, changes = pairs[0], pairs[1]
     last, n = count - 1, len(scale)
@@ -201,9 +201,10 @@ def matched(
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Match a driven body to the stiffness of the contact; see the docstring of this module.
 
-    Returns the factors by which the map scales up the changes of x and x', the weights of the
-    squares of these changes in the energy of a change of the state, and tractions that exert the
-    unit force.  For the arguments, see find_periodic_state.
+    Returns three arrays.  The first array contains the factors by which the map scales up the
+    changes of x and x'. The second array contains the weights of the squares of these changes in
+    the energy of a change of the state.  The third array contains tractions that exert the unit
+    force.  For the arguments, see find_periodic_state.
     """
     bound = np.broadcast_to(contact.bound, contact.forward_position.shape)
     load = float(np.sum(contact.weight * bound))

@@ -118,11 +118,12 @@ DRIVEN_MARCHES = 2 * MOST_MARCHES
 """Largest number of marches in a search for a driven contact, whose body can oscillate."""
 LOOSEST_START = 1e-4
 """A search for a driven contact starts from a state at a prescribed velocity.  This value is the
-largest tolerance of that state, as a force divided by mu F_z."""
+largest tolerance of that state at the prescribed velocity, as a force divided by mu F_z."""
 COARSENING, PREPARED_FROM = 6, 96
 """PREPARED_FROM: a run of a driven contact with at least this number of steps starts from a run
-with fewer steps.  COARSENING: ratio of the two numbers of steps.  Runs with fewer steps than
-`PREPARED_FROM` are cheap and start directly.  Such runs suffice for a tolerance of 1e-3."""
+with fewer steps.  COARSENING: ratio of the numbers of steps in these two runs.  Runs with fewer
+steps than `PREPARED_FROM` are cheap and start directly.  Such runs suffice for a tolerance of
+1e-3."""
 MOST_SCALED = 4.0
 """Largest factor by which the initial tractions are scaled to match the prescribed force."""
 
@@ -229,7 +230,7 @@ def simulate(
 
 
 class Start(NamedTuple):
-    """Initial state of a search, and what is known about the periodic state.
+    """Initial state of a search, and known properties of the periodic state.
 
     Attributes
     ----------
@@ -333,7 +334,8 @@ def _discretised(
 
 
 def _starts(setup: Setup, guess: Run | None) -> Iterator[Start]:
-    """Yield initial states, best first.  Static limits are added to states that need them."""
+    """Yield initial states, best first.  If a state needs the static limit, the static limit is
+    added to the state."""
     problem, contact, settings = setup.problem, setup.contact, setup.settings
     rise, tolerance = problem.drift ** (2.0 / 3.0), setup.goal.tolerance
     # the accuracy of a static limit is chosen according to the rise of friction above it

@@ -17,8 +17,8 @@ drags the contact along.  At points that never slip, q contains an arbitrary con
 s does not depend on this constant.
 
 For a motion on a line under a constant load, q(t) moves along the segment between the tractions at
-the two turning points.  After the mean of these tractions is subtracted, they are +q and -q.  So
-only the two turning points matter.
+the two turning points.  After the mean of these tractions is subtracted, the tractions at the
+turning points are +q and -q.  So only the two turning points matter.
 
 Coarse runs of the static limit also give the edges of the stick zone in slow motions.  No formula
 gives the edges for motions on a loop, or for pressures without a closed form.  For rotating
@@ -269,8 +269,8 @@ def largest_shift(tractions: np.ndarray, bounds: np.ndarray) -> np.ndarray:
     least, most = np.zeros(forward.shape[1:]), 2.0 * bounds.min(axis=0)
 
     def reach(shift: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Return whether a forward shift lies inside the discs of all phases.  Also returns the
-        bounds on the lateral shift."""
+        """Return whether a forward shift satisfies the friction bounds at all phases.  Also returns
+        the bounds on the lateral shift."""
         across = bounds**2 - (forward + shift) ** 2
         width = np.sqrt(np.maximum(across, 0.0))
         ends = (-lateral - width).max(axis=0), (width - lateral).min(axis=0)
@@ -363,11 +363,11 @@ the search does not converge."""
 MOST_PASSES = 4
 """Largest number of runs in the search for the edges of the stick zone."""
 MOST_EDGES = 4
-"""Largest number of edges of the stick zone.  If a run has more edges, they are treated as
-scatter."""
+"""Largest number of edges of the stick zone.  If a run has more edges, the edges are treated as
+numerical scatter."""
 SLIVER = 1e-3
 """If the distance between two edges is below this fraction of the contact radius, both edges are
-treated as scatter.  If there is little slip, the shift is almost 0 in the rings on either side of
+treated as numerical scatter.  If there is little slip, the shift is almost 0 in the rings next to
 an edge."""
 _EDGES: dict[Problem, tuple[tuple[float, ...], Effort]] = {}
 MOST_STORED = 64
@@ -482,8 +482,8 @@ def stick_edges(
 ) -> tuple[list[Run], tuple[float, ...]]:
     """Find the radii of the stick zone's edges, on rings graded towards these edges.
 
-    The run is repeated on new rings until the radii stay the same.  There are at most MOST_PASSES
-    runs.
+    The run is repeated on new rings until the radii stay the same.  The largest number of runs is
+    MOST_PASSES.
 
     Parameters
     ----------

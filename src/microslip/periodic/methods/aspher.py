@@ -1,14 +1,14 @@
 """Incremental friction solver of the package aspher, on the squares and the path of microslip.
 
 V. A. Yastrebov, https://github.com/cofebem/aspher (BSD-3-Clause).  The package must be installed.
-First, the method solves the normal contact on the squares.  Then the method solves one tangential
-problem in each backward Euler step, by a projected conjugate gradient method.  The method supports
-translations only, at any nu.
+First, the method solves the normal contact problem on the squares.  Then the method solves one
+tangential problem in each backward Euler step, by a projected conjugate gradient method.  The
+method supports translations only, at any nu.
 
 The time integration starts without tractions.  The integration ends when the mean forces of two
-periods agree, or when the largest number of periods (`MOST_PERIODS`) is reached.  With this limit
-on the number of periods, only fast forward motions become periodic.  Two settings differ from the
-defaults of the package:
+periods agree, or when the largest number of periods (`MOST_PERIODS`) is reached.  Within this
+number of periods, only fast forward motions become periodic.  Two settings differ from the defaults
+of the package:
 
 - The preconditioner is off.  The preconditioner is designed for sticking points.  When the slip
   changes direction, the preconditioned solver needs about five times as many iterations.  The mean
@@ -45,8 +45,8 @@ change in a projected step is at most this fraction of the largest friction boun
 
 
 class Solver:
-    """A loaded sphere on a grid of [-1, 1]^2 with `cells` squares in each direction, in working
-    units with mu = 1."""
+    """A loaded sphere in working units with mu = 1.  The domain [-1, 1]^2 is divided into squares,
+    and `cells` is the number of squares in each direction."""
 
     def __init__(self, cells: int, poisson: float):
         import aspher
@@ -72,7 +72,7 @@ class Solver:
         self.bound = np.asarray(self._solver.pressure).reshape(cells, cells)
 
     def step(self, forward: float, lateral: float) -> tuple[float, float]:
-        """Move to a rigid displacement (in u_lim) and count the step, even if it fails.
+        """Move to a rigid displacement (in u_lim).  Count the step, even if the step fails.
 
         Returns two numbers: the forward force divided by mu F_z, and the residual (see
         contact.coulomb_residual).

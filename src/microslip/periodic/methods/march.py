@@ -26,9 +26,9 @@ def plain_march(
 ) -> PeriodicState:
     """Find the periodic state by plain marches over (half) periods.
 
-    The distance is estimated as in the shipped search, with one exception.  The remaining changes
-    of the state are extrapolated as a geometric series, whose ratio is the ratio of the last two
-    changes.
+    The distance is estimated as in the shipped search, except for one difference.  The remaining
+    changes of the state are extrapolated as a geometric series.  The ratio of the series is the
+    ratio of the last two changes.
     """
     state, march, last, distance, iterations = start, None, np.nan, np.inf, 0
     for marches in range(1, goal.most_marches + 1):
