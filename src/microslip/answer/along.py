@@ -56,9 +56,9 @@ MOST_VALUES = 2e7
 """Largest number of tractions in memory at the same time.  Longer paths are integrated in
 pieces."""
 PATH_STEPS = LOAD.steps / 2.0
-"""At level n, a path of length u_lim has n times this number of time steps.  With this value, the
-steps at a stroke of u_lim are as long as those of the ladder `LOAD`, which is used for oscillating
-loads.  At this stroke, half a period is 2 u_lim long."""
+"""At level n, a path of length u_lim has n times this number of time steps.  The ladder `LOAD` is
+used for oscillating loads.  With this value, the steps at a stroke of u_lim are as long as the
+steps of `LOAD`.  At this stroke, half a period is 2 u_lim long."""
 FORCES = ("force_forward", "force_lateral", "torque")
 """Names of the forces in a History, a Response and a Period."""
 COLUMNS = (
@@ -193,7 +193,7 @@ def history(
 
 
 def named_forces(problem: Problem, forces: np.ndarray) -> dict[str, np.ndarray]:
-    """Return the forces by name, with the torque divided by its full-slip value."""
+    """Return the forces by name.  The torque is divided by the torque under full slip."""
     forward, lateral, torque = forces.T
     return dict(zip(FORCES, (forward, lateral, torque / problem.pressure.torque), strict=True))
 

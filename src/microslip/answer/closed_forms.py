@@ -23,7 +23,8 @@ ROUNDING = 1e-12
 """Error of closed forms that need no quadrature."""
 ON_A_SPRING = ("transverse", "bore")
 """Motions for which the bound of fast sliding also applies to a body on a spring.  Over a period,
-the spring does the work of the mean force, a mass does no work, and a dashpot dissipates energy."""
+the spring does the work of the mean force.  A mass does no work, and a dashpot dissipates
+energy."""
 
 Exact = dict[str, Estimate]
 """Estimates by name, as in a Result.  The names are `friction` and either `torque` (for steady

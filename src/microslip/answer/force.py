@@ -404,7 +404,8 @@ def shakedown(
 
 
 def _threshold(request: Request) -> tuple[Estimate, str]:
-    """Return the static limit, and the reason why the contact runs away ("" if it does not)."""
+    """Return the static limit, and the reason why the contact runs away.  The reason is "" if the
+    contact does not run away."""
     problem = request.problem
     away = limits.runs_away(problem)
     if not limits.oscillates(problem):

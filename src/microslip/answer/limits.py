@@ -74,9 +74,9 @@ CLOSEST_FORCE = 0.9999
 load.  With a transverse oscillation, runs converged for forces up to 0.9998.  At this force, the
 contact already advances by 200 amplitudes per period."""
 CLOSEST_STEADY_FORCE = 1.0 - 1e-7
-"""Largest force on a steady rotation, divided by mu times the mean normal load.  The rounding error
-of the friction, 1.1e-16, causes a relative error of 1.1e-16 / (2 (1 - force)) in the velocity.  At
-this force, the relative error is close to the error estimate of 1e-9."""
+"""Largest force on a steady rotation, divided by mu times the mean normal load.  The friction has a
+rounding error of 1.1e-16.  In the velocity, this error causes a relative error of 1.1e-16 / (2 (1 -
+force)).  At this force, the relative error is close to the error estimate of 1e-9."""
 STEPLESS = ("rigid", "dahl")
 """Models that need no step solver, because they evaluate a formula at every step."""
 

@@ -27,7 +27,8 @@ from numba.extending import intrinsic
 from microslip.foundation.compiled import kernel
 
 LANES = 8
-"""Number of neighbouring values that are accumulated at once, as two vectors of four."""
+"""Number of neighbouring values that are accumulated at once.  The values form two vectors of
+four."""
 ZERO = (0.0, 0.0, 0.0, 0.0)
 
 

@@ -43,7 +43,7 @@ from microslip.scene.pressure import Pressure
 
 GRADING = 0.98
 """Grading of the time steps towards the turning points.  At a turning point, the direction of slip
-reverses within a phase of about v/y, the ratio of velocity to amplitude."""
+reverses within a phase of about v/y.  This is the ratio of the velocity to the amplitude."""
 
 
 class RigidContact(contact.Contact):

@@ -22,7 +22,7 @@ from microslip.scene.pressure import Pressure
 
 
 def load_on_rings(pressure: Pressure, edges: np.ndarray, depth: np.ndarray) -> np.ndarray:
-    """Return the load inside each of n + 1 radii (`edges`), for each of k depths.
+    """For each of k depths, return the load inside each of the n + 1 radii `edges`.
 
     A depth is the indentation divided by the indentation in the reference state.  In this state,
     the contact radius is a and the load is F_z.  The result has the shape (k, n + 1).

@@ -47,8 +47,8 @@ BALANCED_RINGS = 12
 """If half of the points stick, the best penalty is sqrt(rings / BALANCED_RINGS) times the
 self-influence of a ring.  The splitting converges fastest if the penalty is the geometric mean of
 the smallest and the largest eigenvalue of A.  The smallest eigenvalue belongs to a narrow ring, and
-the largest belongs to the whole contact.  The ratio of the two eigenvalues is proportional to the
-number of rings.  The value is calibrated by benchmarks/splitting.py."""
+the largest eigenvalue belongs to the whole contact.  The ratio of the two eigenvalues is
+proportional to the number of rings.  The value is calibrated by benchmarks/splitting.py."""
 LEVELS = 4
 """Number of penalties for which a resolvent is computed."""
 PENALTIES = 2.0 ** (np.arange(LEVELS) - 0.5 * (LEVELS - 1))

@@ -38,9 +38,9 @@ LOOSEST, LOOSEST_NEAR = 1e-4, 1e-5
 """Largest tolerance of a step.  The first value applies if the initial state is far from the
 periodic state.  The second value applies if the initial state is near the periodic state."""
 NOISE = 1e-2
-"""Largest accepted residual of a march, as a fraction of the force that the drift adds in this
-march.  The rate at which an error of the state decays is at most the rate at which the state
-drifts."""
+"""The drift adds a force in each march.  This value is the largest accepted residual of a march, as
+a fraction of this force.  The rate at which an error of the state decays is at most the rate at
+which the state drifts."""
 DRIFTING, MOST_RETURNS = 0.5, 3
 """DRIFTING: a fraction of the force that the drift adds in a march.  A state below the static limit
 is stuck if the residual of the state exceeds this fraction.  Such a state drifts without slip, so
@@ -53,8 +53,8 @@ CAUTION = 0.3
 """Largest ratio of the effective stiffness of a soft spring to that of the contact.  With a larger
 ratio, the search would overshoot."""
 DEPTH = 12
-"""Number of stored differences.  Of the values 5, 8 and 12, this one needs the fewest marches for
-bores and loops."""
+"""Number of stored differences.  Among the values 5, 8 and 12, this one needs the fewest marches
+for bores and loops."""
 DEPENDENT = 1e-8
 """Each difference is split into a linear combination of newer differences and an orthogonal part.
 The difference is dropped if the norm of the orthogonal part is below this fraction of the full
