@@ -12,8 +12,8 @@ resolved.
 Coulomb's law applies at the points.  The influence operator is block-diagonal in the angular modes.
 At nu = 0, the forward tractions of a mode cause only forward displacements, and the lateral
 tractions cause only lateral displacements.  The ring matrix is the same for both directions.  At nu
-> 0, consider the complex waves e^{i m theta} of forward - i lateral.  Influence couples the waves m
-and 2 - m (see influence.py).
+> 0, the forward component minus i times the lateral component is a sum of complex waves
+e^{i m theta}.  Influence couples the waves m and 2 - m (see influence.py).
 """
 
 from __future__ import annotations
@@ -119,7 +119,7 @@ def _coupled_waves(
 
 
 class PolarContact(RingContact):
-    """Contact with points on rings and at angles; see contact.Contact.
+    """Contact that is discretised into rings, and into angles on each ring; see contact.Contact.
 
     States have the shape (2, angles, cells).
 

@@ -65,8 +65,9 @@ class Growth(NamedTuple):
 
 
 class RingContact(Contact):
-    """Contact with points on rings and at angles; see contact.Contact.  States have the shape (2,
-    rows, cells).
+    """Contact that is discretised into rings, and into angles on each ring; see contact.Contact.
+
+    States have the shape (2, rows, cells).
 
     Parameters
     ----------

@@ -168,7 +168,7 @@ class DescentSolver:
         self._scratch = convolution.workspace(contact.convolution), np.empty((4, rows, columns))
 
     def solve(self, b: np.ndarray, guess: np.ndarray, share: float = 1.0) -> Step:
-        """Solve a step for the imposed displacement b.
+        """Solve one step in which the displacement b is imposed.
 
         share: factor by which the tolerance is multiplied.  Returns the tractions, the slip, the
         number of iterations, the residual, and the displacement of a driven body.  This

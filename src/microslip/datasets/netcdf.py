@@ -89,7 +89,9 @@ def coded(variable: xr.Variable) -> xr.Variable:
 
 
 def texts(codes: xr.DataArray) -> xr.DataArray:
-    """Return the strings of a variable that contains codes, such as `model` or `reason` of a map.
+    """Convert the codes in a variable to the strings that they stand for.
+
+    For example, the variables `model` and `reason` of a map contain codes.
 
     Parameters
     ----------

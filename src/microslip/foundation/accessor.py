@@ -23,7 +23,7 @@ def register() -> None:
 
 
 class _AfterXarray:
-    """Import finder that registers the accessor after the import of xarray."""
+    """Finder of Python's import system.  It registers the accessor once xarray is imported."""
 
     def find_spec(self, name: str, path: object = None, target: object = None) -> ModuleSpec | None:
         if name != "xarray":

@@ -65,7 +65,7 @@ class Sources:
         return sorted(name for name, words in parts.items() if all(map(str.isidentifier, words)))
 
     def digest(self, names: Iterable[str]) -> str:
-        """Return the SHA-256 of the paths and the code of files, in hexadecimal."""
+        """Return the hexadecimal SHA-256 of the paths `names` and of the code in these files."""
         code = [(name, self._parsed(name)[0]) for name in sorted(names)]
         if self.prefix and self._is_new:
             self._is_new = False

@@ -81,7 +81,7 @@ def split(text: str, what: str, names: Iterable[str]) -> tuple[str, str | None]:
     """Split a string such as "elliptic:phase=90" into the name and the part with the parameters.
     If the string has no colon, the second part is None.
 
-    Raises InputError about the argument `what` if `names` does not contain the name.
+    Raises InputError if the name is not in `names`.  The message is about the argument `what`.
     """
     name, colon, numbers = text.partition(":")
     if name not in names:

@@ -195,7 +195,7 @@ class Run:
     static_force : float
         Mean forward force of the static limit, also used by other runs; NaN if unknown.
     limit : np.ndarray or None
-        Tractions of the static limit of a motion on a line; None if they are unknown.
+        Tractions in the static limit, for a motion along a line; None if they are unknown.
     """
 
     values: Mapping[str, float]

@@ -147,8 +147,8 @@ def accelerated(pairs: np.ndarray, count: int, scale: np.ndarray) -> np.ndarray:
 
     The least-squares problem is solved by modified Gram-Schmidt, starting with the newest
     difference.  `pairs` contains pairs of an image and a change.  The newest pair is the last one.
-    `scale` multiplies the changes in the least-squares norm.  Both `scale` and the result have the
-    shape (n,).
+    The least-squares norm is the norm of the changes times `scale`.  Both `scale` and the result
+    have the shape (n,).
     """
     images, changes = pairs[0], pairs[1]
     last, n = count - 1, len(scale)

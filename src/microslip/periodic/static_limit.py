@@ -1,6 +1,6 @@
 """The static limit: friction of a forward motion that is infinitely slow.
 
-The limit is a separate problem at every point.  Let q(t) be the periodic tractions of the
+The limit can be computed separately at every point.  Let q(t) be the periodic tractions of the
 oscillation alone, and g(t) the friction bound.  Consider a forward velocity that tends to 0.  In
 each period, every point slips forward a little when q(t) + s reaches the bound.  Here s is a
 constant traction.  Such a slow drift does not change q(t).  By the flow rule, s has the largest

@@ -1,4 +1,4 @@
-"""Titles and second force components of the paper's two oscillating motions."""
+"""For each of the paper's two oscillating motions: the title, and the second force component."""
 
 from __future__ import annotations
 

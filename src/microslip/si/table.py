@@ -163,7 +163,7 @@ def predict_grid(motion: str, **given: Any) -> xr.Dataset:
 
 
 def read_cases(motion: str, source: Any, shared: Mapping[str, Any], **form: Any) -> Cases:
-    """Read the contacts of a table.  The arguments `form` are those of `table_of`.  Raises
+    """Read the contacts of a table.  The arguments in `form` are passed to `table_of`.  Raises
     InputError."""
     units = {name: one.unit for name, one in INPUTS.items() if name != "map"}
     argument = "table" if isinstance(source, str | os.PathLike) else "cases"
@@ -360,9 +360,8 @@ def interpolation_errors(values: xr.DataArray) -> dict[str, float | None]:
     """Return the largest deviation from linear interpolation along each axis.  The deviation is the
     difference between a value and the linear interpolation between the two neighbouring values.
 
-    The deviation is None for an axis with fewer than three values.  Consider the sum of the
-    deviations over all axes.  If the values are smooth, linear interpolation between neighbouring
-    values has an error of one quarter of this sum.
+    The deviation is None for an axis with fewer than three values.  To estimate the error of linear
+    interpolation between smooth values, add the deviations of all axes, and divide by 4.
     """
     errors: dict[str, float | None] = {}
     for name in map(str, values.dims):

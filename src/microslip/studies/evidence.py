@@ -315,8 +315,8 @@ def lead(row: Row) -> tuple[float, float]:
 
     The difference, divided by the total stick area, is computed twice: when the total in the first
     half of the period is smallest, and half a period later.  The smaller absolute value is
-    returned.  The result is positive if each side is larger at one of the two moments, and negative
-    otherwise.
+    returned.  The result is positive if one side is larger at the first moment, and the other side
+    is larger at the second moment.  Otherwise, the result is negative or 0.
     """
     right, left = (np.asarray(row[f"stick_{side}"][1:], float) for side in ("right", "left"))
     half = right.size // 2

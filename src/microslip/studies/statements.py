@@ -65,7 +65,7 @@ class Part(NamedTuple):
     text: str
 
     def checks(self, tables: dict[str, pd.DataFrame]) -> pd.DataFrame:
-        """Return the lines of evidence for this part, with the additional columns `against`,
+        """Return the rows of evidence for this part, with the additional columns `against`,
         `margin` and `outcome`.
 
         tables: tables of evidence, keyed by name.

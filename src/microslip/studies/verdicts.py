@@ -89,7 +89,7 @@ def shown_by(checks: pd.DataFrame) -> str:
 
 
 def where(checks: pd.DataFrame) -> str:
-    """Return a string that states where a part holds.
+    """Return a string that states at which amplitudes or velocities a part of a statement holds.
 
     An example is "amplitude 1 to 3; not at amplitude 5".
 
