@@ -39,6 +39,14 @@ def own_title(dataset: xr.Dataset) -> str:
     return settings.get("sweep", {}).get("title") or ""
 
 
+def short_title(dataset: xr.Dataset) -> str:
+    """Return the title from the configuration of a sweep, or the motion and the pressure.  The
+    pressure of a sphere is omitted."""
+    motion = dataset.attrs.get("title", "").rpartition(", motion ")[2]
+    shape = dataset.attrs.get("pressure", "hertz").partition(":sha256")[0]
+    return own_title(dataset) or ", ".join([motion, shape] if shape != "hertz" else [motion])
+
+
 def moving(dataset: xr.Dataset) -> xr.Dataset:
     """Select the part of a dataset with velocities above 0."""
     if "velocity" not in dataset.dims:

@@ -107,7 +107,7 @@ def _lines(dataset: xr.Dataset, titled: bool) -> Iterator[Line]:
     """Yield the lines of a sweep."""
     over_force = "force" in dataset.dims
     variable = "velocity" if over_force else "mu_macro"
-    title, still = look.literal(dataset.attrs.get("title", "")) if titled else "", None
+    title, still = look.literal(selection.short_title(dataset)) if titled else "", None
     dim, parts = selection.lines(dataset, variable)
     if dim in PLANE:
         if dim == "amplitude" and 0.0 in dataset.indexes.get("velocity", ()):
@@ -213,7 +213,7 @@ def _references(axes: Axes, points: xr.Dataset, shown: Sequence[xr.Dataset]) -> 
         if same and "drive" not in one.attrs and "velocity" in one.dims:
             near = one.sel(velocity=float(points["velocity"]), method="nearest")
             if np.isclose(near["velocity"], points["velocity"]) and near["mu_macro"].ndim == 0:
-                text = look.literal(one.attrs.get("title", ""))
+                text = look.literal(selection.short_title(one))
                 axes.axhline(float(near["mu_macro"]), color=look.BLACK, label=text, gid="reference")
 
 

@@ -28,7 +28,15 @@ from microslip.config.quantities import MU_MACRO
 from microslip.datasets.surface import Surface
 from microslip.report.figures import curves
 from microslip.report.figures import style as look
-from microslip.report.selection import at_each_poisson, columns, limit, moving, own_title, resampled
+from microslip.report.selection import (
+    at_each_poisson,
+    columns,
+    limit,
+    moving,
+    own_title,
+    resampled,
+    short_title,
+)
 
 FEW = 9
 """The points are drawn if an axis has fewer than this number of points."""
@@ -81,7 +89,7 @@ def draw(*datasets: xr.Dataset) -> Figure:
     friction at larger ratios.  A certified map has a panel with its error estimates.  If the map
     comes from a single, uncertified sweep of friction, cuts along two edges of the map are added.
     """
-    titles = [one.attrs.get("title", "") if datasets[1:] else own_title(one) for one in datasets]
+    titles = map(short_title if datasets[1:] else own_title, datasets)
     rows = list(map(_panels, datasets, map(look.literal, titles)))
     drawn = [panel for row in rows for panel in row]
     widths = {len(row) for row in rows}
