@@ -16,15 +16,12 @@ time of `microslip point`."""
 def main() -> int:
     """Run the command in this process and return its exit code, see microslip.app.cli.main."""
     gc.set_threshold(OBJECTS)
-    stoppable = sys.argv[1:2] != ["sweep"]  # Snakemake handles the signals of a sweep
-    handler = signal.getsignal(signal.SIGINT)
-    if handler != signal.SIG_IGN:
+    if signal.getsignal(signal.SIGINT) != signal.SIG_IGN:
         signal.signal(signal.SIGINT, signal.SIG_DFL)  # until terminal.run installs its handler
     from microslip.app import terminal
 
-    if not stoppable:
-        signal.signal(signal.SIGINT, handler)
-    code = terminal.run(_command, stoppable=stoppable)
+    # Snakemake handles the signals of a sweep
+    code = terminal.run(_command, stoppable=sys.argv[1:2] != ["sweep"])
     gc.freeze()  # otherwise the last collection takes as long as the imports
     return code
 

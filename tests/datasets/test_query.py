@@ -165,7 +165,15 @@ def test_a_part_of_a_dataset_answers_like_the_whole(part):
     assert float(answer.mu_macro_error) == pytest.approx(float(reference.mu_macro_error), rel=1e-9)
 
 
+def test_a_single_point_answers_with_its_own_value():
+    point = made_up(error=1e-4).isel(velocity=3, amplitude=3)
+    answer = point.microslip.at(float(point.velocity), float(point.amplitude))
+    assert float(answer.mu_macro) == float(point.mu_macro)
+    assert float(answer.mu_macro_error) == float(point.mu_macro_error)
+
+
 ONE = {"velocity": 1, "amplitude": 1}
+OTHER = made_up().assign_attrs(motion="longitudinal")
 PAIR = xr.DataArray([1.0, 2.0], dims="n")
 
 
@@ -181,6 +189,8 @@ PAIR = xr.DataArray([1.0, 2.0], dims="n")
         (made_up().rename(velocity="v"), ONE, "velocity"),
         (made_up().isel(velocity=[0, 0, 1]), ONE, "velocity"),
         (made_up().astype(str), ONE, "mu_macro"),
+        (made_up().where(made_up().velocity < 0.5, with_checksums(OTHER)), ONE, "mu_macro"),
+        (made_up().assign_coords(poisson=("velocity", VELOCITY / 20)), ONE, "poisson"),
         (made_up().expand_dims(made=2), ONE, "made"),
     ],
 )

@@ -16,7 +16,8 @@ from microslip.foundation.named_files import base_name
 from microslip.scene.by_name import motion_named, pressure_named
 from microslip.sweeps import request
 
-HELPER = "FACTOR = 1.0\n"
+HELPER = "from parts import FACTOR\n"
+PARTS = {"__init__": "from .value import FACTOR\n", "value": "FACTOR = 1.0\n"}
 MOTION = """
 from dataclasses import dataclass
 from helper import FACTOR
@@ -53,6 +54,9 @@ def mine(tmp_path, monkeypatch):
     folder.mkdir()
     for name, text in (("helper", HELPER), ("side_ways", MOTION), ("cone", PRESSURE)):
         (folder / f"{name}.py").write_text(text)
+    (folder / "parts").mkdir()
+    for name, text in PARTS.items():
+        (folder / f"parts/{name}.py").write_text(text)
     return folder
 
 
@@ -80,6 +84,7 @@ EDITS = [
     ("side_ways", lambda text: text.replace("lateral", "angle"), True),
     ("helper", lambda text: "FACTOR = 0.5\n", True),
     ("new", lambda text: "OTHER = 1\n", False),
+    ("parts/value", lambda text: "FACTOR = 0.5\n", True),
 ]
 
 
@@ -92,7 +97,7 @@ def test_the_code_of_the_file_and_of_its_imports_counts(mine, name, edit, counts
     keys.append(request.key_of({"kind": "point", "motion": after.name, "velocity": "1"}))
     assert (keys[0] != keys[1]) == (after is not before) == counts
     wave = after.waves.get("lateral")
-    assert wave is None or wave.share == (0.5 if counts and name == "helper" else 1.0)
+    assert wave is None or wave.share == (0.5 if counts and name != "side_ways" else 1.0)
 
 
 def test_files_of_the_same_name_in_two_folders_do_not_disturb_each_other(mine, tmp_path):

@@ -201,7 +201,7 @@ REFUSED = [
         FINE,
         {"lateral": np.where(ROW < 12_500, 0.02 * SINE[0], SINE)},
         {},
-        r"smallest in part [1-6] of 11",
+        r"smallest in part [1-6] of 1[01]",
     ),
     *(
         (RECORD, {"lateral": LATERAL}, {"frequency": factor * FREQUENCY}, "^frequency = ")

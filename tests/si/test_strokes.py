@@ -95,12 +95,18 @@ def test_forces_do_not_depend_on_the_reference_load_beside_a_column_of_loads(tmp
     assert other.sliding_friction_N == pytest.approx(3.0)
 
 
-@pytest.mark.long
-def test_an_uncertain_factor_is_an_uncertain_amplitude(tmp_path):
+@pytest.mark.parametrize(
+    ("factor", "amplitude", "load"),
+    [
+        ("1", "0.1 um", "10 N +- 5 %"),
+        pytest.param("1 +- 5 %", "0.1 um +- 5 %", "10 N", marks=pytest.mark.long),
+    ],
+)
+def test_a_file_has_the_uncertainty_of_the_named_motion(factor, amplitude, load, tmp_path):
     name = file_of(tmp_path / "stroke.csv", lateral_um=0.1 * SINE)
-    shared = SHAKEN | {"tolerance": 1e-3}
-    one = microslip.predict(name, **shared, amplitude="1 +- 5 %")
-    other = microslip.predict("transverse", **shared, amplitude="0.1 um +- 5 %")
+    shared = SHAKEN | {"tolerance": 1e-3, "load": load}
+    one = microslip.predict(name, **shared, amplitude=factor)
+    other = microslip.predict("transverse", **shared, amplitude=amplitude)
     for spread in ("mu_macro_spread", "mu_static_spread"):
         assert getattr(one, spread) == pytest.approx(getattr(other, spread), rel=0.2)
 

@@ -4,7 +4,7 @@ import numpy as np
 import xarray as xr
 
 from microslip.config.quantities import AXES
-from microslip.datasets.interpolation import checksums
+from microslip.datasets.interpolation import checksums, scene_of
 from microslip.theory import paper
 
 FINE = {"velocity": np.geomspace(0.01, 10, 41), "amplitude": np.linspace(0.05, 4, 41)}
@@ -44,5 +44,6 @@ def map_of(mu, velocity, amplitude, error=0.0, poisson=0.0, **attributes):
 def with_checksums(dataset, name="mu_macro"):
     """The dataset with checksums of its present points."""
     value, error = dataset[name], dataset[f"{name}_error"].values
-    codes = checksums([dataset[one] for one in AXES if one in dataset.coords], value.values, error)
+    axes = [dataset[one] for one in AXES if one in dataset.coords]
+    codes = checksums(axes, value.values, error, scene_of(dataset.attrs))
     return dataset.assign(checksum=dataset.converged * codes.reshape(value.shape))

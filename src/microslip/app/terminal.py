@@ -38,7 +38,7 @@ def run(command: Callable[[], int], *, stoppable: bool = True) -> int:
         Function that prints to `sys.stdout`.  It returns an exit code, or raises SystemExit with
         the exit code.
     stoppable
-        If True, signals end the command.  If False, the command handles signals itself.
+        If True, signals end the command.  If False, the command replaces the handler of SIGINT.
 
     Returns
     -------
@@ -47,6 +47,8 @@ def run(command: Callable[[], int], *, stoppable: bool = True) -> int:
     """
     _open_closed_streams()
     if not stoppable:
+        if signal.getsignal(signal.SIGINT) != signal.SIG_IGN:
+            signal.signal(signal.SIGINT, _end)
         return _written(_code_of(command))
     numbers = [getattr(signal, name) for name in STOPPED_BY if hasattr(signal, name)]
     numbers = [n for n in numbers if signal.getsignal(n) != signal.SIG_IGN]  # set by nohup

@@ -16,7 +16,9 @@ from microslip.foundation.arguments import numbers
 from microslip.foundation.errors import InputError
 
 ALLOWED = "allowed is a finite number, or several"
-UNKNOWN = "NaN beside points without a value; reason of the map, or the log of its job, says why"
+UNKNOWN = (
+    "NaN beside points that did not converge; reason of the map, or the log of its job, says why"
+)
 BLOCK = 2**14
 """Number of points that are interpolated at once.  This number limits the memory use."""
 
@@ -113,7 +115,7 @@ class Map:
 def _coordinate(name: str, value: Any) -> xr.DataArray:
     """Convert an argument to a DataArray of finite numbers.  A sequence is converted to an array
     with the dimension `name`.  Values in dask chunks are checked only when they are computed."""
-    if isinstance(value, xr.DataArray) and value.chunks is not None:
+    if isinstance(value, xr.DataArray) and value.chunks is not None and value.dtype.kind in "iuf":
         return value
     array = numbers(name, value)
     if not np.isfinite(array).all():

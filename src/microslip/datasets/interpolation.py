@@ -14,9 +14,10 @@ In a certified map, each cell has its own polynomial and its own error bound.
 from __future__ import annotations
 
 import zlib
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 import xarray as xr
@@ -349,11 +350,13 @@ def cells_of(dataset: xr.Dataset) -> Cells:
     return Cells(coordinates, borders.transpose(2, 0, 1), nodes, parts["cell_error"].astype(float))
 
 
-def checksums(axes: Iterable[ArrayLike], value: np.ndarray, error: np.ndarray) -> np.ndarray:
+def checksums(
+    axes: Iterable[ArrayLike], value: np.ndarray, error: np.ndarray, scene: str
+) -> np.ndarray:
     """Return the checksums of the points of a regular map, as a flat array.
 
-    The checksum of a point is the CRC-32 of its coordinates, its value and the error of this value,
-    as little-endian numbers in double precision.
+    The checksum of a point is the CRC-32 of the scene and of numbers: the coordinates, the value
+    and the error of the value.  The numbers are little-endian and have double precision.
 
     Parameters
     ----------
@@ -361,11 +364,19 @@ def checksums(axes: Iterable[ArrayLike], value: np.ndarray, error: np.ndarray) -
         Coordinates along each dimension, and constant coordinates, in the order of AXES.
     value, error : numpy.ndarray
         Values and errors at the points.  The last coordinate changes fastest.
+    scene : str
+        Motion and pressure.
     """
     places = np.meshgrid(*axes, indexing="ij")
     table = np.column_stack([one.ravel() for one in (*places, value, error)]).astype("<f8")
-    codes = [zlib.crc32(row.tobytes()) for row in table]
+    first = zlib.crc32(scene.encode())
+    codes = [zlib.crc32(row.tobytes(), first) for row in table]
     return np.array(codes, np.uint32).view(np.int32)
+
+
+def scene_of(attributes: Mapping[str, Any]) -> str:
+    """Return the motion and the pressure of a map, for `checksums`."""
+    return " ".join(str(attributes.get(one)) for one in ("motion", "pressure"))
 
 
 def grid_of(dataset: xr.Dataset, name: str) -> Grid:
@@ -393,13 +404,21 @@ def grid_of(dataset: xr.Dataset, name: str) -> Grid:
         index = nodes[dim].to_index()
         for one in index[index.duplicated()]:
             raise InputError(dim, one, "occurs twice; allowed: once")
+    for one in nodes.coords.keys() & set(AXES) - {*dims, name}:
+        if nodes[one].ndim:
+            raise InputError(one, "several", f"allowed along {nodes[one].dims[0]} is one value")
+    if not dims:  # a single point
+        dims = ["force" if name == "velocity" else "velocity"]
+        nodes = nodes.expand_dims(dims)
     nodes = nodes.compute().sortby(dims).transpose(*dims)
     value, error, original = (nodes[one].values for one in names)
     value = np.where(original == 0, np.nan, value)
-    coordinates = [nodes[one] for one in AXES if one in nodes.coords]
-    has_changed = checksums(coordinates, value, error) != original.ravel()
+    coordinates = [nodes[one] for one in AXES if one in nodes.coords and one != name]
+    has_changed = checksums(coordinates, value, error, scene_of(nodes.attrs)) != original.ravel()
     for one in value.ravel()[has_changed & ~np.isnan(value.ravel())]:
-        raise InputError(name, float(one), f"not computed at its coordinates; {CHANGED}")
+        raise InputError(
+            name, float(one), f"not computed for this motion at its coordinates; {CHANGED}"
+        )
     axes = {}
     for dim in dims:
         values = nodes[dim].values.astype(float)

@@ -18,7 +18,7 @@ from microslip.config.quantities import AMPLITUDE, DRIVES, VELOCITY
 from microslip.config.settings import Configuration, Sweep
 from microslip.datasets import netcdf, theory_limits
 from microslip.datasets.catalogue import FORMS
-from microslip.datasets.interpolation import CHECKSUM, checksums
+from microslip.datasets.interpolation import CHECKSUM, checksums, scene_of
 from microslip.datasets.variables import TABLE, columns, described, rows_of
 from microslip.foundation import named_files, source_digest
 from microslip.foundation.canonical import canonical_json
@@ -89,7 +89,8 @@ def build(
     }
     values["reason"][:] = [_shortened(text) for text in values["reason"]]
     variable = "mu_macro" if sweep.velocity else "velocity"
-    codes = checksums(sweep.axes.values(), values[variable], values[f"{variable}_error"])
+    numbers = values[variable], values[f"{variable}_error"]
+    codes = checksums(sweep.axes.values(), *numbers, scene_of(about))
     values[CHECKSUM] = codes * values["converged"]
     shape = [len(sweep.axes[dim]) for dim in sweep.dims]
     values = {one: column.reshape(shape) for one, column in values.items()}

@@ -86,7 +86,7 @@ class Sources:
         while queue:
             if (name := queue.pop()) not in closure:
                 closure.add(name)
-                queue += filter(inside, self._imports(self._parsed(name)[1]))
+                queue += filter(inside, self._imports(name, self._parsed(name)[1]))
         tables = (f"{name[:-3]}.csv" for name in closure if name.endswith(".py"))
         return closure | {name for name in tables if (self.folder / name).is_file()}
 
@@ -114,11 +114,15 @@ class Sources:
         starts = {n for n in self.names for f in files if n == f or n.startswith(f"{f}/")}
         return self.closure(starts, lambda n: not (is_physics(n) or n.startswith("foundation/")))
 
-    def _imports(self, modules: Iterable[str]) -> list[str]:
-        """Return the paths of the modules with these names, and the paths of the packages that
-        contain these modules."""
+    def _imports(self, file: str, modules: Iterable[str]) -> list[str]:
+        """Return the paths of the modules that a file imports, and the paths of the packages that
+        contain these modules.  A dot at the beginning of a name is the folder of the file, and each
+        further dot is the folder above."""
         inside = (n.removeprefix(self.prefix) for n in modules if n.startswith(self.prefix))
-        parts = [name.split(".") for name in inside]
+        parts = [name.split(".") for name in inside if name[:1] != "."]
+        for name in (name for name in modules if name.startswith(".")):
+            own = name.lstrip(".")
+            parts.append([*file.split("/")[: len(own) - len(name)], *own.split(".")])
         paths = {"/".join(one[:end]) for one in parts for end in range(1, len(one) + 1)}
         files = (file for path in paths for file in (f"{path}.py", f"{path}/__init__.py"))
         return [file for file in files if (self.folder / file).is_file()]
@@ -172,7 +176,11 @@ def parse(content: bytes, messages: bool) -> tuple[str, list[str]]:
     nodes = [*ast.walk(tree)]
     names = {one.name for node in nodes if isinstance(node, ast.Import) for one in node.names}
     parts = [node for node in nodes if isinstance(node, ast.ImportFrom)]
-    names |= {f"{node.module}.{one.name}" for node in parts for one in node.names}
+    names |= {
+        "." * node.level + ".".join(filter(None, [node.module, one.name]))
+        for node in parts
+        for one in node.names
+    }
     return _sha256(_text(tree, messages).encode()), sorted(names)
 
 

@@ -157,14 +157,14 @@ class Contact:
         """Dimensionless amplitudes for microslip.solve, keyed by direction (Eqs 2, 4, 27)."""
         inputs = self.inputs
         if self.kind.stroke is not None:
-            columns = self.kind.stroke.deviations(self)
-            return {n: inputs.amplitude * float(abs(one).max()) for n, one in columns.items()}
+            sizes = self.kind.stroke.sizes(self)
+            return {name: inputs.amplitude * size for name, size in sizes.items()}
         angle = self.u_lim / (self.contact_radius * hertz.bore_amplitude(1.0, self.poisson))
         units = {"lateral": self.u_lim, "forward": self.u_lim, "angle": angle, "load": self.load}
         if self.kind.unit == "rad":
             units["lateral"] = angle
-        sizes = {direction: getattr(inputs, name) for name, direction in OSCILLATIONS.items()}
-        return {n: size / units[n] for n, size in sizes.items() if size is not None}
+        given = {direction: getattr(inputs, name) for name, direction in OSCILLATIONS.items()}
+        return {n: size / units[n] for n, size in given.items() if size is not None}
 
     @cached_property
     def amplitude(self) -> Any:

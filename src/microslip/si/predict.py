@@ -97,7 +97,9 @@ def predict_contact(contact: Contact) -> Prediction:
     answer = answer_of(contact)
     values = outputs(contact, answer)
     if search and math.isfinite(root.error):
-        shifted = outputs(Contact(contact.inputs.at(**{search: root.value + root.error})), answer)
+        moved = Contact(contact.inputs.at(**{search: root.value + root.error}))
+        known = answer.values | {"velocity": Value(moved.velocity)}
+        shifted = outputs(moved, replace(answer, values=known))
         changes = {name: abs(shifted[name].value - one.value) for name, one in values.items()}
         values = {n: replace(one, error=one.error + changes[n]) for n, one in values.items()}
     if inputs.uncertain:

@@ -54,7 +54,7 @@ class RealResponse(Answer):
         accepted error of a force, relative to mu times the load; reason, the reason why the
         response is not converged; converged, 0 or 1.
     converged : bool
-        True if every error is within the tolerance.
+        True if every error of a force or a torque is within the tolerance.
     """
 
     def to_xarray(self) -> Any:

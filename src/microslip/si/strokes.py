@@ -60,17 +60,24 @@ class Stroke:
     pace: tuple[float, float]
     hint: str
 
-    def deviations(self, contact: Any) -> dict[str, np.ndarray]:
-        """Return the columns in the units of `microslip.Sampled`.  In these units, the mean of a
-        load or an indentation is 1.  The function returns the deviation from this mean."""
-        units = scales(contact, self.columns)
-        return {name: one / units[name] - (name in NORMAL) for name, one in self.columns.items()}
+    def sizes(self, contact: Any) -> dict[str, Any]:
+        """Return the largest deviation of each column from its mean.  The units are those of
+        `microslip.Sampled`, in which the mean of a load or an indentation is 1.  If an input of the
+        contact is an array, the sizes are arrays."""
+        units, sizes = scales(contact, self.columns), {}
+        for name, one in self.columns.items():
+            ends = (abs(end / units[name] - (name in NORMAL)) for end in (one.min(), one.max()))
+            sizes[name] = np.maximum(*ends)
+        return sizes
 
     def sampled(self, contact: Any, size: float) -> Sampled:
         """Return the motion for microslip.solve.  In this motion, the displacements are divided by
         `size`.  The deviations of the load or the indentation from 1 are also divided by `size`."""
-        deviations = self.deviations(contact).items()
-        return Sampled.of_columns({n: one / size + (n in NORMAL) for n, one in deviations})
+        units, columns = scales(contact, self.columns), {}
+        for name, one in self.columns.items():
+            mean = float(name in NORMAL)
+            columns[name] = (one / units[name] - mean) / size + mean
+        return Sampled.of_columns(columns)
 
 
 def scales(contact: Any, columns: dict[str, np.ndarray]) -> dict[str, float]:

@@ -66,6 +66,6 @@ def remove_others(path: Path) -> None:
     for other in path.parent.glob(f"{stem}*{ending}"):
         same = other.stem.partition("-")[0] == stem
         marker = other.with_suffix(GAPS)
-        if same and other != path and (marker.exists() or not is_whole(other)):
+        if same and other != path and other.is_file() and (marker.exists() or not is_whole(other)):
             other.unlink(missing_ok=True)
             marker.unlink(missing_ok=True)
