@@ -272,6 +272,7 @@ REFUSED = [
     (GOOD | {"mu": [0.3] * 16}, {}, "both friction and mu"),
     (GOOD | {"friction": [0.0] * 8 + [-1.0] * 8}, {}, "0 in none of 16 rows, and negative in 8"),
     (GOOD | {"friction": [1.0] * 15 + [math.nan]}, {}, "in every row.*, in row 16"),
+    (GOOD | {"friction": 1e-9 * GOOD["friction"]}, {}, "mu is at most 1e-05; check the units"),
     (GOOD | {"friction_error": [0.1] * 15 + [0.0]}, {}, "friction_error = 0.0: .*above 0"),
     (GOOD | {"mu_error": [0.1] * 16}, {}, "mu_error without mu"),
     (GOOD | {"time": np.ones(16)}, {}, "a column 'time'"),

@@ -111,6 +111,10 @@ def test_the_error_covers_a_small_drift_of_the_frequency_and_of_the_amplitude(ch
     size, error = microslip.fold(time, {"lateral": lateral}).peak_to_peak("lateral")
     assert abs(size - 2.0 * (1.0 - 0.5 * decay)) <= 1.2 * error - 0.6 * decay
     assert error <= 0.02 + decay
+    fall = microslip.fold(
+        time, {"lateral": np.sin(2.0 * np.pi * FREQUENCY * time) * (1.0 - decay * time)}
+    )
+    assert abs(fall.frequency - FREQUENCY) <= fall.frequency_error + 1e-8
 
 
 def test_a_weak_fundamental_is_not_mistaken_for_a_fraction():

@@ -97,6 +97,7 @@ MOST_PASSES, SETTLED = 6, 5e-4
 """MOST_PASSES: largest number of corrections of the coarse map.  SETTLED: no further correction is
 made if the relative change of both unknowns is below this value."""
 SMALLEST_MU = 1e-5
+"""Smallest mu of a fit.  A smaller mu is due to wrong units."""
 WIDEST_MU = 2.0
 """Largest allowed ratio of the upper to the lower bound of the interval for mu."""
 UNLIKELY = 0.01
@@ -314,6 +315,9 @@ def fit(
     odd = about.pop("odd")
     about |= {"motion": motion, "understood": {"motion": motion} | texts | about["understood"]}
     result = _fitted(about, friction, bodies, level)
+    if result.mu <= SMALLEST_MU:
+        problem = f"mu is at most {SMALLEST_MU:g}; check the units of the friction and of the load"
+        raise InputError("measured", source_name(measured), problem)
     if not result.mu_high < WIDEST_MU * result.mu_low:
         problem = f"mu from {result.mu_low:.3g} to {result.mu_high:.3g} fits as well with another"
         problem = f"the rows determine neither number: {problem} u_lim; {odd}; {MORE_ROWS}"

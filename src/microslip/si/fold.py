@@ -252,7 +252,10 @@ def fold(
     rates = (end - first) / (longest - 1.0 / hz)
     return Fold(
         frequency=float(hz),
-        frequency_error=float(hz * math.hypot(error, rounding / longest)),
+        # the phase of a period is off by 1 / (4 pi) of the amplitude's relative change within it
+        frequency_error=float(
+            hz * math.hypot(error, rounding / longest, (change / whole) ** 2 / (4.0 * math.pi))
+        ),
         periods=whole,
         columns=dict(zip(names, (mean + below).T, strict=True)),
         errors=dict(zip(names, (errors + below).T, strict=True)),
