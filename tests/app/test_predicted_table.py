@@ -48,6 +48,7 @@ def test_each_line_has_its_prediction_or_its_problem(folder):
     assert dataset.line.values.tolist() == [2, 3, 4, 5] and dataset.load_N.attrs["units"] == "N"
     assert frame.columns[0] == "case" and frame.label.tolist() == table.label.values.tolist()
     assert frame.mu_macro.tolist() == pytest.approx(table.mu_macro.values.tolist(), nan_ok=True)
+    assert ",nan" not in (folder / "a.csv").read_text()
     assert frame.error.isna().tolist() == frame.converged.tolist() == [True, False, False, False]
 
 
