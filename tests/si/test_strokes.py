@@ -111,6 +111,15 @@ def test_a_file_has_the_uncertainty_of_the_named_motion(factor, amplitude, load,
         assert getattr(one, spread) == pytest.approx(getattr(other, spread), rel=0.2)
 
 
+def test_a_file_of_an_indentation_determines_the_load(tmp_path):
+    name = file_of(tmp_path / "stroke.csv", indentation_nm=900.0 + 60.0 * SINE[::8])
+    given = SHAKEN | {"tolerance": 0.05}
+    one = microslip.predict(name, **given | {"load": "10 N +- 5 %"})
+    other = microslip.predict(name, **given | {"load": "11 N"})
+    assert other.friction_force_N == pytest.approx(one.friction_force_N, rel=1e-3)
+    assert one.friction_force_spread_N < 0.01 * one.friction_force_N
+
+
 def test_largest_speed_is_that_of_all_harmonics(tmp_path):
     name = file_of(tmp_path / "stroke.csv", lateral_um=SINE + 0.5 * np.sin(3.0 * PHASE))
     # the slope of sin x + 0.5 sin 3 x at x = 0 is 2.5

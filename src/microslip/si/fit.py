@@ -314,7 +314,8 @@ def fit(
         texts = {"nu": f"{used:g} ({source})"} | texts
     odd = about.pop("odd")
     about |= {"motion": motion, "understood": {"motion": motion} | texts | about["understood"]}
-    result = _fitted(about, friction, bodies, level)
+    with np.errstate(over="ignore"):  # a row of 1e300 N
+        result = _fitted(about, friction, bodies, level)
     if result.mu <= SMALLEST_MU:
         problem = f"mu is at most {SMALLEST_MU:g}; check the units of the friction and of the load"
         raise InputError("measured", source_name(measured), problem)

@@ -9,7 +9,6 @@ The module scene/files.py describes the format of the file.  Here, each heading 
 
 from __future__ import annotations
 
-import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import lru_cache
@@ -83,7 +82,7 @@ class Stroke:
 def scales(contact: Any, columns: dict[str, np.ndarray]) -> dict[str, float]:
     """Return the SI value of the unit of each column.  The units are those of `microslip.response`
     and `microslip.Sampled`."""
-    if "indentation" in columns and not math.isfinite(contact.indentation):
+    if "indentation" in columns and not np.all(np.isfinite(contact.indentation)):
         allowed = "allowed is a load: the indentation under this pressure is not known"
         raise InputError("indentation", None, allowed)
     return {
