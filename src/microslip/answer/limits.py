@@ -165,10 +165,7 @@ def _drive_of(
     if velocity is not None and force is not None:
         raise InputError("force", force, "allowed is a force or a velocity, not both")
     given = {"stiffness": stiffness, "mass": mass, "damping": damping}
-    body: dict[str, float] = {}
-    for name, value in given.items():
-        if value is not None:
-            body[name] = within(name, value)
+    body = {name: within(name, value) for name, value in given.items() if value is not None}
     if force is None and stiffness is not None:
         return Spring(**body)
     allowed = "allowed beside a stiffness alone, for a velocity moves any body"

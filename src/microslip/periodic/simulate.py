@@ -16,6 +16,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import replace
 from functools import partial
+from itertools import chain
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -342,8 +343,11 @@ def _starts(setup: Setup, guess: Run | None) -> Iterator[Start]:
     inner, first = STEP_SHARE * max(rise, tolerance), Start(forward_slip(contact))
     if setup.body is None and (problem.straight or not contact.sticks):
         first = first._replace(static_force=0.0)
-    start = first
-    for start in (_prescribed if setup.body is None else _driven)(setup, guess, first):
+    known = None if guess is None else _from_run(setup, guess, first)
+    if known is not None:
+        first = first._replace(static_force=known.static_force, limit=known.limit)
+    start, others = first, (_prescribed if setup.body is None else _driven)(setup, first)
+    for start in others if known is None else chain([known], others):
         state = start.state
         if start.above_limit and problem.straight:
             oscillation = partial(problem.displacement, velocity=0.0)
@@ -370,13 +374,9 @@ def _starts(setup: Setup, guess: Run | None) -> Iterator[Start]:
         yield start._replace(state=slipping, near=False, periods=0.0, effort=Effort())
 
 
-def _prescribed(setup: Setup, guess: Run | None, start: Start) -> Iterator[Start]:
-    """Yield initial states at a prescribed velocity, best first; the last one is full slip."""
+def _prescribed(setup: Setup, start: Start) -> Iterator[Start]:
+    """Yield initial states at a prescribed velocity, best first."""
     problem, contact = setup.problem, setup.contact
-    known = None if guess is None else _from_run(setup, guess, start)
-    if known is not None:
-        yield known
-        start = start._replace(static_force=known.static_force, limit=known.limit)
     rise, slow = problem.drift ** (2.0 / 3.0), problem.drift < SLOW_LOOP
     if problem.straight:
         # if the drift alone adds full friction in an interval, Goal.drift_error is at most the
@@ -407,15 +407,11 @@ def _from_run(setup: Setup, run: Run, start: Start) -> Start | None:
     return None if near is None else start._replace(state=near, near=True, above_limit=above)
 
 
-def _driven(setup: Setup, guess: Run | None, start: Start) -> Iterator[Start]:
+def _driven(setup: Setup, start: Start) -> Iterator[Start]:
     """Yield initial states under a prescribed force or on a spring, best first."""
     problem, resolution, contact = setup.problem, setup.resolution, setup.contact
     body, force, full = setup.body, problem.force, problem.mean_load
     assert body is not None
-    known = None if guess is None else _from_run(setup, guess, start)
-    if known is not None:
-        yield known
-        start = start._replace(static_force=known.static_force, limit=known.limit)
     periods, effort = 0.0, Effort()
     if resolution.steps >= PREPARED_FROM:  # a run with fewer steps has a similar state
         fewer = replace(resolution, steps=resolution.steps // COARSENING)
