@@ -322,7 +322,7 @@ def result_of_runs(
 
     The friction is clipped to its range.  The range is -1 to 1 for motions that can propel the
     contact, and 0 to 1 for all other motions.  If the error exceeds the width of the range, the
-    result is the middle of the range.  In this case, the error is half the width.
+    result is the middle of the range.  In this case, the error is half the width of the range.
 
     Parameters
     ----------

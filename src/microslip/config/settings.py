@@ -73,7 +73,7 @@ def refuse_unknown(name: Any, names: Collection[str], problem: str, key: str = "
 
 
 def problem_of(value: Any) -> str:
-    """Return a text that states whether a refused value is missing, empty or wrong."""
+    """Return a message that states whether a refused value is missing, empty or wrong."""
     wrong = "is empty" if value in ("", [], {}) else f"{shown(value)} is not allowed"
     return "has no value" if value is None else wrong
 

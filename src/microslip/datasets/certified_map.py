@@ -2,7 +2,7 @@
 
     transverse.nc     dims point, cell and node
 
-A cell is a box in the scaled coordinates of sweeps.map_coordinates.  Friction in a cell is
+A cell is a box in the scaled coordinates of sweeps.map_coordinates.  Within a cell, friction is
 interpolated by the polynomial through the points of the cell.  A cell has 5 points along the
 velocity and 5 along the amplitude.  If the map has an axis for Poisson's ratio, a cell has 3 points
 along that axis.  The variable `cell_error` contains the error bound of each cell.  Identical

@@ -3,10 +3,10 @@
 On a regular grid, values are interpolated along each axis by the cubic through the four nearest
 nodes.  To estimate the error, the value at each node is also predicted from the neighbouring nodes,
 by a cubic with twice the spacing.  The error bound of a cell is the largest difference between the
-predicted and the actual value at the nodes of the cell's cubic.  For a smooth function, the true
-error is a sixteenth of this bound.  At a kink, the true error and the bound are about equal.  Near
-an unknown value, the interpolation is linear.  The difference between the values at the two nodes
-then serves as the error.
+predicted and the computed values at the nodes of the cell's cubic polynomial.  For a smooth
+function, the true error is a sixteenth of this bound.  At a kink, the true error and the bound are
+about equal.  Near an unknown value, the interpolation is linear.  The difference between the values
+at the two nodes then serves as the error.
 
 In a certified map, each cell has its own polynomial and its own error bound.
 """

@@ -136,7 +136,7 @@ def refuse_strange(record: Any, what: str) -> None:
 
 
 def refuse_outside(text: str, what: str, key: str, number: object, limits: tuple) -> None:
-    """Raise InputError about the argument `what` unless a value is a number within its limits.
+    """Raise InputError about the argument `what` unless `number` is a number within its limits.
 
     limits: smallest and largest number.  A third element replaces the description "a number" in the
     message.

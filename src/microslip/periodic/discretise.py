@@ -120,10 +120,10 @@ def path_of(problem: Problem, contact: Any, steps: int, integrator: Integrator =
     The path covers half a period if the second half is the mirror image of the first, and a whole
     period otherwise.
 
-    Steps are graded towards the turning points.  With the grading g, from 0 to 0.8, a step at a
-    turning point is (1 - g) times as long as the mean step.  If drift and stroke are small, most
-    forward slip of a half period occurs near the turning points.  If the stroke is long, the whole
-    contact slides soon after a turning point.
+    Steps are graded towards the turning points.  With the grading g (0 to 0.8), a step at a turning
+    point is (1 - g) times as long as the mean step.  If drift and stroke are small, most forward
+    slip of a half period occurs near the turning points.  If the stroke is long, the whole contact
+    slides soon after a turning point.
 
     A motion along a line with a stroke above LONG_STROKE has a zone of equal steps at each turning
     point.  `width` is half the width of this zone, expressed as a phase.  Outside the zone, the

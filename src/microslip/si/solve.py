@@ -318,9 +318,9 @@ def simplifications(contact: Contact, answer: Prediction) -> list[str]:
     values may differ by at most the error of `answer`.
 
     A contact counts as simpler only if the solver can use a cheaper model, or if the load becomes
-    constant.  Poisson's ratio of a named material is not questioned.  The list is empty for a
-    contact under a prescribed force.  The list is also empty for a result from a closed form or a
-    map, and for a result that is not converged.
+    constant.  There is no such sentence about Poisson's ratio of a named material.  The list is
+    empty for a contact under a prescribed force.  The list is also empty for a result from a closed
+    form or a map, and for a result that is not converged.
     """
     friction, tolerance = answer.values["friction"], contact.inputs.tolerance or TOLERANCE
     if contact.inputs.force is not None or not answer.converged or answer.model not in MODELS:

@@ -241,8 +241,8 @@ def computed(request: dict) -> tuple[dict, float]:
     """Compute a request.  Returns the record of the request and the CPU time of the solver in
     seconds.
 
-    The name of the result contains a digest of the code.  Raises SourcesEdited if code that was
-    imported during the computation has another digest.
+    The name of the result contains a digest of the code.  Raises SourcesEdited if the digest of the
+    imported code has changed during the computation.
     """
     loaded = len(sys.modules)
     from microslip.sweeps import evaluate  # late, since it imports the solver

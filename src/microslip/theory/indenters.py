@@ -221,7 +221,8 @@ def _over_the_circle(
 ) -> float:
     """Integrate a function of the radius over a circle.
 
-    Near the edge of the circle, the function should behave like a square root.
+    Near the edge of the circle, the function should vary as the square root of the distance from
+    the edge.
     """
     total = 0.0
     for start, end in ((0.0, min(kink, radius)), (min(kink, radius), radius)):

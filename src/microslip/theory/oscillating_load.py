@@ -156,8 +156,8 @@ class _Motion:
     def lack(
         self, start: np.ndarray, high: float, later: Sequence[tuple[float, float]]
     ) -> np.ndarray:
-        """For each time in `start`, integrate phi minus its running minimum. Both the integral and
-        the running minimum begin at this time.
+        """For each time in `start`, integrate the difference between phi and its running
+        minimum. Both the integral and the running minimum begin at this time.
 
         The function phi increases from the time `start` to the time `high`, and also in each of the
         intervals `later`. The result has the shape (n,).

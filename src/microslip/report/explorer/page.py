@@ -4,8 +4,8 @@ A sweep over velocities and amplitudes is shown as one map for each Poisson's ra
 and sweeps with a drive, are shown as lines. The abscissa is the longest axis. There is one line for
 each combination of values along the other axes.
 
-Numbers from datasets are stored exactly. The forces, phases, radii and bounds in stored periods are
-rounded. Tractions, slip flags and densities are strings encoded by sweeps.period_codec. The page
+Numbers from datasets are stored exactly. Forces, phases, radii and bounds are rounded when a period
+is stored. Tractions, slip flags and densities are strings encoded by sweeps.period_codec. The page
 decodes these strings.
 """
 
